@@ -1,0 +1,16 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace frontalis
+{
+
+/// The one exception of the library. Its text names the file, line or key, what was found and what would be right.
+class Error : public std::runtime_error
+{
+public:
+  explicit Error(const std::string& what) : std::runtime_error(what) {}
+};
+
+}  // namespace frontalis

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <string>
+
+namespace frontalis
+{
+
+/// Version of the file layout; files of another version are refused.
+constexpr int model_file_version = 1;
+
+/// Writes the model whole or not at all (a temporary file beside `path`, then renamed). Equal models give equal bytes.
+/// Throws Error.
+void write_model(const Model& model, const std::string& path);
+
+/// Reads and checks a model. Throws Error with the path and what is wrong: missing, truncated, another version.
+Model read_model(const std::string& path);
+
+}  // namespace frontalis

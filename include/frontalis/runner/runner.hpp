@@ -1,0 +1,77 @@
+#pragma once
+
+#include "frontalis/solver/solver.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// One published skin: everything in the face frame [m].
+struct Frame
+{
+  double time = 0;              ///< simulated seconds since reset, on the clock on which activations are given
+  double wall_time = 0;         ///< seconds spent since the runner started
+  double real_time_factor = 0;  ///< simulated over wall seconds, over the last second of running
+  double time_step = 0;         ///< [s]
+  std::int64_t steps = 0;       ///< since reset
+  std::uint64_t sequence = 0;
+  SkinState skin;
+  std::vector<float> activation;
+  Monitor monitor;              ///< renewed about once a second
+  bool failed = false;          ///< the motion could not be trusted; the skin is the last good one
+  std::string failure;          ///< why, in one sentence
+};
+
+enum class Pace
+{
+  real_time,  ///< never faster than the clock
+  fastest,    ///< as fast as it can
+  lock_step   ///< only on step()
+};
+
+struct RunnerSettings
+{
+  SolverSettings solver;
+  Pace pace = Pace::real_time;
+  double frame_rate = 0;  ///< frames a wall second; 0: the model's
+};
+
+/// A live face: owns the solver and a thread that steps it, takes controls from any thread, hands out frames.
+class Runner
+{
+public:
+  /// Called in the runner's thread, once a frame; must not call back into the runner but to read.
+  using OnFrame = std::function<void(const Frame&)>;
+
+  Runner(std::shared_ptr<const Model> model, const RunnerSettings& settings, OnFrame on_frame);
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+  /// Activations by muscle name, 0..1; muscles not named keep theirs. Throws Error naming each unknown muscle or bad value
+  /// (not finite, out of range); nothing is changed then.
+  void set_activation(const std::map<std::string, double>& activation);
+  /// A named preset of the model; muscles that it does not name go to 0. Throws Error listing those that exist.
+  void set_expression(const std::string& name);
+
+  void pause(bool paused);
+  bool paused() const;
+  /// Back to rest and zero activation; clears a failure.
+  void reset();
+  /// Advances by exactly `seconds` and returns the frame there; pauses the runner's own stepping first. Throws Error.
+  Frame step(double seconds);
+
+  const Model& model() const;
+  std::string description() const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "frontalis/scene/scene.hpp"
+
+#include <string>
+
+namespace frontalis
+{
+
+struct SceneOptions
+{
+  std::string mesh_directory;  ///< where surface files are looked for; empty: `mesh_dir` of the scene, else its folder
+  std::string accuracy;        ///< profile name; empty: the scene's default
+  double voxel = 0;            ///< [m] overrides the profile's voxel edge; 0: no override
+};
+
+/// Reads and checks a scene file (doc/scene.md). Throws Error whose text holds every fault of the file, one a line:
+/// FILE:LINE: KEY: what was found; what is allowed.
+Scene read_scene(const std::string& path, const SceneOptions& options = {});
+
+}  // namespace frontalis

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+enum class Backend
+{
+  automatic,  ///< the GPU where there is one, else the CPU
+  reference,  ///< double, plain loops: slow on purpose, the oracle of every test
+  cpu,        ///< float, SIMD, all cores
+  cuda
+};
+
+/// "auto", "reference", "cpu" or "cuda"; throws Error naming those that exist.
+Backend backend_from_name(const std::string& name);
+std::string name_of(Backend backend);
+
+struct SolverSettings
+{
+  Backend backend = Backend::automatic;
+  int threads = 0;       ///< CPU threads; 0: one a core
+  double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
+};
+
+/// What drives the model from outside.
+struct Controls
+{
+  std::vector<float> activation;     ///< one a muscle, 0..1
+  std::vector<RigidTransform> bone;  ///< one a bone: motion from its rest pose, in the local frame
+};
+
+/// Published surface in the local frame [m], single precision.
+struct SkinState
+{
+  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<float, 3>> normals;  ///< unit length, outward, area-weighted mean of the triangles'
+  std::vector<std::array<float, 3>> landmarks;
+};
+
+/// Energies [J], summed in double, and the state of the worst voxel.
+struct Monitor
+{
+  double kinetic = 0;
+  double internal = 0;  ///< elastic, fibres included, hourglass not
+  double hourglass = 0;
+  double worst_jacobian = 1;       ///< smallest J = det F of a voxel
+  std::int32_t worst_voxel = -1;
+  double critical_time_step = 0;   ///< [s] now, element bound
+  bool finite = true;
+};
+
+/// Wall seconds spent since construction or reset.
+struct Profile
+{
+  double stepping = 0;
+  double skin = 0;
+  double monitor = 0;
+  std::int64_t steps = 0;
+};
+
+/// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). Not thread-safe: one caller.
+class Solver
+{
+public:
+  virtual ~Solver() = default;
+
+  /// Back to rest at time 0 with all controls at zero.
+  virtual void reset() = 0;
+
+  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step; activations and bone
+  /// poses go linearly (poses: rotation about the shortest axis) from where they are to `target` over that time.
+  /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length.
+  virtual void advance(double seconds, const Controls& target) = 0;
+
+  virtual double time() const = 0;             ///< [s] since reset
+  virtual double time_step() const = 0;        ///< [s] of the latest step, or the one that would be taken
+  virtual const Controls& controls() const = 0;
+
+  virtual void skin(SkinState& out) = 0;
+  virtual Monitor monitor() = 0;
+  virtual Profile profile() const = 0;
+
+  /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.
+  virtual void displacements(std::vector<std::array<double, 3>>& out) const = 0;
+  /// Sets the displacements and zeroes the velocities; for tests and studies.
+  virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
+  /// Nodal velocities [m/s]; for tests and studies.
+  virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
+  /// Internal forces [N] at the present displacements (elastic, hourglass, fibres), before constraints.
+  virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;
+
+  virtual std::string description() const = 0;  ///< backend, instruction set or device, threads
+};
+
+/// Makes a solver; the model is kept alive by it. Throws Error where the backend is not available here.
+std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const SolverSettings& settings = {});
+
+}  // namespace frontalis
