@@ -1,0 +1,253 @@
+#include "frontalis/error.hpp"
+#include "frontalis/model/model.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace frontalis
+{
+namespace
+{
+
+[[noreturn]] void fail(const std::string& array, const std::string& found) { throw Error(array + ": " + found); }
+
+void check_length(const std::string& array, std::size_t found, std::size_t wanted, const std::string& of)
+{
+  if (found != wanted)
+    fail(array, std::to_string(found) + " entries; " + std::to_string(wanted) + " wanted, one " + of);
+}
+
+template <class Integer>
+void check_index(const std::string& array, std::size_t at, Integer index, std::size_t count, Integer lowest = 0)
+{
+  if (index < lowest || (index >= 0 && static_cast<std::size_t>(index) >= count))
+    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(index) + "; indices run from " +
+                    std::to_string(lowest) + " to " + std::to_string(static_cast<std::ptrdiff_t>(count) - 1));
+}
+
+void check_finite(const std::string& array, std::size_t at, double value)
+{
+  if (!std::isfinite(value))
+    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; it must be finite");
+}
+
+void check_positive(const std::string& array, std::size_t at, double value)
+{
+  check_finite(array, at, value);
+  if (!(value > 0))
+    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; it must be above 0");
+}
+
+void check_proportion(const std::string& array, std::size_t at, double value)
+{
+  check_finite(array, at, value);
+  if (value < 0 || value > 1.0001)
+    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; proportions lie in 0..1");
+}
+
+template <std::size_t N, class T>
+void check_finite(const std::string& array, std::size_t at, const std::array<T, N>& values)
+{
+  for (const T value : values)
+    check_finite(array, at, static_cast<double>(value));
+}
+
+void check_ranges(const std::string& array, const std::vector<std::int32_t>& begin, std::size_t voxels,
+                  std::size_t entries)
+{
+  check_length(array, begin.size(), voxels + 1, "voxel and an end");
+  if (begin.front() != 0)
+    fail(array, "starts at " + std::to_string(begin.front()) + "; it must start at 0");
+  for (std::size_t e = 0; e < voxels; ++e)
+  {
+    if (begin[e] > begin[e + 1])
+      fail(array, "decreases after entry " + std::to_string(e));
+  }
+  if (static_cast<std::size_t>(begin.back()) != entries)
+    fail(array, "ends at " + std::to_string(begin.back()) + "; there are " + std::to_string(entries) + " entries");
+}
+
+void check_mesh(const std::string& array, const TriangleMesh& mesh)
+{
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    check_finite(array + ".vertices", v, mesh.vertices[v]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+  {
+    for (const std::int32_t v : mesh.triangles[t])
+      check_index(array + ".triangles", t, v, mesh.vertices.size());
+  }
+}
+
+void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
+{
+  check_length(array + ".voxel", binding.voxel.size(), points, "point");
+  check_length(array + ".coordinates", binding.coordinates.size(), points, "point");
+  for (std::size_t p = 0; p < points; ++p)
+  {
+    check_index(array + ".voxel", p, binding.voxel[p], voxels);
+    check_finite(array + ".coordinates", p, binding.coordinates[p]);
+  }
+}
+
+void check_grid(const Model& model)
+{
+  for (std::size_t a = 0; a < 3; ++a)
+    check_positive("spacing", a, model.spacing[a]);
+  const std::size_t voxels = model.voxels.size();
+  check_length("fill", model.fill.size(), voxels, "voxel");
+  check_length("voxel_nodes", model.voxel_nodes.size(), voxels, "voxel (see build_nodes)");
+  for (std::size_t e = 0; e < voxels; ++e)
+  {
+    check_proportion("fill", e, model.fill[e]);
+    if (!(model.fill[e] > 0))
+      fail("fill", "entry " + std::to_string(e) + " is 0; a voxel without tissue must be left out");
+    for (int a = 0; a < 3; ++a)
+      check_index("voxels", e, model.voxels[e][a], static_cast<std::size_t>(model.size[a]));
+    for (const std::int32_t n : model.voxel_nodes[e])
+      check_index("voxel_nodes", e, n, model.nodes.size());
+  }
+}
+
+void check_mixtures(const Model& model)
+{
+  for (std::size_t m = 0; m < model.materials.size(); ++m)
+  {
+    check_finite("materials", m, model.materials[m].parameters);
+    check_positive("materials (density)", m, model.materials[m].density);
+    if (model.materials[m].law != Law::neo_hookean)
+      fail("materials", "entry " + std::to_string(m) + " has law " +
+                            std::to_string(static_cast<int>(model.materials[m].law)) + ", which is not known");
+  }
+  const std::size_t entries = model.mixture_material.size();
+  check_ranges("mixture_begin", model.mixture_begin, model.voxels.size(), entries);
+  check_length("mixture_proportion", model.mixture_proportion.size(), entries, "entry of mixture_material");
+  for (std::size_t m = 0; m < entries; ++m)
+  {
+    check_index("mixture_material", m, model.mixture_material[m], model.materials.size());
+    check_proportion("mixture_proportion", m, model.mixture_proportion[m]);
+  }
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    double sum = 0;
+    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+      sum += model.mixture_proportion[static_cast<std::size_t>(m)];
+    if (std::abs(sum - 1) > 1e-4)
+      fail("mixture_proportion", "proportions of voxel " + std::to_string(e) + " add up to " + std::to_string(sum) +
+                                     "; they must add up to 1");
+  }
+}
+
+void check_fibres(const Model& model)
+{
+  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+    check_positive("muscles (stress_reference)", m, model.muscles[m].stress_reference);
+  const std::size_t entries = model.fibre_muscle.size();
+  check_ranges("fibre_begin", model.fibre_begin, model.voxels.size(), entries);
+  check_length("fibre_weight", model.fibre_weight.size(), entries, "entry of fibre_muscle");
+  check_length("fibre_direction", model.fibre_direction.size(), entries, "entry of fibre_muscle");
+  for (std::size_t m = 0; m < entries; ++m)
+  {
+    check_index("fibre_muscle", m, model.fibre_muscle[m], model.muscles.size());
+    check_proportion("fibre_weight", m, model.fibre_weight[m]);
+    check_finite("fibre_direction", m, model.fibre_direction[m]);
+    const auto& d = model.fibre_direction[m];
+    const double length = std::sqrt(static_cast<double>(d[0]) * d[0] + static_cast<double>(d[1]) * d[1] +
+                                    static_cast<double>(d[2]) * d[2]);
+    if (std::abs(length - 1) > 1e-3)
+      fail("fibre_direction", "entry " + std::to_string(m) + " has length " + std::to_string(length) + "; 1 wanted");
+  }
+}
+
+void check_constraints(const Model& model)
+{
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    check_mesh("constraint_surfaces '" + surface.name + "'", surface.mesh);
+  for (std::size_t n = 0; n < model.rigid.size(); ++n)
+  {
+    check_index("rigid (node)", n, model.rigid[n].node, model.nodes.size());
+    check_index("rigid (bone)", n, model.rigid[n].bone, model.bones.size(), -1);
+  }
+  for (std::size_t n = 0; n < model.sliding.size(); ++n)
+  {
+    check_index("sliding (node)", n, model.sliding[n].node, model.nodes.size());
+    check_index("sliding (surface)", n, model.sliding[n].surface, model.constraint_surfaces.size());
+    check_finite("sliding (distance)", n, model.sliding[n].distance);
+  }
+  for (std::size_t n = 0; n < model.prescribed.size(); ++n)
+  {
+    check_index("prescribed (node)", n, model.prescribed[n].node, model.nodes.size());
+    check_index("prescribed (load)", n, model.prescribed[n].load, model.loads.size());
+  }
+}
+
+void check_loads(const Model& model)
+{
+  check_finite("gravity", 0, model.gravity);
+  for (std::size_t l = 0; l < model.loads.size(); ++l)
+  {
+    const Load& load = model.loads[l];
+    const std::string name = "loads '" + load.name + "'";
+    if (load.kind > Load::Kind::displacement)
+      fail(name, "kind " + std::to_string(static_cast<int>(load.kind)) + " is not known");
+    check_finite(name + " (value)", l, load.value);
+    check_finite(name + " (ramp)", l, load.ramp);
+    check_mesh(name, load.mesh);
+    check_binding(name + ".binding", load.binding, load.mesh.vertices.size(), model.voxels.size());
+  }
+}
+
+void check_presets(const Model& model)
+{
+  for (const Model::Expression& expression : model.expressions)
+  {
+    for (std::size_t m = 0; m < expression.activation.size(); ++m)
+    {
+      check_index("expressions '" + expression.name + "'", m, expression.activation[m].first, model.muscles.size());
+      check_proportion("expressions '" + expression.name + "'", m, expression.activation[m].second);
+    }
+  }
+  for (std::size_t p = 0; p < model.demo.size(); ++p)
+  {
+    check_index("demo", p, model.demo[p].expression, model.expressions.size(), -1);
+    check_finite("demo (ramp)", p, model.demo[p].ramp);
+    check_positive("demo (seconds)", p, model.demo[p].seconds);
+  }
+}
+
+void check_settings(const Model& model)
+{
+  check_finite("to_scene", 0, model.to_scene.rotation);
+  check_finite("to_scene", 0, model.to_scene.translation);
+  check_finite("to_face", 0, model.to_face.rotation);
+  check_finite("to_face", 0, model.to_face.translation);
+  check_finite("damping", 0, model.damping);
+  check_positive("time_scaling", 0, model.time_scaling);
+  check_positive("frame_rate", 0, model.frame_rate);
+  check_positive("time_step_share", 0, model.time_step_share);
+  if (model.mass_scaling.kind > MassScalingSettings::Kind::selective)
+    fail("mass_scaling", "kind " + std::to_string(static_cast<int>(model.mass_scaling.kind)) + " is not known");
+  check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);
+  for (std::size_t m = 0; m < model.mass_scaling.materials.size(); ++m)
+    check_index("mass_scaling (materials)", m, model.mass_scaling.materials[m], model.materials.size());
+}
+
+}  // namespace
+
+void check_model(const Model& model)
+{
+  check_grid(model);
+  check_mixtures(model);
+  check_fibres(model);
+  check_constraints(model);
+  check_loads(model);
+  check_mesh("skin", model.skin);
+  check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());
+  check_length("landmark_positions", model.landmark_positions.size(), model.landmarks.size(), "landmark");
+  for (std::size_t l = 0; l < model.landmark_positions.size(); ++l)
+    check_finite("landmark_positions", l, model.landmark_positions[l]);
+  check_binding("landmark_binding", model.landmark_binding, model.landmarks.size(), model.voxels.size());
+  check_presets(model);
+  check_settings(model);
+}
+
+}  // namespace frontalis
