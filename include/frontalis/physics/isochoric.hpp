@@ -1,0 +1,35 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Below this J the isochoric laws are continued; above it they hold exactly.
+constexpr double continuation_jacobian = 0.2;
+
+/// g(J) = J^(-2/3) and its derivative for J >= J0; below, the tangent at J0 goes on, so that g grows, stays finite
+/// through J = 0 and past it, and pushes a crushed or inverted element open (C1 in F; compare Smith, de Goes & Kim
+/// 2018, who reach the same with a regularised energy).
+template <class T>
+struct IsochoricScale
+{
+  T value;  ///< g
+  T slope;  ///< dg/dJ
+};
+
+template <class T>
+FRONTALIS_LAW IsochoricScale<T> isochoric_scale(T J)
+{
+  using N = Number<T>;
+  const double j0 = continuation_jacobian;
+  const T y = N::inverse_cube_root(N::max(J, N::of(j0)));
+  const T y2 = y * y;
+  const T slope = N::of(-2.0 / 3.0) * y2 * y2 * y;
+  return { y2 + slope * N::min(J - N::of(j0), N::of(0)), slope };
+}
+
+}  // namespace physics
+}  // namespace frontalis

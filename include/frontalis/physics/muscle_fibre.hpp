@@ -1,0 +1,67 @@
+#pragma once
+
+#include "frontalis/physics/isochoric.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Constants of the tension-length relation after Blemker, Pinsky & Delp 2005 (J. Biomech. 38:657), optimal fibre
+/// stretch 1.
+constexpr double fibre_optimal_stretch = 1.0;
+constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear beyond it
+constexpr double fibre_p1 = 0.05;
+constexpr double fibre_p2 = 6.6;
+
+/// Active tension of a fibre, 0..1, at normalised length l = stretch / optimal stretch.
+template <class T>
+FRONTALIS_LAW T active_tension(T l)
+{
+  using N = Number<T>;
+  const T rising = N::of(9) * (l - N::of(0.4)) * (l - N::of(0.4));
+  const T plateau = N::of(1) - N::of(4) * (N::of(1) - l) * (N::of(1) - l);
+  const T falling = N::of(9) * (l - N::of(1.6)) * (l - N::of(1.6));
+  T f = N::select(l <= N::of(0.6), rising, plateau);
+  f = N::select(l > N::of(1.4), falling, f);
+  f = N::select(l <= N::of(0.4), N::of(0), f);
+  return N::select(l >= N::of(1.6), N::of(0), f);
+}
+
+/// Passive tension of a fibre over the stress reference, 0 in compression, linear with continuous slope past 1.4.
+template <class T>
+FRONTALIS_LAW T passive_tension(T l)
+{
+  using N = Number<T>;
+  const double end = fibre_linear_stretch / fibre_optimal_stretch;
+  const T e = N::exp(N::of(fibre_p2) * (N::min(N::max(l, N::of(1)), N::of(end)) - N::of(1)));
+  const T curve = N::of(fibre_p1) * (e - N::of(1));
+  return curve + N::of(fibre_p1 * fibre_p2) * e * N::max(l - N::of(end), N::of(0));
+}
+
+/// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
+/// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. Faded out below a small J, so
+/// that a crushed element's fibres do not hold it crushed. with_length: 1 takes the tension-length relation, 0 gives
+/// the constant S = activation stress_reference; with_passive: 1 adds the passive part.
+template <class T>
+FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
+{
+  using N = Number<T>;
+  const T squared = N::max(stretch_squared, N::of(1e-6));
+  const T stretch = N::sqrt(squared);
+  const T l = stretch * N::of(1.0 / fibre_optimal_stretch);
+  const T to_second_piola = N::max(J, N::of(0)) * l / squared;
+  const T active = activation * (with_length * (active_tension(l) * to_second_piola - N::of(1)) + N::of(1));
+  const T passive = with_passive * passive_tension(l) * to_second_piola;
+  const T fade = N::min(N::max(J * N::of(1.0 / continuation_jacobian), N::of(0)), N::of(1));
+  return stress_reference * fade * (active + passive);
+}
+
+/// Largest slope of the Cauchy stress over the stress reference against stretch, full activation: what a time step has
+/// to allow for. d/dl [f(l) l] of the active curve is 2.4 at l = 0.6; the passive curve's end is p1 p2 e^(0.4 p2) (1
+/// + 1.4).
+constexpr double active_slope_bound = 2.4;
+constexpr double passive_slope_bound = 11.1;
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+
+// A law in this folder is compiled for double (reference), for SIMD batches (CPU) and for float in CUDA kernels.
+#if defined(__CUDACC__)
+#define FRONTALIS_LAW __host__ __device__ __forceinline__
+#elif defined(__GNUC__)
+#define FRONTALIS_LAW inline __attribute__((always_inline))
+#else
+#define FRONTALIS_LAW inline
+#endif
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// What a law needs of its number type beyond + - * / and comparisons. Scalars here; SIMD batches specialise it where
+/// they are used.
+template <class T>
+struct Number
+{
+  /// The value as a number of this type.
+  static FRONTALIS_LAW T of(double value) { return static_cast<T>(value); }
+  /// `yes` where the condition holds, else `no`; both are evaluated.
+  static FRONTALIS_LAW T select(bool condition, T yes, T no) { return condition ? yes : no; }
+  static FRONTALIS_LAW T max(T a, T b) { return a > b ? a : b; }
+  static FRONTALIS_LAW T min(T a, T b) { return a < b ? a : b; }
+  static FRONTALIS_LAW T sqrt(T a) { return static_cast<T>(::sqrt(static_cast<double>(a))); }
+  static FRONTALIS_LAW T exp(T a) { return static_cast<T>(::exp(static_cast<double>(a))); }
+  /// a^(-1/3) for a > 0.
+  static FRONTALIS_LAW T inverse_cube_root(T a) { return static_cast<T>(1.0 / ::cbrt(static_cast<double>(a))); }
+};
+
+#if defined(__CUDACC__)
+template <>
+struct Number<float>
+{
+  static FRONTALIS_LAW float of(double value) { return static_cast<float>(value); }
+  static FRONTALIS_LAW float select(bool condition, float yes, float no) { return condition ? yes : no; }
+  static FRONTALIS_LAW float max(float a, float b) { return fmaxf(a, b); }
+  static FRONTALIS_LAW float min(float a, float b) { return fminf(a, b); }
+  static FRONTALIS_LAW float sqrt(float a) { return sqrtf(a); }
+  static FRONTALIS_LAW float exp(float a) { return expf(a); }
+  static FRONTALIS_LAW float inverse_cube_root(float a)
+  {
+#if defined(__CUDA_ARCH__)
+    return rcbrtf(a);
+#else
+    return 1.0f / cbrtf(a);
+#endif
+  }
+};
+#endif
+
+/// 3 x 3 matrix, row by row.
+template <class T>
+struct Matrix3
+{
+  T a[3][3];
+};
+
+/// 3-vector.
+template <class T>
+struct Vec3
+{
+  T x, y, z;
+};
+
+template <class T>
+FRONTALIS_LAW Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b)
+{
+  return { a.x + b.x, a.y + b.y, a.z + b.z };
+}
+template <class T>
+FRONTALIS_LAW Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b)
+{
+  return { a.x - b.x, a.y - b.y, a.z - b.z };
+}
+template <class T>
+FRONTALIS_LAW Vec3<T> operator*(T s, const Vec3<T>& a)
+{
+  return { s * a.x, s * a.y, s * a.z };
+}
+template <class T>
+FRONTALIS_LAW T dot(const Vec3<T>& a, const Vec3<T>& b)
+{
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+FRONTALIS_LAW Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b)
+{
+  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
+}
+template <class T>
+FRONTALIS_LAW T norm(const Vec3<T>& a)
+{
+  return Number<T>::sqrt(dot(a, a));
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Weights of a voxel's corners b = i + 2j + 4k at coordinates (x, y, z), 0..1 inside, anything outside.
+template <class T>
+FRONTALIS_LAW void trilinear_weights(T x, T y, T z, T* weight)
+{
+  const T one = Number<T>::of(1);
+  for (int b = 0; b < 8; ++b)
+    weight[b] = ((b & 1) ? x : one - x) * ((b & 2) ? y : one - y) * ((b & 4) ? z : one - z);
+}
+
+}  // namespace physics
+}  // namespace frontalis
