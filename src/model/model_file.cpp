@@ -1,0 +1,101 @@
+#include "frontalis/model/model_file.hpp"
+
+#include "frontalis/error.hpp"
+#include "hdf5_file.hpp"
+#include "model_archive.hpp"
+#include "model_layout.hpp"
+#include "vtk_arrays.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+const std::string root = "/frontalis";
+
+void write_whole(const Model& model, const std::string& path)
+{
+  Hdf5File file = Hdf5File::create(path);
+  write_vtk_arrays(file, model);
+  file.make_group(root);
+  file.write_attribute(root, "model_file_version", std::vector<std::int64_t>{ model_file_version });
+  ModelWriter writer(file);
+  exchange_model(writer, model, root);
+  file.close();
+}
+
+/// Makes sure that a file, or the entries of a folder, are on the disk.
+void synchronise(const std::string& path)
+{
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0)
+    throw Error(std::string("cannot be opened again: ") + std::strerror(errno));
+  const int result = ::fsync(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  // some file systems cannot synchronise folders
+  if (result != 0 && reason != EINVAL)
+    throw Error(std::string("cannot be written to the disk: ") + std::strerror(reason));
+}
+
+}  // namespace
+
+void write_model(const Model& model, const std::string& path)
+{
+  const std::string partial = path + ".partial-" + std::to_string(::getpid());
+  try
+  {
+    check_model(model);
+    write_whole(model, partial);
+    synchronise(partial);
+    if (std::rename(partial.c_str(), path.c_str()) != 0)
+      throw Error(std::string("cannot take its name: ") + std::strerror(errno));
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    synchronise(folder.empty() ? "." : folder.string());
+  }
+  catch (const Error& error)
+  {
+    std::remove(partial.c_str());
+    throw Error("model file " + path + ": " + error.what());
+  }
+  catch (...)
+  {
+    std::remove(partial.c_str());
+    throw;
+  }
+}
+
+Model read_model(const std::string& path)
+{
+  try
+  {
+    const Hdf5File file = Hdf5File::open(path);
+    const std::int64_t version = file.attribute(root, "model_file_version", -1);
+    if (version < 0)
+      throw Error("is an HDF5 file, but not a model; one written by 'frontalis bake' is wanted");
+    if (version != model_file_version)
+      throw Error("has version " + std::to_string(version) + "; this program reads version " +
+                  std::to_string(model_file_version) + ": bake the scene again");
+    Model model;
+    ModelReader reader(file);
+    exchange_model(reader, model, root);
+    build_nodes(model);
+    check_model(model);
+    return model;
+  }
+  catch (const Error& error)
+  {
+    throw Error("model file " + path + ": " + error.what());
+  }
+}
+
+}  // namespace frontalis

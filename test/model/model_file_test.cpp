@@ -1,0 +1,194 @@
+#include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
+#include "model/model_block.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace
+{
+
+using namespace frontalis;
+namespace fs = std::filesystem;
+
+class ModelFile : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    folder_ = fs::temp_directory_path() / ("frontalis_model_file_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static std::string bytes(const std::string& file)
+  {
+    std::ifstream in(file, std::ios::binary);
+    return { std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>() };
+  }
+
+  static std::string fault_of(const std::string& file)
+  {
+    try
+    {
+      read_model(file);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ModelFile, GivesBackEveryField)
+{
+  const Model a = full_block(3, 4, 5);
+  write_model(a, path("a.vtkhdf"));
+  const Model b = read_model(path("a.vtkhdf"));
+  EXPECT_EQ(a.spacing, b.spacing);
+  EXPECT_EQ(a.size, b.size);
+  EXPECT_EQ(a.voxels, b.voxels);
+  EXPECT_EQ(a.fill, b.fill);
+  EXPECT_EQ(a.mixture_begin, b.mixture_begin);
+  EXPECT_EQ(a.mixture_material, b.mixture_material);
+  EXPECT_EQ(a.mixture_proportion, b.mixture_proportion);
+  EXPECT_EQ(a.fibre_begin, b.fibre_begin);
+  EXPECT_EQ(a.fibre_weight, b.fibre_weight);
+  EXPECT_EQ(a.fibre_direction, b.fibre_direction);
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.voxel_nodes, b.voxel_nodes);
+  ASSERT_EQ(b.materials.size(), 2u);
+  EXPECT_EQ(b.materials[1].name, "a muscle");
+  EXPECT_EQ(a.materials[1].parameters, b.materials[1].parameters);
+  EXPECT_EQ(b.materials[0].density, 1000);
+  ASSERT_EQ(b.muscles.size(), 1u);
+  EXPECT_EQ(b.muscles[0].name, "frontalis_left");
+  EXPECT_EQ(b.muscles[0].stress_reference, 5e6);
+  EXPECT_TRUE(b.muscles[0].passive);
+  EXPECT_FALSE(b.muscles[0].tension_length);
+  EXPECT_EQ(a.bones, b.bones);
+  ASSERT_EQ(b.constraint_surfaces.size(), 1u);
+  EXPECT_EQ(a.constraint_surfaces[0].mesh.vertices, b.constraint_surfaces[0].mesh.vertices);
+  ASSERT_EQ(b.rigid.size(), 2u);
+  EXPECT_EQ(b.rigid[1].bone, 1);
+  ASSERT_EQ(b.sliding.size(), 1u);
+  EXPECT_EQ(b.sliding[0].distance, -0.00125);
+  EXPECT_EQ(a.gravity, b.gravity);
+  ASSERT_EQ(b.loads.size(), 2u);
+  EXPECT_EQ(b.loads[0].kind, Load::Kind::pressure);
+  EXPECT_EQ(a.loads[0].fixed, b.loads[0].fixed);
+  EXPECT_EQ(a.loads[0].binding.coordinates, b.loads[0].binding.coordinates);
+  EXPECT_EQ(b.loads[1].name, "push");
+  EXPECT_EQ(b.prescribed.at(0).load, 1);
+  EXPECT_EQ(a.skin.triangles, b.skin.triangles);
+  EXPECT_EQ(a.skin_binding.coordinates, b.skin_binding.coordinates);
+  EXPECT_EQ(a.landmarks, b.landmarks);
+  EXPECT_EQ(a.landmark_positions, b.landmark_positions);
+  EXPECT_EQ(a.to_scene.rotation, b.to_scene.rotation);
+  EXPECT_EQ(a.to_face.translation, b.to_face.translation);
+  EXPECT_EQ(b.face_frame, "face_one");
+  EXPECT_EQ(b.damping, 20);
+  EXPECT_EQ(b.time_step_share, 0.8);
+  EXPECT_EQ(b.mass_scaling.kind, MassScalingSettings::Kind::selective);
+  EXPECT_EQ(a.mass_scaling.materials, b.mass_scaling.materials);
+  ASSERT_EQ(b.expressions.size(), 2u);
+  EXPECT_EQ(a.expressions[0].activation, b.expressions[0].activation);
+  EXPECT_TRUE(b.expressions[1].activation.empty());
+  ASSERT_EQ(b.demo.size(), 2u);
+  EXPECT_EQ(b.demo[1].expression, -1);
+  EXPECT_EQ(b.scene_hash, a.scene_hash);
+}
+
+TEST_F(ModelFile, EqualModelsGiveEqualBytes)
+{
+  write_model(full_block(3, 4, 5), path("a.vtkhdf"));
+  ::sleep(2);  // longer than the resolution of HDF5's object times
+  write_model(full_block(3, 4, 5), path("b.vtkhdf"));
+  EXPECT_TRUE(bytes(path("a.vtkhdf")) == bytes(path("b.vtkhdf")));
+  Model other = full_block(3, 4, 5);
+  other.scene_hash = "fedcba9876543210";
+  write_model(other, path("c.vtkhdf"));
+  EXPECT_FALSE(bytes(path("a.vtkhdf")) == bytes(path("c.vtkhdf")));
+}
+
+TEST_F(ModelFile, MissingFolderAndForeignFilesAreNamed)
+{
+  EXPECT_NE(fault_of(path("none.vtkhdf")).find("no such file"), std::string::npos);
+  EXPECT_NE(fault_of(path("none.vtkhdf")).find(path("none.vtkhdf")), std::string::npos);
+  EXPECT_NE(fault_of(folder_.string()).find("folder"), std::string::npos);
+  std::ofstream(path("text.vtkhdf")) << "voxels: none\n";
+  EXPECT_NE(fault_of(path("text.vtkhdf")).find("not an HDF5 file"), std::string::npos);
+}
+
+TEST_F(ModelFile, TruncatedFilesAreRefusedAtEveryLength)
+{
+  write_model(full_block(3, 4, 5), path("a.vtkhdf"));
+  const auto size = fs::file_size(path("a.vtkhdf"));
+  for (int part = 0; part < 16; ++part)
+  {
+    const std::string cut = path("cut" + std::to_string(part) + ".vtkhdf");
+    fs::copy_file(path("a.vtkhdf"), cut);
+    fs::resize_file(cut, part == 15 ? size - 1 : size * static_cast<unsigned>(part) / 16);
+    const std::string fault = fault_of(cut);
+    EXPECT_NE(fault.find(part == 0 ? "not an HDF5 file" : "truncated"), std::string::npos) << part << ": " << fault;
+  }
+}
+
+TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
+{
+  write_model(full_block(2, 2, 2), path("a.vtkhdf"));
+  std::string content = bytes(path("a.vtkhdf"));
+  // the attribute's message: name padded to 24 bytes, type (16), shape of a scalar (8), value
+  const std::size_t name = content.find("model_file_version");
+  ASSERT_NE(name, std::string::npos);
+  const std::size_t at = name + 24 + 16 + 8;
+  ASSERT_EQ(content[at], 1);
+  content[at] = 77;
+  std::ofstream(path("b.vtkhdf"), std::ios::binary) << content;
+  const std::string fault = fault_of(path("b.vtkhdf"));
+  EXPECT_NE(fault.find("version 77"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("reads version 1"), std::string::npos) << fault;
+}
+
+TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
+{
+  Model bad = full_block(2, 2, 2);
+  bad.fill.pop_back();
+  EXPECT_THROW(write_model(bad, path("bad.vtkhdf")), Error);
+  EXPECT_THROW(write_model(full_block(2, 2, 2), path("no_folder/a.vtkhdf")), Error);
+  EXPECT_TRUE(fs::is_empty(folder_));
+  // a good file stays when its successor cannot be written
+  write_model(full_block(2, 2, 2), path("a.vtkhdf"));
+  const std::string before = bytes(path("a.vtkhdf"));
+  EXPECT_THROW(write_model(bad, path("a.vtkhdf")), Error);
+  EXPECT_TRUE(before == bytes(path("a.vtkhdf")));
+}
+
+TEST_F(ModelFile, AMillionVoxelsLoadWithinASecond)
+{
+  write_model(full_block(100, 100, 100), path("million.vtkhdf"));
+  double best = 1e9;
+  for (int attempt = 0; attempt < 3; ++attempt)
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    const Model model = read_model(path("million.vtkhdf"));
+    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    ASSERT_EQ(model.voxels.size(), 1000000u);
+  }
+  RecordProperty("seconds", std::to_string(best));
+  EXPECT_LT(best, 1.0);
+}
+
+}  // namespace
