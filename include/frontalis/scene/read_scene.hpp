@@ -12,6 +12,8 @@ struct SceneOptions
   std::string mesh_directory;  ///< where surface files are looked for; empty: `mesh_dir` of the scene, else its folder
   std::string accuracy;        ///< profile name; empty: the scene's default
   double voxel = 0;            ///< [m] overrides the profile's voxel edge; 0: no override
+  std::string
+      voxel_quantity;  ///< the same as a user writes it: "1.5" (the scene's length unit) or "1.5 mm"; comes first
 };
 
 /// Reads and checks a scene file (doc/scene.md). Throws Error whose text holds every fault of the file, one a line:

@@ -40,8 +40,8 @@ struct Shape
   double radius = 0;
   double minor_radius = 0;
   double length = 0;
-  double edge = 0;        ///< wanted edge length of the triangles [m]; 0: chosen from the size
-  std::string part;       ///< forehead only
+  double edge = 0;   ///< wanted edge length of the triangles [m]; 0: chosen from the size
+  std::string part;  ///< forehead only
   /// Dimensions of the generated forehead [m] by name; those not given have the defaults of doc/scene.md.
   std::map<std::string, double> dimensions;
 };
@@ -116,9 +116,9 @@ struct SceneConstraint
   std::string name;
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
-  double within = -1;       ///< tissue nodes no farther out of the surface than this are restricted [m]; < 0: 0.75 voxel
+  double within = -1;  ///< tissue nodes no farther out of the surface than this are restricted [m]; < 0: 0.75 voxel
   Region crop;
-  std::string bone;         ///< rigid nodes follow this bone's pose; empty: still
+  std::string bone;  ///< rigid nodes follow this bone's pose; empty: still
   int line = 0;
 };
 
@@ -145,8 +145,8 @@ struct SceneLoad
 struct SceneSkin
 {
   std::string surface;
-  Region crop;                   ///< triangles with a vertex outside are not published
-  double extrapolation = 0;      ///< farthest that a vertex may lie outside its voxel [m]; 0: two voxels
+  Region crop;               ///< triangles with a vertex outside are not published
+  double extrapolation = 0;  ///< farthest that a vertex may lie outside its voxel [m]; 0: two voxels
 };
 
 struct SceneLandmark
@@ -192,9 +192,9 @@ struct AccuracyProfile
 /// Time settings.
 struct SceneTime
 {
-  double damping = 0;       ///< mass-proportional damping coefficient [1/s]
-  double scaling = 1;       ///< time scaling: the motion is played this many times faster in simulated time
-  double frame_rate = 30;   ///< published skins a wall second [1/s]
+  double damping = 0;      ///< mass-proportional damping coefficient [1/s]
+  double scaling = 1;      ///< time scaling: the motion is played this many times faster in simulated time
+  double frame_rate = 30;  ///< published skins a wall second [1/s]
 };
 
 /// One entry of the demonstration: hold an expression for some seconds; the change into it is a linear ramp.
@@ -221,7 +221,7 @@ struct Scene
   FaceFrame frame;
   Vector3 gravity{ 0, 0, 0 };  ///< scene coordinates [m/s2]
   SceneTime time;
-  AccuracyProfile accuracy;    ///< the profile chosen
+  AccuracyProfile accuracy;  ///< the profile chosen
   std::vector<AccuracyProfile> profiles;
   std::map<std::string, std::map<std::string, double>> expressions;  ///< preset -> muscle -> activation 0..1
   std::vector<DemoPhase> demo;

@@ -1,0 +1,176 @@
+#include "content.hpp"
+
+#include "quantity.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/scene/content_hash.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace frontalis
+{
+namespace
+{
+
+std::string hash_of_file(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw Error(path + ": cannot be read; must be a readable mesh file");
+  ContentHash hash;
+  std::vector<char> buffer(std::size_t{ 1 } << 20);
+  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
+    hash.add(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad())
+    throw Error(path + ": reading failed; must be a readable mesh file");
+  return hash.text();
+}
+
+// one line of words, each preceded by a blank; texts are preceded by their length, so that no two scenes look alike
+class Line
+{
+public:
+  Line(std::string& content, const std::string& kind) : content_(content) { content_ += kind; }
+  ~Line() { content_ += '\n'; }
+  Line(const Line&) = delete;
+  Line& operator=(const Line&) = delete;
+
+  Line& add(double value)
+  {
+    content_ += ' ' + number_text(value);
+    return *this;
+  }
+  Line& add(const std::string& text)
+  {
+    content_ += ' ' + std::to_string(text.size()) + ':' + text;
+    return *this;
+  }
+  Line& add(const Vector3& vector) { return add(vector[0]).add(vector[1]).add(vector[2]); }
+  Line& add(const Region& region) { return add(region.lower).add(region.upper); }
+  Line& add(const std::vector<std::string>& texts)
+  {
+    add(static_cast<double>(texts.size()));
+    for (const std::string& text : texts)
+      add(text);
+    return *this;
+  }
+  Line& add(const std::map<std::string, double>& numbers)
+  {
+    add(static_cast<double>(numbers.size()));
+    for (const auto& [name, value] : numbers)
+      add(name).add(value);
+    return *this;
+  }
+
+private:
+  std::string& content_;
+};
+
+void add_surface(const Surface& surface, std::string& content)
+{
+  Line line(content, "surface");
+  line.add(surface.name);
+  if (!surface.shape)
+  {
+    // the extension decides how the bytes are read
+    line.add("file").add(std::filesystem::path(surface.file).extension().string());
+    line.add(surface.unit).add(hash_of_file(surface.file));
+    return;
+  }
+  const Shape& shape = *surface.shape;
+  line.add("shape").add(static_cast<double>(shape.kind)).add(shape.centre).add(shape.size).add(shape.axis);
+  line.add(shape.radius).add(shape.minor_radius).add(shape.length).add(shape.edge);
+  line.add(shape.part).add(shape.dimensions);
+}
+
+void add_anatomy(const Scene& scene, std::string& content)
+{
+  for (const Surface& surface : scene.surfaces)
+    add_surface(surface, content);
+  for (const Volume& volume : scene.volumes)
+  {
+    Line line(content, "volume");
+    line.add(volume.name).add(volume.closed_by).add(volume.inside).add(volume.outside);
+    line.add(volume.within).add(volume.depth_min).add(volume.depth_max).add(volume.crop);
+    line.add(volume.material).add(volume.priority).add(volume.tissue);
+  }
+  for (const SceneMaterial& material : scene.materials)
+    Line(content, "material").add(material.name).add(material.law).add(material.density).add(material.parameters);
+  for (const Layer& layer : scene.layers)
+    Line(content, "layer")
+        .add(layer.name)
+        .add(layer.surface)
+        .add(layer.volume)
+        .add(layer.material)
+        .add(layer.thickness);
+  for (const SceneMuscle& muscle : scene.muscles)
+    Line(content, "muscle")
+        .add(muscle.name)
+        .add(muscle.volume)
+        .add(muscle.fibre)
+        .add(muscle.stress_reference)
+        .add(muscle.passive)
+        .add(muscle.tension_length);
+}
+
+void add_restrictions(const Scene& scene, std::string& content)
+{
+  for (const SceneConstraint& constraint : scene.constraints)
+    Line(content, "constraint")
+        .add(constraint.name)
+        .add(static_cast<double>(constraint.kind))
+        .add(constraint.surfaces)
+        .add(constraint.within)
+        .add(constraint.crop)
+        .add(constraint.bone);
+  for (const SceneLoad& load : scene.loads)
+  {
+    Line line(content, "load");
+    line.add(load.name).add(static_cast<double>(load.kind)).add(load.surface).add(load.value);
+    line.add(load.fixed[0]).add(load.fixed[1]).add(load.fixed[2]);
+    line.add(load.within).add(load.ramp).add(load.crop);
+  }
+  Line(content, "gravity").add(scene.gravity);
+}
+
+void add_output(const Scene& scene, std::string& content)
+{
+  Line(content, "skin").add(scene.skin.surface).add(scene.skin.crop).add(scene.skin.extrapolation);
+  for (const SceneLandmark& landmark : scene.landmarks)
+    Line(content, "landmark").add(landmark.name).add(landmark.position);
+  Line(content, "frame").add(scene.frame.id).add(scene.frame.origin).add(scene.frame.forward).add(scene.frame.up);
+  for (const auto& [name, activation] : scene.expressions)
+    Line(content, "expression").add(name).add(activation);
+  for (const DemoPhase& phase : scene.demo)
+    Line(content, "demo").add(phase.expression).add(phase.ramp).add(phase.seconds);
+}
+
+void add_numerics(const Scene& scene, std::string& content)
+{
+  Line(content, "time").add(scene.time.damping).add(scene.time.scaling).add(scene.time.frame_rate);
+  const AccuracyProfile& profile = scene.accuracy;
+  Line(content, "accuracy")
+      .add(profile.voxel)
+      .add(profile.samples)
+      .add(profile.fill_min)
+      .add(profile.time_step_share)
+      .add(static_cast<double>(profile.mass_scaling.kind))
+      .add(profile.mass_scaling.factor)
+      .add(profile.mass_scaling.materials);
+}
+
+}  // namespace
+
+std::string canonical_content(const Scene& scene)
+{
+  std::string content = "frontalis scene content 1\n";
+  add_anatomy(scene, content);
+  add_restrictions(scene, content);
+  add_output(scene, content);
+  add_numerics(scene, content);
+  return content;
+}
+
+}  // namespace frontalis

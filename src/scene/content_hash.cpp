@@ -1,0 +1,30 @@
+#include "frontalis/scene/content_hash.hpp"
+
+namespace frontalis
+{
+
+void ContentHash::add(const void* bytes, std::size_t size)
+{
+  const auto* byte = static_cast<const unsigned char*>(bytes);
+  std::uint64_t value = value_;
+  for (std::size_t i = 0; i < size; ++i)
+    value = (value ^ byte[i]) * 1099511628211ULL;
+  value_ = value;
+}
+
+std::string ContentHash::text() const
+{
+  std::string text(16, '0');
+  for (int i = 0; i < 16; ++i)
+    text[static_cast<std::size_t>(i)] = "0123456789abcdef"[(value_ >> (60 - 4 * i)) & 15];
+  return text;
+}
+
+std::string content_hash(const std::string& content)
+{
+  ContentHash hash;
+  hash.add(content.data(), content.size());
+  return hash.text();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace frontalis
+{
+
+/// What a number of a scene measures: decides which units it may carry and what it means without one.
+enum class Dimension
+{
+  number,       ///< no unit
+  length,       ///< m, cm, mm, um, in; without one the scene's length unit
+  time,         ///< s, ms, us; s
+  rate,         ///< 1/s, Hz; 1/s
+  pressure,     ///< Pa, kPa, MPa, GPa; Pa
+  density,      ///< kg/m3, g/cm3; kg/m3
+  acceleration  ///< m/s2; m/s2
+};
+
+/// Range that a number must lie in.
+struct Bound
+{
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_allowed = true;
+  bool upper_allowed = true;
+
+  bool holds(double value) const;
+  std::string text() const;  ///< "greater than 0", "from 0 to 1"
+};
+
+constexpr Bound any_number{};
+constexpr Bound positive{ 0, std::numeric_limits<double>::infinity(), false, true };
+constexpr Bound not_negative{ 0, std::numeric_limits<double>::infinity(), true, true };
+constexpr Bound proportion{ 0, 1, true, true };
+
+/// Number with an optional unit, in SI units. Throws Error saying what was found and what is allowed; numbers that are
+/// not finite are refused.
+double parse_quantity(const std::string& text, Dimension dimension, double length_unit);
+
+/// Metres a length unit. Throws Error naming the units that exist.
+double parse_length_unit(const std::string& text);
+
+/// Shortest text that reads back as the same number, whatever the locale.
+std::string number_text(double value);
+
+}  // namespace frontalis

@@ -1,0 +1,141 @@
+#include "sections.hpp"
+
+#include "suggestion.hpp"
+
+#include "frontalis/error.hpp"
+
+namespace frontalis
+{
+namespace
+{
+
+void read_voxel(const Node& node, Vector3& voxel)
+{
+  if (node.is_text())
+  {
+    const double edge = node.number(Dimension::length, positive, voxel[0]);
+    voxel = { edge, edge, edge };
+  }
+  else if (node.given() && !node.is_list())
+    node.fault(node.found() + "; must be a length or three lengths");
+  else
+    voxel = node.vector(Dimension::length, positive, voxel);
+}
+
+void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames& names)
+{
+  if (!node.given() || node.is_null())
+    return;
+  if (node.is_text())
+  {
+    node.choice({ "none" });
+    return;
+  }
+  Mapping mapping(node);
+  const Node uniform = mapping.optional("uniform");
+  const Node selective = mapping.optional("selective");
+  if (node.is_mapping() && uniform.given() == selective.given())
+    node.fault(std::string(uniform.given() ? "found both" : "found neither") +
+               " of uniform, selective; must be 'none' or have exactly one");
+  if (uniform.given())
+  {
+    scaling.kind = MassScaling::Kind::uniform;
+    scaling.factor =
+        uniform.number(Dimension::number, Bound{ 1, std::numeric_limits<double>::infinity(), true, true }, 1);
+  }
+  if (selective.given())
+  {
+    scaling.kind = MassScaling::Kind::selective;
+    scaling.materials = selective.references(names.materials);
+  }
+}
+
+AccuracyProfile read_profile(const std::string& name, const Node& node, const SceneNames& names)
+{
+  AccuracyProfile profile;
+  profile.name = name;
+  Mapping mapping(node);
+  read_voxel(mapping.optional("voxel"), profile.voxel);
+  profile.samples = mapping.optional("samples").integer(1, 32, profile.samples);
+  profile.fill_min =
+      mapping.optional("fill_min").number(Dimension::number, Bound{ 0, 1, true, false }, profile.fill_min);
+  profile.time_step_share = mapping.optional("time_step_share")
+                                .number(Dimension::number, Bound{ 0, 1, false, true }, profile.time_step_share);
+  read_mass_scaling(mapping.optional("mass_scaling"), profile.mass_scaling, names);
+  return profile;
+}
+
+// the edge that options ask for instead of the profile's
+void override_voxel(const Node& node, const SceneOptions& options, Vector3& voxel)
+{
+  double edge = options.voxel;
+  if (!options.voxel_quantity.empty())
+    try
+    {
+      edge = parse_quantity(options.voxel_quantity, Dimension::length, node.context().length_unit);
+      if (!positive.holds(edge))
+        throw Error("found '" + options.voxel_quantity + "'; must be " + positive.text());
+    }
+    catch (const Error& error)
+    {
+      node.fault("voxel edge asked for: " + std::string(error.what()));
+      return;
+    }
+  if (edge > 0)
+    voxel = { edge, edge, edge };
+}
+
+}  // namespace
+
+void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, const SceneNames& names)
+{
+  std::string chosen;
+  Node chosen_by = node;
+  std::vector<std::string> profiles;
+  for (const auto& [name, entry] : node.named_pairs())
+    if (name == "default")
+    {
+      chosen = entry.text();
+      chosen_by = entry;
+    }
+    else
+    {
+      scene.profiles.push_back(read_profile(name, entry, names));
+      profiles.push_back(name);
+    }
+  if (node.given() && !node.is_mapping())
+    return;
+  if (profiles.empty())
+  {
+    scene.profiles.emplace_back();
+    scene.profiles[0].name = "standard";
+    profiles = { "standard" };
+  }
+
+  if (!options.accuracy.empty())
+  {
+    chosen = options.accuracy;
+    chosen_by = node;
+  }
+  else if (chosen_by.path() == node.path())
+  {
+    if (profiles.size() > 1)
+      node.fault("'default' is missing; must name one of the profiles " + list_with_suggestion("", profiles));
+    chosen = profiles[0];
+  }
+  if (chosen.empty())
+    return;
+  bool found = false;
+  for (const AccuracyProfile& profile : scene.profiles)
+    if (profile.name == chosen)
+    {
+      scene.accuracy = profile;
+      found = true;
+    }
+  if (!found)
+    chosen_by.fault("no accuracy profile is called '" + chosen + "'; there is " +
+                    list_with_suggestion(chosen, profiles));
+  override_voxel(node, options, scene.accuracy.voxel);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,111 @@
+#include "sections.hpp"
+
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+// exactly one of `keys` must be there; returns it, or an empty text after recording the fault. Keys that are not there
+// are not asked for
+std::string one_of(const Node& entry, const Mapping& mapping, const std::vector<std::string>& keys)
+{
+  std::vector<std::string> there;
+  std::string all;
+  for (const std::string& key : keys)
+  {
+    all += (all.empty() ? "" : ", ") + key;
+    if (mapping.has(key))
+      there.push_back(key);
+  }
+  if (there.size() == 1)
+    return there[0];
+  if (entry.is_mapping())
+    entry.fault("found " + (there.empty() ? "none" : std::to_string(there.size())) + " of " + all +
+                "; must have exactly one");
+  return {};
+}
+
+double read_within(const Node& node, double fallback) { return node.number(Dimension::length, positive, fallback); }
+
+}  // namespace
+
+void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
+{
+  std::vector<std::string> earlier;
+  for (const Node& entry : node.entries())
+  {
+    SceneConstraint constraint;
+    constraint.line = entry.line();
+    Mapping mapping(entry);
+    const Node name = mapping.required("name", "a name");
+    constraint.name = name.name();
+    check_unique(name, constraint.name, earlier);
+    const std::string kind = one_of(entry, mapping, { "rigid", "sliding" });
+    if (kind.empty())
+    {
+      mapping.ignore_rest();
+      continue;
+    }
+    constraint.kind = kind == "rigid" ? SceneConstraint::Kind::rigid : SceneConstraint::Kind::sliding;
+    constraint.surfaces = mapping.optional(kind).references(names.surfaces);
+    constraint.within = read_within(mapping.optional("within"), constraint.within);
+    constraint.crop = read_region(mapping.optional("crop"));
+    if (constraint.kind == SceneConstraint::Kind::rigid)
+      constraint.bone = mapping.optional("bone").name();
+    scene.constraints.push_back(constraint);
+  }
+}
+
+void read_loads(const Node& node, Scene& scene, const SceneNames& names)
+{
+  std::vector<std::string> earlier;
+  for (const Node& entry : node.entries())
+  {
+    SceneLoad load;
+    load.line = entry.line();
+    Mapping mapping(entry);
+    const Node name = mapping.required("name", "a name");
+    load.name = name.name();
+    check_unique(name, load.name, earlier);
+    const std::string kind = one_of(entry, mapping, { "traction", "pressure", "displacement" });
+    if (kind.empty())
+    {
+      mapping.ignore_rest();
+      continue;
+    }
+    const Node value = mapping.optional(kind);
+    if (kind == "traction")
+    {
+      load.kind = SceneLoad::Kind::traction;
+      load.value = value.vector(Dimension::pressure, any_number, load.value);
+    }
+    else if (kind == "pressure")
+    {
+      load.kind = SceneLoad::Kind::pressure;
+      load.value[0] = value.number(Dimension::pressure, any_number, 0);
+    }
+    else
+    {
+      load.kind = SceneLoad::Kind::displacement;
+      if (const auto components = value.open_vector(Dimension::length))
+      {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+          load.fixed[i] = (*components)[i].has_value();
+          load.value[i] = (*components)[i].value_or(0);
+        }
+        if (!load.fixed[0] && !load.fixed[1] && !load.fixed[2])
+          value.fault("found null for all three; at least one must be a length");
+      }
+      load.within = read_within(mapping.optional("within"), load.within);
+    }
+    load.surface = mapping.required("surface", "the name of a surface").reference(names.surfaces);
+    load.ramp = mapping.optional("ramp").number(Dimension::time, not_negative, load.ramp);
+    load.crop = read_region(mapping.optional("crop"));
+    scene.loads.push_back(load);
+  }
+}
+
+}  // namespace frontalis

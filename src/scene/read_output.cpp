@@ -1,0 +1,68 @@
+#include "sections.hpp"
+
+#include <cmath>
+
+namespace frontalis
+{
+
+void read_frame(const Node& node, FaceFrame& frame)
+{
+  if (!node.given())
+    return;
+  Mapping mapping(node);
+  if (const Node id = mapping.optional("id"); id.given())
+    frame.id = id.name();
+  frame.origin = mapping.optional("origin").vector(Dimension::length, any_number, frame.origin);
+  const Node up = mapping.optional("up");
+  frame.forward = mapping.optional("forward").direction(frame.forward);
+  frame.up = up.direction(frame.up);
+
+  // what of up is along forward is taken away: forward leads
+  const Vector3& f = frame.forward;
+  const double along = frame.up[0] * f[0] + frame.up[1] * f[1] + frame.up[2] * f[2];
+  Vector3 across{ frame.up[0] - along * f[0], frame.up[1] - along * f[1], frame.up[2] - along * f[2] };
+  const double length = std::hypot(across[0], across[1], across[2]);
+  if (length < 1e-6)
+  {
+    const Node& place = up.given() ? up : node;
+    place.fault("up is parallel to forward; must point another way");
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    frame.up[i] = across[i] / length;
+}
+
+void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names)
+{
+  if (!node.given())
+    return;
+  Mapping mapping(node);
+  skin.surface = mapping.required("surface", "the name of the surface to publish").reference(names.surfaces);
+  skin.crop = read_region(mapping.optional("crop"));
+  skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
+}
+
+void read_landmarks(const Node& node, Scene& scene)
+{
+  for (const auto& [name, entry] : node.named_pairs())
+  {
+    SceneLandmark landmark;
+    landmark.name = name;
+    landmark.line = entry.line();
+    landmark.position = entry.vector(Dimension::length, any_number, landmark.position);
+    scene.landmarks.push_back(landmark);
+  }
+}
+
+void read_time(const Node& node, SceneTime& time)
+{
+  if (!node.given())
+    return;
+  Mapping mapping(node);
+  time.damping = mapping.optional("damping").number(Dimension::rate, not_negative, time.damping);
+  time.scaling = mapping.optional("scaling").number(
+      Dimension::number, Bound{ 1, std::numeric_limits<double>::infinity(), true, true }, time.scaling);
+  time.frame_rate = mapping.optional("frame_rate").number(Dimension::rate, positive, time.frame_rate);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,181 @@
+#include "sections.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <filesystem>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+const std::vector<std::pair<std::string, Shape::Kind>>& shape_kinds()
+{
+  static const std::vector<std::pair<std::string, Shape::Kind>> kinds{
+    { "box", Shape::Kind::box },           { "sphere", Shape::Kind::sphere }, { "ellipsoid", Shape::Kind::ellipsoid },
+    { "cylinder", Shape::Kind::cylinder }, { "torus", Shape::Kind::torus },   { "forehead", Shape::Kind::forehead },
+  };
+  return kinds;
+}
+
+const std::vector<std::string>& forehead_parts()
+{
+  static const std::vector<std::string> parts{
+    "skin",     "skull", "rim", "frontalis_left", "frontalis_right", "corrugator_left", "corrugator_right",
+    "procerus", "galea"
+  };
+  return parts;
+}
+
+double read_length(const Node& node) { return node.number(Dimension::length, positive, 0); }
+
+void read_forehead(Mapping& mapping, Shape& shape)
+{
+  shape.part = mapping.required("part", "a part of the forehead").choice(forehead_parts());
+  const Node dimensions = mapping.optional("dimensions");
+  for (const auto& [name, node] : dimensions.named_pairs())
+    shape.dimensions[name] = read_length(node);
+}
+
+Shape read_shape(const Node& kind_node, Mapping& mapping)
+{
+  std::vector<std::string> names;
+  for (const auto& kind : shape_kinds())
+    names.push_back(kind.first);
+  const std::string name = kind_node.choice(names);
+
+  Shape shape;
+  if (name.empty())
+  {
+    mapping.ignore_rest();
+    return shape;
+  }
+  for (const auto& kind : shape_kinds())
+    if (kind.first == name)
+      shape.kind = kind.second;
+
+  const std::string length = "a length greater than 0";
+  if (shape.kind == Shape::Kind::forehead)
+    read_forehead(mapping, shape);
+  else
+    shape.centre = mapping.optional("centre").vector(Dimension::length, any_number, shape.centre);
+  switch (shape.kind)
+  {
+    case Shape::Kind::box:
+    case Shape::Kind::ellipsoid:
+      shape.size = mapping.required("size", "three lengths").vector(Dimension::length, positive, shape.size);
+      break;
+    case Shape::Kind::cylinder:
+      shape.length = read_length(mapping.required("length", length));
+      [[fallthrough]];
+    case Shape::Kind::torus:
+      shape.axis = mapping.optional("axis").direction(shape.axis);
+      [[fallthrough]];
+    case Shape::Kind::sphere:
+      shape.radius = read_length(mapping.required("radius", length));
+      break;
+    case Shape::Kind::forehead:
+      break;
+  }
+  if (shape.kind == Shape::Kind::torus)
+  {
+    const Node minor = mapping.required("minor_radius", length);
+    shape.minor_radius = read_length(minor);
+    if (shape.radius > 0 && shape.minor_radius >= shape.radius)
+      minor.fault(minor.found() + "; must be less than the torus's radius");
+  }
+  shape.edge = read_length(mapping.optional("edge"));
+  return shape;
+}
+
+// where mesh files are looked for; found out once the first file is met, since shapes need no folder
+class MeshFolder
+{
+public:
+  MeshFolder(const Node& node, const SceneOptions& options, const std::string& scene_file)
+      : node_(node), folder_(std::filesystem::path(scene_file).parent_path())
+  {
+    if (!options.mesh_directory.empty())
+      folder_ = options.mesh_directory;
+    else if (const std::string text = node.text(); !text.empty())
+      folder_ /= text;
+    if (folder_.empty())
+      folder_ = ".";
+  }
+
+  std::string resolve(const Node& file)
+  {
+    const std::string text = file.text();
+    if (text.empty())
+      return {};
+    const std::filesystem::path path = folder_ / text;
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder_, ignored) && !std::filesystem::path(text).is_absolute())
+    {
+      if (!reported_)
+        node_.fault("no folder '" + folder_.string() + "'; must be a folder that holds the surface files");
+      reported_ = true;
+    }
+    else if (!std::filesystem::is_regular_file(path, ignored))
+      file.fault("no file '" + path.string() + "'; must be a mesh file, relative to the mesh directory '" +
+                 folder_.string() + "'");
+    return path.string();
+  }
+
+private:
+  Node node_;
+  std::filesystem::path folder_;
+  bool reported_ = false;
+};
+
+}  // namespace
+
+void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
+                   SceneNames& names)
+{
+  MeshFolder folder(mesh_directory, options, scene.file);
+  names.surfaces.complete = node.is_mapping();
+  for (const auto& [name, entry] : node.named_pairs())
+  {
+    Surface surface;
+    surface.name = name;
+    surface.line = entry.line();
+    surface.unit = node.context().length_unit;
+    names.surfaces.names.push_back(name);
+    {
+      Mapping mapping(entry);
+      // only the one that is there is asked for, so that the message on an unknown key does not offer the other
+      const Node absent(entry.path(), entry.line(), entry.context());
+      const Node shape = mapping.has("shape") ? mapping.optional("shape") : absent;
+      const Node file = mapping.has("file") ? mapping.optional("file") : absent;
+      if (shape.given() == file.given())
+      {
+        if (entry.is_mapping())
+          entry.fault(
+              std::string(shape.given() ? "found both 'file' and 'shape'" : "found neither 'file' nor 'shape'") +
+              "; a surface has one of them");
+        mapping.ignore_rest();
+      }
+      else if (shape.given())
+        surface.shape = read_shape(shape, mapping);
+      else
+      {
+        surface.file = folder.resolve(file);
+        const Node unit = mapping.optional("unit");
+        try
+        {
+          if (const std::string text = unit.text(); !text.empty())
+            surface.unit = parse_length_unit(text);
+        }
+        catch (const Error& error)
+        {
+          unit.fault(error.what());
+        }
+      }
+    }
+    scene.surfaces.push_back(surface);
+  }
+}
+
+}  // namespace frontalis

@@ -1,0 +1,123 @@
+#include "sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+void read_corner(const Node& node, Vector3& corner)
+{
+  if (const auto given = node.open_vector(Dimension::length))
+    for (std::size_t i = 0; i < 3; ++i)
+      corner[i] = (*given)[i].value_or(corner[i]);
+}
+
+void read_depth(const Node& node, Volume& volume, const SceneNames& names)
+{
+  Mapping mapping(node);
+  volume.within = mapping.required("surface", "the name of a surface").reference(names.surfaces);
+  volume.depth_min = mapping.optional("from").number(Dimension::length, not_negative, 0);
+  const Node to = mapping.required("to", "a depth greater than 'from'");
+  volume.depth_max = to.number(Dimension::length, any_number, std::nan(""));
+  if (volume.depth_max <= volume.depth_min)
+    to.fault(to.found() + "; must be greater than 'from'");
+}
+
+}  // namespace
+
+Region read_region(const Node& node)
+{
+  Region region;
+  if (!node.given())
+    return region;
+  Mapping mapping(node);
+  const Node lower = mapping.optional("lower");
+  const Node upper = mapping.optional("upper");
+  if (node.is_mapping() && !lower.given() && !upper.given())
+    node.fault("found neither 'lower' nor 'upper'; must have at least one of them");
+  read_corner(lower, region.lower);
+  read_corner(upper, region.upper);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (region.lower[i] >= region.upper[i])
+    {
+      node.fault("lower " + std::string(1, "xyz"[i]) + " " + number_text(region.lower[i]) + " m is not below upper " +
+                 std::string(1, "xyz"[i]) + " " + number_text(region.upper[i]) + " m; must be less");
+      break;
+    }
+  return region;
+}
+
+void check_unique(const Node& node, const std::string& name, std::vector<std::string>& earlier)
+{
+  if (name.empty())
+    return;
+  if (std::find(earlier.begin(), earlier.end(), name) != earlier.end())
+    node.fault("'" + name + "' is there already; names must differ");
+  else
+    earlier.push_back(name);
+}
+
+void read_volumes(const Node& node, Scene& scene, SceneNames& names)
+{
+  names.volumes.complete = node.is_mapping();
+  for (const auto& [name, entry] : node.named_pairs())
+  {
+    Volume volume;
+    volume.name = name;
+    volume.line = entry.line();
+    names.volumes.names.push_back(name);
+    {
+      Mapping mapping(entry);
+      const Node closed_by = mapping.optional("closed_by");
+      const Node inside = mapping.optional("inside");
+      const Node within = mapping.optional("within");
+      volume.closed_by = closed_by.references(names.surfaces);
+      volume.inside = inside.references(names.surfaces);
+      volume.outside = mapping.optional("outside").references(names.surfaces);
+      if (within.given())
+        read_depth(within, volume, names);
+      if (entry.is_mapping() && !closed_by.given() && !inside.given() && !within.given())
+        entry.fault("found no bound; must have at least one of closed_by, inside, within");
+
+      volume.crop = read_region(mapping.optional("crop"));
+      volume.tissue = mapping.optional("tissue").boolean(false);
+      const Node material = volume.tissue ? mapping.required("material", "the name of a material, as for all tissue")
+                                          : mapping.optional("material");
+      volume.material = material.reference(names.materials);
+      volume.priority = mapping.optional("priority").integer(-1000, 1000, volume.tissue ? 0 : 1);
+    }
+    if (volume.tissue)
+      names.tissue_volumes.names.push_back(name);
+    scene.volumes.push_back(volume);
+  }
+  names.tissue_volumes.complete = names.volumes.complete && !node.context().faults.any_at(node.path());
+  if (names.tissue_volumes.complete && names.tissue_volumes.names.empty())
+    node.fault("no volume is tissue; at least one must have 'tissue: true'");
+}
+
+void read_layers(const Node& node, Scene& scene, const SceneNames& names)
+{
+  std::vector<std::string> earlier;
+  for (const Node& entry : node.entries())
+  {
+    Layer layer;
+    layer.line = entry.line();
+    Mapping mapping(entry);
+    const Node name = mapping.required("name", "a name");
+    layer.name = name.name();
+    check_unique(name, layer.name, earlier);
+    layer.surface = mapping.required("surface", "the name of a surface").reference(names.surfaces);
+    const Node volume = mapping.required("volume", "the name of a tissue volume");
+    layer.volume = volume.reference(names.volumes);
+    if (names.volumes.has(layer.volume) && names.tissue_volumes.complete)
+      volume.reference(names.tissue_volumes);
+    layer.material = mapping.required("material", "the name of a material").reference(names.materials);
+    layer.thickness = mapping.required("thickness", "a length").number(Dimension::length, positive, 0);
+    scene.layers.push_back(layer);
+  }
+}
+
+}  // namespace frontalis

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// "a, b, c", followed by " (did you mean 'b'?)" where one of the words is close to `word`; "none" without words.
+std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words);
+
+}  // namespace frontalis

@@ -1,0 +1,138 @@
+#pragma once
+
+#include "quantity.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Faults of one file, collected so that a user sees all of them at once.
+class Faults
+{
+public:
+  explicit Faults(std::string file) : file_(std::move(file)) {}
+
+  void add(int line, const std::string& key, const std::string& fault);
+  bool empty() const { return faults_.empty(); }
+  /// Whether a fault was found at `key` or below it.
+  bool any_at(const std::string& key) const;
+  /// One line a fault, FILE:LINE: KEY: fault, in the order of the lines.
+  std::string text() const;
+
+private:
+  struct Fault
+  {
+    int line;
+    std::string key;
+    std::string text;
+  };
+  std::string file_;
+  std::vector<Fault> faults_;
+};
+
+struct ReadingContext
+{
+  Faults faults;
+  double length_unit = 1;  ///< metres a plain number
+};
+
+/// Names that a section defines, for references to them.
+struct Names
+{
+  std::string kind;  ///< "surface"
+  std::vector<std::string> names;
+  bool complete = true;  ///< false: the section could not be read whole, so an unknown name may be a consequence
+
+  bool has(const std::string& name) const;
+};
+
+/// A value of the file, or the lack of one, with its dotted path and line. Each reading function returns `fallback`
+/// where the value is absent, and where it is wrong it records a fault too.
+class Node
+{
+public:
+  Node(YAML::Node yaml, std::string path, int line, ReadingContext& context)
+      : yaml_(std::move(yaml)), path_(std::move(path)), line_(line), context_(&context), given_(true)
+  {
+  }
+  /// The lack of a value.
+  Node(std::string path, int line, ReadingContext& context) : path_(std::move(path)), line_(line), context_(&context) {}
+
+  bool given() const { return given_; }
+  bool is_null() const { return given_ && yaml_.IsNull(); }
+  bool is_text() const { return given_ && yaml_.IsScalar(); }
+  bool is_list() const { return given_ && yaml_.IsSequence(); }
+  bool is_mapping() const { return given_ && yaml_.IsMap(); }
+  int line() const { return line_; }
+  const std::string& path() const { return path_; }
+  ReadingContext& context() const { return *context_; }
+  void fault(const std::string& text) const { context_->faults.add(line_, path_, text); }
+
+  std::string text(const std::string& fallback = {}) const;
+  std::string name() const;  ///< text of [A-Za-z0-9_]+
+  /// One of `allowed`; empty where wrong or absent.
+  std::string choice(const std::vector<std::string>& allowed) const;
+  bool boolean(bool fallback) const;
+  int integer(int lower, int upper, int fallback) const;
+  double number(Dimension dimension, const Bound& bound, double fallback) const;
+  std::array<double, 3> vector(Dimension dimension, const Bound& bound, const std::array<double, 3>& fallback) const;
+  /// Three numbers of which some may be null; `std::nullopt` for the whole where wrong or absent.
+  std::optional<std::array<std::optional<double>, 3>> open_vector(Dimension dimension) const;
+  /// Vector of length 1; a zero vector is a fault.
+  std::array<double, 3> direction(const std::array<double, 3>& fallback) const;
+
+  /// The name of something defined elsewhere; one that is not known is a fault.
+  std::string reference(const Names& names) const;
+  /// One name or a list of different ones.
+  std::vector<std::string> references(const Names& names) const;
+
+  /// Entries of a list; a value that is no list is a fault.
+  std::vector<Node> entries() const;
+  /// Entries of a mapping; double keys and a value that is no mapping are faults.
+  std::vector<std::pair<std::string, Node>> pairs() const;
+  /// As pairs, where keys must be names.
+  std::vector<std::pair<std::string, Node>> named_pairs() const;
+
+  std::string found() const;  ///< "found a list", "found 'text'"
+
+private:
+  bool scalar(std::string& text, const std::string& expected) const;
+
+  YAML::Node yaml_;
+  std::string path_;
+  int line_ = 0;
+  ReadingContext* context_;
+  bool given_ = false;
+};
+
+/// A mapping with fixed keys. Keys that nobody has asked for when it goes out of scope are unknown: a fault each, which
+/// lists those that were asked for.
+class Mapping
+{
+public:
+  explicit Mapping(const Node& node);
+  ~Mapping();
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
+
+  bool has(const std::string& key) const;
+  Node optional(const std::string& key);
+  Node required(const std::string& key, const std::string& expected);
+  /// The keys left may not be judged, since which are allowed could not be found out.
+  void ignore_rest() { judged_ = false; }
+
+private:
+  Node node_;
+  std::vector<std::pair<std::string, Node>> pairs_;
+  std::vector<std::string> asked_;
+  bool judged_ = true;
+};
+
+}  // namespace frontalis
