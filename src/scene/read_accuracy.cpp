@@ -90,13 +90,13 @@ void override_voxel(const Node& node, const SceneOptions& options, Vector3& voxe
 void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, const SceneNames& names)
 {
   std::string chosen;
-  Node chosen_by = node;
+  std::optional<Node> chosen_by;
   std::vector<std::string> profiles;
   for (const auto& [name, entry] : node.named_pairs())
     if (name == "default")
     {
       chosen = entry.text();
-      chosen_by = entry;
+      chosen_by.emplace(entry);
     }
     else
     {
@@ -115,9 +115,9 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (!options.accuracy.empty())
   {
     chosen = options.accuracy;
-    chosen_by = node;
+    chosen_by.reset();
   }
-  else if (chosen_by.path() == node.path())
+  else if (!chosen_by)
   {
     if (profiles.size() > 1)
       node.fault("'default' is missing; must name one of the profiles " + list_with_suggestion("", profiles));
@@ -133,8 +133,9 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
       found = true;
     }
   if (!found)
-    chosen_by.fault("no accuracy profile is called '" + chosen + "'; there is " +
-                    list_with_suggestion(chosen, profiles));
+    (chosen_by ? *chosen_by : node)
+        .fault("no accuracy profile is called '" + chosen + "'; the profiles are " +
+               list_with_suggestion(chosen, profiles));
   override_voxel(node, options, scene.accuracy.voxel);
 }
 

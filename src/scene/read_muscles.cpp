@@ -18,7 +18,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
       const Node volume = mapping.optional("volume");
       muscle.volume = volume.given() ? volume.reference(names.volumes) : name;
       if (!volume.given() && entry.is_mapping() && names.volumes.complete && !names.volumes.has(name))
-        volume.fault("missing, and no volume is called '" + name + "'; there is " +
+        volume.fault("missing, and no volume is called '" + name + "'; the volumes are " +
                      list_with_suggestion(name, names.volumes.names));
       muscle.fibre = mapping.required("fibre", "a direction [x, y, z]").direction(muscle.fibre);
       muscle.stress_reference =
@@ -45,7 +45,7 @@ void read_expressions(const Node& node, Scene& scene, SceneNames& names)
     for (const auto& [muscle, value] : entry.pairs())
     {
       if (names.muscles.complete && !names.muscles.has(muscle))
-        value.fault("no muscle is called '" + muscle + "'; there is " +
+        value.fault("no muscle is called '" + muscle + "'; the muscles are " +
                     list_with_suggestion(muscle, names.muscles.names));
       if (value.is_null())
         value.fault("found nothing; must be an activation from 0 to 1");

@@ -220,7 +220,8 @@ std::string Node::reference(const Names& names) const
   if (!given_ || !scalar(text, "a name (" + names.kind + ")"))
     return {};
   if (!names.has(text) && names.complete)
-    fault("no " + names.kind + " is called '" + text + "'; there is " + list_with_suggestion(text, names.names));
+    fault("no " + names.kind + " is called '" + text + "'; the " + names.kind + "s are " +
+          list_with_suggestion(text, names.names));
   return text;
 }
 

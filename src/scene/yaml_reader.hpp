@@ -65,6 +65,13 @@ public:
   /// The lack of a value.
   Node(std::string path, int line, ReadingContext& context) : path_(std::move(path)), line_(line), context_(&context) {}
 
+  Node(const Node&) = default;
+  Node(Node&&) = default;
+  ~Node() = default;
+  // YAML::Node's own assignment would overwrite the value in the tree
+  Node& operator=(const Node&) = delete;
+  Node& operator=(Node&&) = delete;
+
   bool given() const { return given_; }
   bool is_null() const { return given_ && yaml_.IsNull(); }
   bool is_text() const { return given_ && yaml_.IsScalar(); }
