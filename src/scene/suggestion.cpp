@@ -34,7 +34,7 @@ std::string list_with_suggestion(const std::string& word, const std::vector<std:
 {
   std::string text;
   const std::string* closest = nullptr;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t least = std::max<std::size_t>(word.size() < 4 ? 1 : 2, word.size() / 3) + 1;
   for (const std::string& candidate : words)
   {
     text += (text.empty() ? "" : ", ") + candidate;

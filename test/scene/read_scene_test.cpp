@@ -1,0 +1,299 @@
+// what good scenes are read as, and what their content hashes depend on
+
+#include "frontalis/error.hpp"
+#include "frontalis/scene/content_hash.hpp"
+#include "frontalis/scene/read_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const std::string source = FRONTALIS_SOURCE_DIRECTORY;
+
+std::string text_of(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+}
+
+void expect_vector(const Vector3& found, const Vector3& expected)
+{
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::isinf(expected[i]))
+      EXPECT_EQ(found[i], expected[i]);
+    else
+      EXPECT_NEAR(found[i], expected[i], 1e-15) << "component " << i;
+}
+
+// a folder of its own, removed with its contents
+class TemporaryFolder
+{
+public:
+  TemporaryFolder()
+  {
+    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_scene_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw Error(pattern + ": cannot be made");
+    path_ = pattern;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const
+  {
+    const std::filesystem::path path = path_ / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << text;
+    return path.string();
+  }
+  std::string path() const { return path_.string(); }
+
+private:
+  std::filesystem::path path_;
+};
+
+const Scene& every_key()
+{
+  static const Scene scene = read_scene(source + "/test/scene/every_key.yaml");
+  return scene;
+}
+
+TEST(EveryKey, surfaces)
+{
+  const auto& surfaces = every_key().surfaces;
+  ASSERT_EQ(surfaces.size(), 7U);
+  EXPECT_EQ(surfaces[0].name, "scanned");
+  EXPECT_EQ(surfaces[0].file, source + "/test/scene/meshes/triangle.obj");
+  EXPECT_FALSE(surfaces[0].shape);
+  EXPECT_EQ(surfaces[0].unit, 1e-3);
+  EXPECT_EQ(surfaces[0].line, 6);
+
+  const Shape& box = *surfaces[1].shape;
+  EXPECT_EQ(box.kind, Shape::Kind::box);
+  expect_vector(box.centre, { 0.01, 0.02, 0.03 });
+  expect_vector(box.size, { 0.003, 0.004, 0.005 });
+  EXPECT_NEAR(box.edge, 0.001, 1e-15);
+  EXPECT_TRUE(surfaces[1].file.empty());
+
+  EXPECT_EQ(surfaces[2].shape->kind, Shape::Kind::sphere);
+  EXPECT_NEAR(surfaces[2].shape->radius, 0.0508, 1e-15);
+  EXPECT_EQ(surfaces[3].shape->kind, Shape::Kind::ellipsoid);
+  expect_vector(surfaces[3].shape->size, { 0.01, 0.02, 0.03 });
+  EXPECT_EQ(surfaces[4].shape->kind, Shape::Kind::cylinder);
+  expect_vector(surfaces[4].shape->axis, { 0, 0.6, 0.8 });
+  EXPECT_NEAR(surfaces[4].shape->length, 0.05, 1e-15);
+  EXPECT_EQ(surfaces[5].shape->kind, Shape::Kind::torus);
+  EXPECT_NEAR(surfaces[5].shape->minor_radius, 0.01, 1e-15);
+  EXPECT_EQ(surfaces[6].shape->kind, Shape::Kind::forehead);
+  EXPECT_EQ(surfaces[6].shape->part, "skull");
+  EXPECT_NEAR(surfaces[6].shape->dimensions.at("brow_thickness"), 0.008, 1e-15);
+  EXPECT_NEAR(surfaces[6].shape->dimensions.at("width"), 0.12, 1e-15);
+}
+
+TEST(EveryKey, volumes_materials_and_layers)
+{
+  const Scene& scene = every_key();
+  ASSERT_EQ(scene.volumes.size(), 3U);
+  const Volume& tissue = scene.volumes[0];
+  EXPECT_EQ(tissue.closed_by, (std::vector<std::string>{ "box", "sphere" }));
+  EXPECT_EQ(tissue.inside, (std::vector<std::string>{ "ellipsoid", "cylinder" }));
+  EXPECT_EQ(tissue.outside, std::vector<std::string>{ "torus" });
+  expect_vector(tissue.crop.lower, { -0.01, -infinity, -infinity });
+  expect_vector(tissue.crop.upper, { 0.01, 0.02, infinity });
+  EXPECT_EQ(tissue.material, "dermis");
+  EXPECT_TRUE(tissue.tissue);
+  EXPECT_EQ(tissue.priority, 3);
+  EXPECT_EQ(tissue.line, 14);
+  EXPECT_EQ(scene.volumes[1].within, "box");
+  EXPECT_NEAR(scene.volumes[1].depth_min, 0.002, 1e-15);
+  EXPECT_NEAR(scene.volumes[1].depth_max, 0.004, 1e-15);
+  EXPECT_EQ(scene.volumes[1].priority, 1);
+  EXPECT_EQ(scene.volumes[2].material, "");
+
+  ASSERT_EQ(scene.materials.size(), 2U);
+  EXPECT_EQ(scene.materials[0].law, "neo_hookean");
+  EXPECT_NEAR(scene.materials[0].parameters.at("young"), 81400, 1e-9);
+  EXPECT_EQ(scene.materials[0].parameters.at("poisson"), 0.49);
+  EXPECT_NEAR(scene.materials[0].density, 1100, 1e-9);
+  EXPECT_EQ(scene.materials[1].parameters.at("young"), 2000);
+
+  ASSERT_EQ(scene.layers.size(), 2U);
+  EXPECT_EQ(scene.layers[0].name, "outer");
+  EXPECT_NEAR(scene.layers[0].thickness, 20e-6, 1e-18);
+  EXPECT_NEAR(scene.layers[1].thickness, 1e-3, 1e-15);
+}
+
+TEST(EveryKey, muscles_and_expressions)
+{
+  const Scene& scene = every_key();
+  ASSERT_EQ(scene.muscles.size(), 2U);
+  EXPECT_EQ(scene.muscles[0].volume, "fibres");
+  expect_vector(scene.muscles[0].fibre, { 0, 0.6, 0.8 });
+  EXPECT_EQ(scene.muscles[0].stress_reference, 5e6);
+  EXPECT_TRUE(scene.muscles[0].passive);
+  EXPECT_FALSE(scene.muscles[0].tension_length);
+  EXPECT_EQ(scene.muscles[1].volume, "deep");
+  expect_vector(scene.muscles[1].fibre, { 1, 0, 0 });
+  EXPECT_EQ(scene.muscles[1].stress_reference, 0.3e6);
+  EXPECT_FALSE(scene.muscles[1].passive);
+  EXPECT_TRUE(scene.muscles[1].tension_length);
+
+  ASSERT_EQ(scene.expressions.size(), 2U);
+  EXPECT_EQ(scene.expressions.at("raise_brows").at("fibres"), 0.75);
+  EXPECT_EQ(scene.expressions.at("frown").at("other"), 0);
+  ASSERT_EQ(scene.demo.size(), 2U);
+  EXPECT_NEAR(scene.demo[0].ramp, 0.2, 1e-15);
+  EXPECT_EQ(scene.demo[0].seconds, 2);
+  EXPECT_EQ(scene.demo[1].expression, "relax");
+  EXPECT_EQ(scene.demo[1].ramp, 0.1);
+}
+
+TEST(EveryKey, constraints_and_loads)
+{
+  const Scene& scene = every_key();
+  ASSERT_EQ(scene.constraints.size(), 2U);
+  EXPECT_EQ(scene.constraints[0].kind, SceneConstraint::Kind::rigid);
+  EXPECT_EQ(scene.constraints[0].surfaces, std::vector<std::string>{ "torus" });
+  EXPECT_NEAR(scene.constraints[0].within, 1.5e-3, 1e-15);
+  expect_vector(scene.constraints[0].crop.upper, { infinity, infinity, 0.1 });
+  EXPECT_EQ(scene.constraints[0].bone, "skull");
+  EXPECT_EQ(scene.constraints[1].kind, SceneConstraint::Kind::sliding);
+  EXPECT_LT(scene.constraints[1].within, 0);
+
+  ASSERT_EQ(scene.loads.size(), 3U);
+  EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);
+  expect_vector(scene.loads[0].value, { 0, 0, 1000 });
+  EXPECT_EQ(scene.loads[0].ramp, 0.1);
+  EXPECT_EQ(scene.loads[1].kind, SceneLoad::Kind::pressure);
+  EXPECT_EQ(scene.loads[1].value[0], -2000);
+  EXPECT_EQ(scene.loads[2].kind, SceneLoad::Kind::displacement);
+  EXPECT_EQ(scene.loads[2].fixed, (std::array<bool, 3>{ false, true, true }));
+  expect_vector(scene.loads[2].value, { 0, 0, 0.005 });
+  EXPECT_NEAR(scene.loads[2].within, 0.5e-3, 1e-15);
+  expect_vector(scene.gravity, { 0, 0, -9.81 });
+}
+
+TEST(EveryKey, output_time_and_accuracy)
+{
+  const Scene& scene = every_key();
+  EXPECT_EQ(scene.skin.surface, "box");
+  expect_vector(scene.skin.crop.lower, { -infinity, -infinity, 0 });
+  EXPECT_NEAR(scene.skin.extrapolation, 0.006, 1e-15);
+  ASSERT_EQ(scene.landmarks.size(), 2U);
+  EXPECT_EQ(scene.landmarks[0].name, "brow_left");
+  expect_vector(scene.landmarks[0].position, { 0.01, 0.02, 0.03 });
+
+  EXPECT_EQ(scene.frame.id, "subject");
+  expect_vector(scene.frame.origin, { 0.01, 0.02, 0.03 });
+  expect_vector(scene.frame.forward, { 0, -1, 0 });
+  expect_vector(scene.frame.up, { 0, 0, 1 });
+
+  EXPECT_EQ(scene.time.damping, 20);
+  EXPECT_EQ(scene.time.scaling, 2);
+  EXPECT_EQ(scene.time.frame_rate, 60);
+
+  ASSERT_EQ(scene.profiles.size(), 3U);
+  EXPECT_EQ(scene.profiles[0].mass_scaling.kind, MassScaling::Kind::selective);
+  EXPECT_EQ(scene.profiles[0].mass_scaling.materials, std::vector<std::string>{ "fat" });
+  EXPECT_EQ(scene.accuracy.name, "fine");
+  expect_vector(scene.accuracy.voxel, { 0.001, 0.002, 0.003 });
+  EXPECT_EQ(scene.accuracy.samples, 8);
+  EXPECT_EQ(scene.accuracy.fill_min, 0.1);
+  EXPECT_EQ(scene.accuracy.time_step_share, 0.5);
+  EXPECT_EQ(scene.accuracy.mass_scaling.kind, MassScaling::Kind::uniform);
+  EXPECT_EQ(scene.accuracy.mass_scaling.factor, 12);
+
+  // what a profile leaves out comes from the defaults, not from another profile
+  expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });
+  EXPECT_EQ(scene.profiles[2].samples, 4);
+  EXPECT_EQ(scene.profiles[2].mass_scaling.kind, MassScaling::Kind::none);
+}
+
+TEST(Options, choose_profile_voxel_and_mesh_folder)
+{
+  const std::string path = source + "/test/scene/every_key.yaml";
+  SceneOptions options;
+  options.accuracy = "draft";
+  EXPECT_EQ(read_scene(path, options).accuracy.name, "draft");
+  options.voxel_quantity = "1.5";
+  expect_vector(read_scene(path, options).accuracy.voxel, { 0.015, 0.015, 0.015 });
+  options.voxel_quantity = "1.5 mm";
+  expect_vector(read_scene(path, options).accuracy.voxel, { 0.0015, 0.0015, 0.0015 });
+  options.voxel_quantity.clear();
+  options.voxel = 0.002;
+  expect_vector(read_scene(path, options).accuracy.voxel, { 0.002, 0.002, 0.002 });
+
+  const TemporaryFolder folder;
+  folder.write("triangle.obj", "v 0 0 0\n");
+  options.mesh_directory = folder.path();
+  EXPECT_EQ(read_scene(path, options).surfaces[0].file, folder.path() + "/triangle.obj");
+}
+
+TEST(Document, its_example_is_a_good_scene)
+{
+  const std::string document = text_of(source + "/doc/scene.md");
+  const std::string fence = "```yaml\n";
+  const std::size_t begin = document.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = document.find("```", begin + fence.size());
+  const TemporaryFolder folder;
+  const Scene scene =
+      read_scene(folder.write("example.yaml", document.substr(begin + fence.size(), end - begin - fence.size())));
+  EXPECT_EQ(scene.surfaces.size(), 2U);
+  EXPECT_EQ(scene.muscles.at(0).volume, "bar");
+  expect_vector(scene.accuracy.voxel, { 0.0025, 0.0025, 0.0025 });
+}
+
+TEST(Content, hash_is_fnv_1a_of_64_bits)
+{
+  // test vectors of Fowler, Noll and Vo
+  EXPECT_EQ(content_hash(""), "cbf29ce484222325");
+  EXPECT_EQ(content_hash("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(content_hash("foobar"), "85944171f73967e8");
+}
+
+TEST(Content, depends_on_what_decides_the_bake_alone)
+{
+  const std::string text = text_of(source + "/test/scene/every_key.yaml");
+  const TemporaryFolder folder;
+  const std::string mesh = folder.write("a/meshes/triangle.obj", "v 0 0 0\n");
+  const std::string content = read_scene(folder.write("a/scene.yaml", text)).content;
+
+  // another place, comments and profiles that are not chosen: the same bake
+  folder.write("b/meshes/triangle.obj", "v 0 0 0\n");
+  std::string changed = "# a comment\n" + text;
+  changed.replace(changed.find("draft: {voxel: 3 mm"), 19, "draft: {voxel: 4 mm");
+  EXPECT_EQ(read_scene(folder.write("b/scene.yaml", changed)).content, content);
+
+  // the same lengths in other words
+  changed = text;
+  changed.replace(changed.find("minor_radius: 1,"), 16, "minor_radius: 10 mm,");
+  EXPECT_EQ(read_scene(folder.write("a/scene.yaml", changed)).content, content);
+
+  // a number, the profile and a byte of a mesh count
+  changed = text;
+  changed.replace(changed.find("poisson: 0.49"), 13, "poisson: 0.48");
+  EXPECT_NE(read_scene(folder.write("a/scene.yaml", changed)).content, content);
+  SceneOptions options;
+  options.accuracy = "draft";
+  EXPECT_NE(read_scene(folder.write("a/scene.yaml", text), options).content, content);
+  folder.write("a/meshes/triangle.obj", "v 0 0 1\n");
+  EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
+}
+
+}  // namespace
+}  // namespace frontalis
