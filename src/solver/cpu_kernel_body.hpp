@@ -1,0 +1,190 @@
+#pragma once
+
+#include "cpu_kernel.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/time_step.hpp"
+#include "simd_number.hpp"
+
+namespace frontalis
+{
+// the architecture is in every type, so that translation units of different instruction sets share no instantiation
+template <class Architecture>
+struct CpuKernelBody
+{
+  using Batch = xsimd::batch<float, Architecture>;
+  static constexpr int lanes = static_cast<int>(Batch::size);
+  static_assert(Tile::width % lanes == 0, "a tile is a whole number of batches");
+
+  static FRONTALIS_LAW Batch load(const float* p) { return Batch::load_unaligned(p); }
+  static FRONTALIS_LAW void add(float* p, const Batch& x) { (load(p) + x).store_unaligned(p); }
+
+  // adds the stress of the fibres: P += S (F a0) (x) a0
+  static FRONTALIS_LAW void add_fibres(const CpuKernelArguments& g, const Tile& tile, int offset,
+                                       const physics::Kinematics<Batch>& k, physics::Matrix3<Batch>& P)
+  {
+    for (auto s = tile.fibre_begin; s < tile.fibre_end; ++s)
+    {
+      const FibreSlot& slot = g.fibres[s];
+      const Batch a[3] = { load(slot.x + offset), load(slot.y + offset), load(slot.z + offset) };
+      Batch along[3];
+      for (int i = 0; i < 3; ++i)
+        along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
+      const Batch squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
+      const Batch S =
+          physics::fibre_stress<Batch>(squared, k.J, load(slot.weight + offset), Batch(g.activation[slot.muscle]),
+                                       Batch(g.with_length[slot.muscle]), Batch(g.with_passive[slot.muscle]));
+      for (int i = 0; i < 3; ++i)
+      {
+        const Batch traction = S * along[i];
+        for (int j = 0; j < 3; ++j)
+          P.a[i][j] = P.a[i][j] + traction * a[j];
+      }
+    }
+  }
+
+  // forces of a tile's voxels [offset, offset + lanes) added to the plane buffers below and above
+  template <bool Look>
+  static FRONTALIS_LAW void element(const CpuKernelArguments& g, const Tile& tile, std::size_t block, int offset,
+                                    float* below, float* above, const std::int32_t* row, Batch& frequency_squared)
+  {
+    using N = physics::Number<Batch>;
+    Batch mode[3][8];
+    for (int c = 0; c < 3; ++c)
+    {
+      for (int r = 0; r < 4; ++r)
+      {
+        const float* p = g.u[c] + tile.node[r] + offset;
+        mode[c][2 * r] = load(p);
+        mode[c][2 * r + 1] = load(p + 1);
+      }
+      physics::walsh_hadamard(mode[c]);
+    }
+    const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
+    const physics::NeoHookean<Batch> material{ load(g.mu + block + offset), load(g.kappa + block + offset) };
+    const auto isotropic = physics::stress(material, k);
+    physics::Matrix3<Batch> P;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
+    if (tile.fibre_begin < tile.fibre_end)
+      add_fibres(g, tile, offset, k, P);
+    if (Look)
+    {
+      const Batch growth = physics::stiffening(k.cofactor, g.stretch_weight);
+      const Batch now = load(g.frequency_squared + block + offset) * N::max(growth, N::of(1));
+      // growth - growth is 0, or NaN for good where motion is not finite
+      frequency_squared = N::max(frequency_squared, now) + (growth - growth);
+    }
+    const Batch hourglass = load(g.hourglass + block + offset);
+    for (int c = 0; c < 3; ++c)
+    {
+      mode[c][0] = N::of(0);
+      for (int j = 0; j < 3; ++j)
+        mode[c][physics::gradient_mode(j)] = P.a[c][j] * Batch(g.scale[j]);
+      for (const int m : { 3, 5, 6, 7 })
+        mode[c][m] = mode[c][m] * hourglass;
+      physics::walsh_hadamard_transposed(mode[c]);
+      for (int r = 0; r < 4; ++r)
+      {
+        float* f = (r < 2 ? below : above) + c * g.buffer_stride + row[r] + offset;
+        add(f, mode[c][2 * r]);
+        add(f + 1, mode[c][2 * r + 1]);
+      }
+    }
+  }
+
+  template <bool Look>
+  static float plane_forces(const CpuKernelArguments& g, std::int32_t plane, float* below, float* above)
+  {
+    Batch frequency_squared(0.0f);
+    for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
+    {
+      const Tile& tile = g.tiles[t];
+      const std::int32_t row[4] = { tile.node[0] - g.plane_nodes[plane], tile.node[1] - g.plane_nodes[plane],
+                                    tile.node[2] - g.plane_nodes[plane + 1], tile.node[3] - g.plane_nodes[plane + 1] };
+      for (int offset = 0; offset < tile.count; offset += lanes)
+        element<Look>(g, tile, static_cast<std::size_t>(t) * Tile::width, offset, below, above, row, frequency_squared);
+    }
+    float result = 0;
+    if (Look)
+    {
+      float lane[lanes];
+      frequency_squared.store_unaligned(lane);
+      for (const float x : lane)
+        result = larger(result, x);
+    }
+    return result;
+  }
+
+  static void update(const CpuKernelArguments& g, std::int32_t plane, const float* force)
+  {
+    const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
+    for (int c = 0; c < 3; ++c)
+    {
+      const float* f = force + c * g.buffer_stride;
+      const float* u = g.u[c] + first;
+      const float* inverse_mass = g.inverse_mass + first;
+      float* __restrict v = g.v[c] + first;
+      float* __restrict next = g.next[c] + first;
+      const float impulse = g.impulse[c];
+      for (std::int32_t n = 0; n < count; ++n)
+      {
+        const float velocity = g.keep * v[n] - g.gain * inverse_mass[n] * f[n] + impulse;
+        v[n] = velocity;
+        next[n] = u[n] + g.dt * velocity;
+      }
+    }
+  }
+
+  // the larger one; NaN once one was NaN
+  static float larger(float a, float b) { return (a >= b ? a : b) + (a - a) + (b - b); }
+
+  static void clear(float* p, std::int32_t count)
+  {
+    for (std::int32_t i = 0; i < count; ++i)
+      p[i] = 0;
+  }
+
+  template <bool Look>
+  static float step(const CpuKernelArguments& g, std::int32_t first, std::int32_t last, float* buffer, bool forces_only)
+  {
+    float* below = buffer;
+    float* above = buffer + 3 * static_cast<std::size_t>(g.buffer_stride);
+    clear(below, 3 * g.buffer_stride);
+    float frequency_squared = 0;
+    // voxel plane k joins node planes k and k + 1; the one below the first plane is computed for its upper nodes alone
+    for (std::int32_t k = first - 1; k < last; ++k)
+    {
+      clear(above, 3 * g.buffer_stride);
+      if (k >= 0 && k < g.planes - 1)
+      {
+        const float now = plane_forces<Look>(g, k, below, above);
+        frequency_squared = larger(frequency_squared, now);
+      }
+      if (k >= first)
+      {
+        if (forces_only)
+          for (int c = 0; c < 3; ++c)
+            for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)
+              g.next[c][n] = below[c * g.buffer_stride + n - g.plane_nodes[k]];
+        else
+          update(g, k, below);
+      }
+      float* const swapped = below;
+      below = above;
+      above = swapped;
+    }
+    return frequency_squared;
+  }
+
+  static float run(const CpuKernelArguments& g, std::int32_t first, std::int32_t last, float* buffer, KernelTask task)
+  {
+    if (task == KernelTask::step_and_look)
+      return step<true>(g, first, last, buffer, false);
+    return step<false>(g, first, last, buffer, task == KernelTask::forces);
+  }
+};
+
+}  // namespace frontalis

@@ -1,0 +1,111 @@
+#include "discretisation.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/time_step.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+// stiffness that the fibres of a voxel can add along one direction, every muscle at full activation
+double fibre_stiffness(const Model& model, std::size_t voxel)
+{
+  double sum = 0;
+  for (auto f = model.fibre_begin[voxel]; f < model.fibre_begin[voxel + 1]; ++f)
+  {
+    const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
+    const double slope = (muscle.tension_length ? physics::active_slope_bound : 1.0) +
+                         (muscle.passive ? physics::passive_slope_bound : 0.0);
+    sum += slope * muscle.stress_reference * model.fibre_weight[f];
+  }
+  return sum;
+}
+
+bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
+{
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
+    if (model.mixture_proportion[m] > 0 &&
+        std::find(materials.begin(), materials.end(), model.mixture_material[m]) != materials.end())
+      return true;
+  return false;
+}
+
+// gives voxels mass as the model's settings say; frequencies follow
+void scale_mass(const Model& model, Discretisation& d)
+{
+  const MassScalingSettings& settings = model.mass_scaling;
+  std::vector<double> factor(model.voxels.size(), 1.0);
+  if (settings.kind == MassScalingSettings::Kind::uniform)
+    std::fill(factor.begin(), factor.end(), settings.factor);
+  else if (settings.kind == MassScalingSettings::Kind::selective)
+  {
+    double allowed = 0;
+    std::vector<bool> chosen(model.voxels.size());
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    {
+      chosen[e] = contains_any(model, e, settings.materials);
+      if (!chosen[e])
+        allowed = std::max(allowed, d.frequency_squared[e]);
+    }
+    if (allowed > 0)
+      for (std::size_t e = 0; e < model.voxels.size(); ++e)
+        if (chosen[e] && d.frequency_squared[e] > allowed)
+          factor[e] = d.frequency_squared[e] / allowed;
+  }
+  double before = 0, after = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    before += d.density[e] * d.tissue_volume[e];
+    d.density[e] *= factor[e];
+    d.frequency_squared[e] /= factor[e];
+    after += d.density[e] * d.tissue_volume[e];
+    if (factor[e] != 1)
+      d.scaled.push_back(static_cast<std::int32_t>(e));
+  }
+  d.mass_added = after / before - 1;
+}
+
+}  // namespace
+
+Discretisation::Discretisation(const Model& model)
+{
+  const auto& h = model.spacing;
+  const double longest = std::max({ h[0], h[1], h[2] });
+  const std::size_t count = model.voxels.size();
+  volume = h[0] * h[1] * h[2];
+  for (auto* array : { &mu, &kappa, &tissue_volume, &hourglass, &density, &frequency_squared })
+    array->assign(count, 0);
+  for (std::size_t e = 0; e < count; ++e)
+  {
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+    {
+      const Material& material = model.materials[model.mixture_material[m]];
+      const double proportion = model.mixture_proportion[m];
+      mu[e] += proportion * material.parameters[0];
+      kappa[e] += proportion * material.parameters[1];
+      density[e] += proportion * material.density;
+    }
+    if (!(mu[e] > 0 && kappa[e] > 0 && density[e] > 0 && model.fill[e] > 0))
+      throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
+    tissue_volume[e] = volume * model.fill[e];
+    hourglass[e] = physics::hourglass_stiffness(physics::young_modulus(mu[e], kappa[e]), tissue_volume[e], longest);
+    frequency_squared[e] =
+        physics::frequency_squared_bound(mu[e], kappa[e], fibre_stiffness(model, e), density[e], h[0], h[1], h[2]);
+  }
+  scale_mass(model, *this);
+
+  node_mass.assign(model.nodes.size(), 0);
+  for (std::size_t e = 0; e < count; ++e)
+  {
+    frequency_squared_max = std::max(frequency_squared_max, frequency_squared[e]);
+    for (const auto node : model.voxel_nodes[e])
+      node_mass[node] += density[e] * tissue_volume[e] / 8;
+  }
+}
+
+}  // namespace frontalis

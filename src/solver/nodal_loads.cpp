@@ -1,0 +1,106 @@
+#include "nodal_loads.hpp"
+
+#include "bound_points.hpp"
+
+#include "frontalis/physics/trilinear.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = physics::Vec3<double>;
+
+Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
+
+// a third of each triangle's force (area vector times pressure, or area times traction) to each of its corners
+void vertex_forces(const Load& load, double ramp, const std::vector<std::array<double, 3>>& vertices,
+                   std::vector<std::array<double, 3>>& forces)
+{
+  std::fill(forces.begin(), forces.end(), std::array<double, 3>{ { 0, 0, 0 } });
+  for (const auto& t : load.mesh.triangles)
+  {
+    const Vector a = vector(vertices[t[0]]);
+    const Vector area = 0.5 * cross(vector(vertices[t[1]]) - a, vector(vertices[t[2]]) - a);
+    const Vector force = load.kind == Load::Kind::pressure ? (-ramp * load.value[0] / 3) * area
+                                                           : (ramp * norm(area) / 3) * vector(load.value);
+    for (const auto corner : t)
+    {
+      forces[corner][0] += force.x;
+      forces[corner][1] += force.y;
+      forces[corner][2] += force.z;
+    }
+  }
+}
+
+}  // namespace
+
+NodalLoads::NodalLoads(const Model& model) : model_(model)
+{
+  for (const auto& load : model.loads)
+  {
+    if (load.kind == Load::Kind::displacement)
+      continue;
+    for (const auto voxel : load.binding.voxel)
+      nodes_.insert(nodes_.end(), model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end());
+  }
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  forces_.assign(nodes_.size(), { { 0, 0, 0 } });
+  for (const auto& load : model.loads)
+  {
+    if (load.kind == Load::Kind::displacement)
+      continue;
+    std::vector<std::vector<Contribution>> by_node(nodes_.size());
+    for (std::size_t vertex = 0; vertex < load.binding.voxel.size(); ++vertex)
+    {
+      const auto& c = load.binding.coordinates[vertex];
+      float weight[8];
+      physics::trilinear_weights(c[0], c[1], c[2], weight);
+      for (int b = 0; b < 8; ++b)
+      {
+        const auto node = model.voxel_nodes[load.binding.voxel[vertex]][b];
+        const auto rank = std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin();
+        by_node[rank].push_back({ static_cast<std::int32_t>(vertex), weight[b] });
+      }
+    }
+    Surface surface{ &load, { 0 }, {}, {}, load.mesh.vertices };
+    for (const auto& contributions : by_node)
+    {
+      surface.contributions.insert(surface.contributions.end(), contributions.begin(), contributions.end());
+      surface.begin.push_back(static_cast<std::int32_t>(surface.contributions.size()));
+    }
+    surface.vertex_force.resize(load.mesh.vertices.size());
+    surfaces_.push_back(std::move(surface));
+  }
+}
+
+template <class Real>
+void NodalLoads::update(double time, const Real* const u[3])
+{
+  std::fill(forces_.begin(), forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
+  for (auto& surface : surfaces_)
+  {
+    const Load& load = *surface.load;
+    if (load.kind == Load::Kind::pressure)
+      for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex)
+      {
+        const auto moved = bound_displacement(model_, load.binding, vertex, u);
+        for (int axis = 0; axis < 3; ++axis)
+          surface.vertices[vertex][axis] = load.mesh.vertices[vertex][axis] + moved[axis];
+      }
+    vertex_forces(load, load.ramp > 0 ? std::min(time / load.ramp, 1.0) : 1.0, surface.vertices, surface.vertex_force);
+    for (std::size_t rank = 0; rank < nodes_.size(); ++rank)
+      for (auto c = surface.begin[rank]; c < surface.begin[rank + 1]; ++c)
+        for (int axis = 0; axis < 3; ++axis)
+          forces_[rank][axis] +=
+              double(surface.contributions[c].weight) * surface.vertex_force[surface.contributions[c].vertex][axis];
+  }
+}
+
+template void NodalLoads::update(double, const float* const[3]);
+template void NodalLoads::update(double, const double* const[3]);
+
+}  // namespace frontalis

@@ -1,0 +1,175 @@
+#include "stepping_solver.hpp"
+
+#include "frontalis/error.hpp"
+#include "voxel_monitor.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace frontalis
+{
+namespace
+{
+
+// steps between two looks at how far the voxels have stiffened
+constexpr int steps_a_look = 32;
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool is_rotation(const RigidTransform& pose)
+{
+  const auto& r = pose.rotation;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      const double product = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
+      if (!(std::abs(product - (i == j)) < 1e-6) || !std::isfinite(pose.translation[i]))
+        return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+Controls rest_controls(const Model& model)
+{
+  return { std::vector<float>(model.muscles.size(), 0), std::vector<RigidTransform>(model.bones.size()) };
+}
+
+void StepPlan::activation(int step, float* out) const
+{
+  const auto f = static_cast<float>(fraction(step));
+  for (std::size_t m = 0; m < begin.activation.size(); ++m)
+    out[m] = begin.activation[m] + f * (end.activation[m] - begin.activation[m]);
+}
+
+Drive StepPlan::drive(int step) const
+{
+  Drive drive{ time + (step + 1) * dt, dt, {} };
+  for (std::size_t b = 0; b < begin.bone.size(); ++b)
+    drive.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
+  return drive;
+}
+
+SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+    : model_((check_model(*model), std::move(model))),
+      discretisation_(*model_),
+      forced_time_step_(settings.time_step),
+      frequency_squared_(discretisation_.frequency_squared_max),
+      controls_(rest_controls(*model_))
+{
+  const double critical = 2 / std::sqrt(frequency_squared_);
+  if (forced_time_step_ > critical || forced_time_step_ < 0)
+  {
+    std::ostringstream text;
+    text << "time step " << forced_time_step_ << " s refused: allowed is 0 (found by the solver) to the critical "
+         << critical << " s";
+    throw Error(text.str());
+  }
+  time_step_ = safe_time_step();
+}
+
+double SteppingSolver::safe_time_step() const
+{
+  const double safe = model_->time_step_share * 2 / std::sqrt(frequency_squared_);
+  return forced_time_step_ > 0 ? std::min(forced_time_step_, 2 / std::sqrt(frequency_squared_)) : safe;
+}
+
+double SteppingSolver::keep(double dt) const
+{
+  return (1 - 0.5 * model_->damping * dt) / (1 + 0.5 * model_->damping * dt);
+}
+
+double SteppingSolver::gain(double dt) const { return dt / (1 + 0.5 * model_->damping * dt); }
+
+void SteppingSolver::reset()
+{
+  rest();
+  time_ = 0;
+  failed_ = false;
+  frequency_squared_ = discretisation_.frequency_squared_max;
+  time_step_ = safe_time_step();
+  controls_ = rest_controls(*model_);
+  profile_ = {};
+}
+
+void SteppingSolver::check(double seconds, const Controls& target) const
+{
+  if (!(seconds >= 0) || !std::isfinite(seconds))
+    throw Error("advance by " + std::to_string(seconds) + " s: allowed are finite durations from 0");
+  if (target.activation.size() != model_->muscles.size() || target.bone.size() != model_->bones.size())
+    throw Error("controls for " + std::to_string(target.activation.size()) + " muscles and " +
+                std::to_string(target.bone.size()) + " bones; the model has " + std::to_string(model_->muscles.size()) +
+                " and " + std::to_string(model_->bones.size()));
+  for (std::size_t m = 0; m < target.activation.size(); ++m)
+    if (!(target.activation[m] >= 0 && target.activation[m] <= 1))
+      throw Error("activation of " + model_->muscles[m].name + " is " + std::to_string(target.activation[m]) +
+                  "; allowed is 0 to 1");
+  for (std::size_t b = 0; b < target.bone.size(); ++b)
+    if (!is_rotation(target.bone[b]))
+      throw Error("pose of bone " + model_->bones[b] + " is not a finite rigid motion");
+  if (failed_)
+    throw Error("the motion has diverged earlier: reset the solver first");
+}
+
+void SteppingSolver::advance(double seconds, const Controls& target)
+{
+  check(seconds, target);
+  const auto start = std::chrono::steady_clock::now();
+  const double end = time_ + seconds;
+  const Controls from = controls_;
+  const double begin = time_;
+  const auto at = [&](double fraction)
+  {
+    Controls between = target;
+    for (std::size_t m = 0; m < between.activation.size(); ++m)
+      between.activation[m] =
+          from.activation[m] + static_cast<float>(fraction) * (target.activation[m] - from.activation[m]);
+    for (std::size_t b = 0; b < between.bone.size(); ++b)
+      between.bone[b] = interpolate(from.bone[b], target.bone[b], fraction);
+    return between;
+  };
+  while (time_ < end)
+  {
+    const double remaining = end - time_;
+    const double steps_left = std::ceil(remaining / safe_time_step() * (1 - 1e-9));
+    StepPlan plan;
+    plan.steps = static_cast<int>(std::min<double>(steps_left, steps_a_look));
+    plan.dt = remaining / steps_left;
+    plan.time = time_;
+    const bool last = steps_left <= steps_a_look;
+    const double reached = last ? end : time_ + plan.steps * plan.dt;
+    plan.begin = controls_;
+    plan.end = last ? target : at((reached - begin) / seconds);
+    const double squared = run(plan);
+    time_step_ = plan.dt;
+    time_ = reached;
+    controls_ = plan.end;
+    profile_.steps += plan.steps;
+    if (!std::isfinite(squared))
+    {
+      failed_ = true;
+      throw Error("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
+    }
+    frequency_squared_ = std::max(squared, discretisation_.frequency_squared_max);
+  }
+  controls_ = target;
+  profile_.stepping += seconds_since(start);
+}
+
+Monitor SteppingSolver::monitor()
+{
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::array<double, 3>> u, v;
+  displacements(u);
+  velocities(v);
+  Monitor result = monitor_voxels(*model_, discretisation_, u, v);
+  profile_.monitor += seconds_since(start);
+  return result;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "discretisation.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <array>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Energies and the worst voxel at given nodal displacements [m] and velocities [m/s].
+Monitor monitor_voxels(const Model& model, const Discretisation& discretisation,
+                       const std::vector<std::array<double, 3>>& u, const std::vector<std::array<double, 3>>& v);
+
+}  // namespace frontalis

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+
+/// Voxels that the CPU kernel takes together: up to 16 neighbours along x. Their nodes lie one after the other in each
+/// of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
+struct Tile
+{
+  static constexpr int width = 16;
+  std::int32_t node[4];      ///< first node of each row
+  std::int32_t count;        ///< voxels, 1..16
+  std::int32_t fibre_begin;  ///< range of FibreSlots
+  std::int32_t fibre_end;
+  std::int32_t first_voxel;  ///< in the model's order; the tile's voxels follow it
+};
+
+/// One muscle's fibres in a tile; 0 where a voxel has none.
+struct FibreSlot
+{
+  float weight[Tile::width];  ///< proportion of the voxel times its tissue volume times the stress reference [N m]
+  float x[Tile::width], y[Tile::width], z[Tile::width];
+  std::int32_t muscle;
+};
+
+/// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tile widths are the same for every
+/// instruction set; a wider or narrower batch takes a tile in one or more goes.
+struct VoxelRows
+{
+  explicit VoxelRows(const Model& model, const std::vector<double>& tissue_volume);
+
+  std::int32_t planes = 0;  ///< of nodes
+  std::vector<Tile> tiles;
+  std::vector<std::int32_t> plane_tiles;  ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
+  std::vector<std::int32_t> plane_nodes;  ///< nodes of plane k, likewise
+  std::vector<FibreSlot> fibres;
+
+  /// One value a voxel as blocks of Tile::width a tile, 0 in unused lanes.
+  std::vector<float> blocks(const std::vector<double>& values) const;
+};
+
+}  // namespace frontalis
