@@ -1,0 +1,33 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <string>
+
+namespace frontalis
+{
+
+/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. Every file is whole or not there.
+class FrameFolder
+{
+public:
+  /// Makes the folder where it is missing, and removes the files that an earlier run has left in it. Throws Error.
+  FrameFolder(std::string path, const Model& model);
+
+  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
+  void add(double time, const SkinState& skin);
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame) and run.json.
+  void finish(const std::string& summary);
+
+private:
+  void write(const std::string& name, const std::string& bytes) const;
+
+  std::string path_;
+  const Model& model_;
+  int frames_ = 0;
+  SkinState first_;
+  std::string table_;
+};
+
+}  // namespace frontalis

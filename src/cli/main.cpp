@@ -1,0 +1,65 @@
+#include "command.hpp"
+#include "interrupt.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+
+namespace
+{
+
+int tell(const std::exception& error, int code)
+{
+  std::fprintf(stderr, "%s\n", error.what());
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  CLI::App app("frontalis: simulates facial soft tissue", "frontalis");
+  app.set_version_flag("--version", "frontalis " FRONTALIS_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+
+  frontalis::Action action;
+  frontalis::add_bake_command(app, action);
+  frontalis::add_run_command(app, action);
+
+  try
+  {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    // --help and --version come this way too, with code 0
+    return app.exit(error) == 0 ? frontalis::exit_success : frontalis::exit_wrong_usage;
+  }
+
+  frontalis::catch_interrupts();
+  try
+  {
+    action();
+    return frontalis::exit_success;
+  }
+  catch (const frontalis::Interrupted&)
+  {
+    std::fprintf(stderr, "interrupted\n");
+    return frontalis::exit_interrupted;
+  }
+  catch (const frontalis::WrongUsage& error)
+  {
+    return tell(error, frontalis::exit_wrong_usage);
+  }
+  catch (const std::bad_alloc&)
+  {
+    std::fprintf(stderr, "out of memory; use larger voxels or a smaller region\n");
+    return frontalis::exit_error;
+  }
+  catch (const std::exception& error)
+  {
+    return tell(error, frontalis::exit_error);
+  }
+}

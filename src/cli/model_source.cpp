@@ -1,0 +1,110 @@
+#include "model_source.hpp"
+
+#include "command.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
+#ifdef FRONTALIS_WITH_BAKE
+#include "frontalis/bake/bake.hpp"
+#include "frontalis/scene/read_scene.hpp"
+#endif
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace frontalis
+{
+
+void add_scene_options(CLI::App& command, ModelSource& source)
+{
+  command.add_option("--mesh-dir", source.mesh_directory, "folder of the scene's mesh files");
+  command.add_option("--accuracy", source.accuracy, "name of one of the scene's accuracy profiles");
+  command.add_option("--voxel", source.voxel, "voxel edge, in the scene's length unit (1.5) or with one (\"1.5 mm\")");
+}
+
+bool is_model_file(const std::string& path)
+{
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5")
+    return true;
+  // the first eight bytes of every HDF5 file
+  const std::string signature = "\x89HDF\r\n\x1a\n";
+  std::string begin(signature.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == signature;
+}
+
+#ifdef FRONTALIS_WITH_BAKE
+
+Model bake_scene(const ModelSource& source, BakeSummary* summary)
+{
+  SceneOptions options;
+  options.mesh_directory = source.mesh_directory;
+  options.accuracy = source.accuracy;
+  options.voxel_quantity = source.voxel;
+  const Scene scene = read_scene(source.path, options);
+
+  Progress progress;
+  BakeReport report;
+  Model model;
+  try
+  {
+    model = bake(scene, &report,
+                 [&progress](const std::string& stage, double done)
+                 {
+                   progress.update(stage, done);
+                   return !interrupt_requested();
+                 });
+  }
+  catch (const Error&)
+  {
+    // an interrupted bake ends in an error that is none
+    if (interrupt_requested())
+      throw Interrupted();
+    throw;
+  }
+  if (interrupt_requested())
+    throw Interrupted();
+  if (summary != nullptr)
+  {
+    for (const BakeReport::Stage& stage : report.stages)
+    {
+      char seconds[32];
+      std::snprintf(seconds, sizeof seconds, "%8.3f s  ", stage.seconds);
+      summary->stages.push_back(seconds + stage.name);
+    }
+    summary->findings = report.findings;
+  }
+  return model;
+}
+
+#else
+
+Model bake_scene(const ModelSource& source, BakeSummary* /*summary*/)
+{
+  throw Error(source.path + ": is a scene, and this program was built without baking; give a baked model (.vtkhdf)");
+}
+
+#endif
+
+Model obtain_model(const ModelSource& source)
+{
+  if (!std::filesystem::exists(source.path))
+    throw Error(source.path + ": no such file; must be a scene (YAML) or a baked model (.vtkhdf)");
+  if (!is_model_file(source.path))
+    return bake_scene(source);
+  for (const auto& [option, text] : { std::pair<const char*, const std::string&>("--mesh-dir", source.mesh_directory),
+                                      std::pair<const char*, const std::string&>("--accuracy", source.accuracy),
+                                      std::pair<const char*, const std::string&>("--voxel", source.voxel) })
+    if (!text.empty())
+      throw WrongUsage(std::string(option) + " goes with a scene; '" + source.path +
+                       "' is a model that is baked already");
+  return read_model(source.path);
+}
+
+}  // namespace frontalis

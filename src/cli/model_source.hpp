@@ -1,0 +1,44 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+class App;
+}
+
+namespace frontalis
+{
+
+/// What the command line says about the scene or model to take.
+struct ModelSource
+{
+  std::string path;
+  std::string mesh_directory;
+  std::string accuracy;
+  std::string voxel;
+};
+
+/// What a bake told, ready to print.
+struct BakeSummary
+{
+  std::vector<std::string> stages;  ///< name and seconds
+  std::vector<std::string> findings;
+};
+
+/// Declares --mesh-dir, --accuracy and --voxel.
+void add_scene_options(CLI::App& command, ModelSource& source);
+
+/// By its extension (.vtkhdf, .h5, .hdf5) or by the signature of HDF5 at its beginning.
+bool is_model_file(const std::string& path);
+
+/// Reads a scene and bakes it, telling its progress. Throws Error, Interrupted.
+Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);
+
+/// Reads a model file, or reads a scene and bakes it. Throws Error, WrongUsage, Interrupted.
+Model obtain_model(const ModelSource& source);
+
+}  // namespace frontalis

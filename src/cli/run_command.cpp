@@ -1,0 +1,194 @@
+#include "activation_list.hpp"
+#include "command.hpp"
+#include "face_skin.hpp"
+#include "frame_folder.hpp"
+#include "interrupt.hpp"
+#include "model_source.hpp"
+#include "progress.hpp"
+#include "run_summary.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+namespace frontalis
+{
+namespace
+{
+
+struct RunOptions
+{
+  ModelSource source;
+  std::string activation;
+  std::string expression;
+  double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if that is less
+  double seconds = 1;
+  std::string frames;
+  double frame_rate = 0;  ///< [1/s]; 0: the model's
+  std::string backend = "auto";
+  int threads = 0;
+};
+
+// the motion over time: activations grow from 0 to their target over the ramp, then stay
+class Motion
+{
+public:
+  Motion(Solver& solver, const Model& model, std::vector<float> target, double ramp)
+      : solver_(solver), scaling_(model.time_scaling), target_(std::move(target)), ramp_(ramp)
+  {
+  }
+
+  /// Advances to `time` on the clock on which activations are given, not across the end of the ramp in one go.
+  void advance_to(double time)
+  {
+    if (time_ < ramp_ && ramp_ < time)
+      advance(ramp_);
+    advance(time);
+  }
+
+private:
+  void advance(double time)
+  {
+    Controls controls = solver_.controls();
+    controls.activation = target_;
+    if (time < ramp_)
+      for (float& activation : controls.activation)
+        activation *= static_cast<float>(time / ramp_);
+    solver_.advance((time - time_) / scaling_, controls);
+    time_ = time;
+  }
+
+  Solver& solver_;
+  double scaling_;
+  std::vector<float> target_;
+  double ramp_;
+  double time_ = 0;
+};
+
+// a state that cannot be trusted ends the run before its frame is written
+void check_motion(const Monitor& monitor, const SkinState& skin, double time)
+{
+  if (!monitor.finite || !is_finite(skin))
+    throw Error(
+        "the motion diverged at " + std::to_string(time) +
+        " s: displacements are no longer finite; use a smaller time_step_share, smaller activations or more damping");
+}
+
+void look(Solver& solver, const Model& model, double time, RunSummary& summary)
+{
+  solver.skin(summary.end);
+  summary.monitor = solver.monitor();
+  check_motion(summary.monitor, summary.end, time);
+  to_face_frame(model, summary.end);
+  summary.seconds = time;
+  summary.time_step = solver.time_step();
+  summary.profile = solver.profile();
+  summary.peak_kinetic = std::max(summary.peak_kinetic, summary.monitor.kinetic);
+  summary.peak_internal = std::max(summary.peak_internal, summary.monitor.internal);
+  summary.worst_jacobian = std::min(summary.worst_jacobian, summary.monitor.worst_jacobian);
+}
+
+// plays the motion frame by frame; ends early on Ctrl-C
+void play(Solver& solver, const Model& model, const RunOptions& options, Motion& motion,
+          std::optional<FrameFolder>& folder, RunSummary& summary)
+{
+  const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
+  const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * frame_rate * (1 - 1e-9))));
+  const auto begin = std::chrono::steady_clock::now();
+  Progress progress;
+  for (int frame = 0; frame <= frames; ++frame)
+  {
+    const double time = frame == frames ? options.seconds : frame / frame_rate;
+    if (frame > 0)
+      motion.advance_to(time);
+    look(solver, model, time, summary);
+    if (frame == 0)
+      summary.rest = summary.end;
+    if (folder)
+      folder->add(time, summary.end);
+    summary.frames = frame + 1;
+    summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    progress.update("running", static_cast<double>(frame) / frames,
+                    std::to_string(time) + " of " + std::to_string(options.seconds) + " s");
+    if (interrupt_requested() && frame < frames)
+    {
+      summary.complete = false;
+      break;
+    }
+  }
+}
+
+void check_options(const RunOptions& options)
+{
+  if (!(options.seconds > 0) || !std::isfinite(options.seconds))
+    throw WrongUsage("--seconds: must be a number greater than 0");
+  if (!std::isfinite(options.ramp))
+    throw WrongUsage("--ramp: must be a number from 0");
+  if (!(options.frame_rate >= 0) || !std::isfinite(options.frame_rate))
+    throw WrongUsage("--frame-rate: must be a number greater than 0");
+  if (options.seconds * std::max(options.frame_rate, 1.0) > 1e6)
+    throw WrongUsage("--seconds times --frame-rate: more than a million frames");
+}
+
+void run(const RunOptions& options)
+{
+  check_options(options);
+  const std::map<std::string, double> listed = parse_activation_list(options.activation);
+  SolverSettings settings;
+  settings.backend = backend_from_name(options.backend);
+  settings.threads = options.threads;
+
+  const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  const std::vector<float> target = target_activation(*model, options.expression, listed);
+  std::optional<FrameFolder> folder;
+  if (!options.frames.empty())
+    folder.emplace(options.frames, *model);
+
+  const std::unique_ptr<Solver> solver = make_solver(model, settings);
+  RunSummary summary;
+  summary.backend = solver->description();
+  summary.time_step = solver->time_step();
+  print_set_up(*model, summary);
+
+  const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
+  Motion motion(*solver, *model, target, ramp);
+  play(*solver, *model, options, motion, folder, summary);
+  if (folder)
+    folder->finish(json_of(*model, summary));
+  print_result(*model, summary);
+  if (!summary.complete)
+    throw Interrupted();
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action)
+{
+  CLI::App* command = app.add_subcommand("run", "simulate a scene or a baked model and say how the landmarks moved");
+  const auto options = std::make_shared<RunOptions>();
+  command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
+  command->add_option("--activate", options->activation, "activations from 0 to 1: MUSCLE=VALUE,MUSCLE=VALUE,...");
+  command->add_option("--expression", options->expression, "a named set of activations; --activate goes before it");
+  command->add_option("--ramp", options->ramp, "activations grow linearly over so many seconds (0.1, or half the run)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
+  command->add_option("--frames", options->frames,
+                      "folder for skin_NNNN.ply, landmarks.csv and run.json; files of an earlier run are replaced");
+  command->add_option("--frame-rate", options->frame_rate, "frames a simulated second (the model's)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
+      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
+  add_scene_options(*command, options->source);
+  command->callback([&action, options] { action = [options] { run(*options); }; });
+}
+
+}  // namespace frontalis

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <string>
+
+namespace frontalis
+{
+
+/// What a run came to.
+struct RunSummary
+{
+  std::string backend;
+  double seconds = 0;    ///< simulated, on the clock on which activations are given [s]
+  double wall = 0;       ///< [s], all of the run but building the model and the solver
+  double time_step = 0;  ///< [s]
+  int frames = 0;
+  bool complete = true;     ///< false: interrupted
+  Monitor monitor;          ///< at the end
+  double peak_kinetic = 0;  ///< [J]
+  double peak_internal = 0;
+  double worst_jacobian = 1;  ///< of the whole run
+  Profile profile;
+  SkinState rest;  ///< face frame
+  SkinState end;   ///< face frame
+};
+
+/// Prints backend, voxels, nodes and time step, before the run.
+void print_set_up(const Model& model, const RunSummary& summary);
+
+/// Prints the motion of the landmarks, the energies and the speed.
+void print_result(const Model& model, const RunSummary& summary);
+
+/// The same as JSON.
+std::string json_of(const Model& model, const RunSummary& summary);
+
+}  // namespace frontalis
