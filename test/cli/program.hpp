@@ -1,0 +1,103 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+
+namespace frontalis
+{
+
+inline std::string text_of(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+}
+
+/// A folder of its own, removed with its contents.
+class TemporaryFolder
+{
+public:
+  TemporaryFolder()
+  {
+    path_ = (std::filesystem::temp_directory_path() / "frontalis_cli_XXXXXX").string();
+    if (mkdtemp(path_.data()) == nullptr)
+      throw std::runtime_error(path_ + ": cannot be made");
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  const std::string& path() const { return path_; }
+
+private:
+  std::string path_;
+};
+
+struct ProgramResult
+{
+  int code = -1;  ///< exit code; -1: ended by a signal
+  std::string output;
+  std::string errors;
+};
+
+/// Runs the program `frontalis`, without a terminal. Where `interrupt_when` names a file, sends SIGINT once that is
+/// there.
+inline ProgramResult run_program(std::vector<std::string> arguments, const std::string& interrupt_when = {})
+{
+  const TemporaryFolder folder;
+  const std::string output = folder / "output";
+  const std::string errors = folder / "errors";
+  arguments.insert(arguments.begin(), FRONTALIS_PROGRAM);
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments)
+    pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(open(output.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    dup2(open(errors.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    execv(pointers[0], pointers.data());
+    _exit(127);
+  }
+  int status = 0;
+  bool sent = interrupt_when.empty();
+  while (waitpid(child, &status, sent ? 0 : WNOHANG) == 0)
+  {
+    if (std::filesystem::exists(interrupt_when))
+    {
+      kill(child, SIGINT);
+      sent = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ProgramResult result;
+  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  result.output = text_of(output);
+  result.errors = text_of(errors);
+  return result;
+}
+
+inline void expect_contains(const std::string& text, const std::string& part)
+{
+  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in\n" << text;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,114 @@
+// exit codes and messages of the program: wrong usage, bad scenes, places that cannot be written
+
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+const std::string bad_folder = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/scene/bad";
+
+TEST(Usage, version_and_help_end_well)
+{
+  const ProgramResult version = run_program({ "--version" });
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.output.compare(0, 10, "frontalis "), 0) << version.output;
+  for (const std::vector<std::string>& arguments :
+       { std::vector<std::string>{ "--help" }, { "run", "--help" }, { "bake", "--help" } })
+  {
+    const ProgramResult help = run_program(arguments);
+    EXPECT_EQ(help.code, 0);
+    expect_contains(help.output, "Usage: ");
+  }
+}
+
+TEST(Usage, wrong_options_end_with_2_and_one_message)
+{
+  const std::string scene = bad_folder + "/empty_volume.yaml";
+  const std::vector<std::vector<std::string>> wrong = {
+    {},
+    { "simulate" },
+    { "run" },
+    { "bake", scene },
+    { "run", scene, "--unknown" },
+    { "run", scene, "--seconds" },
+    { "run", scene, "--seconds", "soon" },
+    { "run", scene, "--seconds", "-1" },
+    { "run", scene, "--seconds", "0" },
+    { "run", scene, "--seconds", "inf" },
+    { "run", scene, "--ramp", "-1" },
+    { "run", scene, "--frame-rate", "0" },
+    { "run", scene, "--backend", "abacus" },
+    { "run", scene, "--threads", "-2" },
+    { "run", scene, "--activate", "strand" },
+    { "run", scene, "--activate", "strand=much" },
+    { "run", scene, "--activate", "strand=0.1,strand=0.2" },
+    { "run", scene, "--activate", "=0.1" },
+  };
+  for (const std::vector<std::string>& arguments : wrong)
+  {
+    const ProgramResult result = run_program(arguments);
+    const std::string last = arguments.empty() ? "no argument" : arguments.back();
+    EXPECT_EQ(result.code, 2) << last;
+    EXPECT_NE(result.errors, "") << last;
+    EXPECT_EQ(result.output, "") << last;
+  }
+}
+
+TEST(Files, that_are_missing_or_cannot_be_written_are_told)
+{
+  const TemporaryFolder folder;
+  const std::string scene = bad_folder + "/empty_volume.yaml";
+  const std::string absent = folder / "absent.yaml";
+  for (const std::vector<std::string>& arguments : { std::vector<std::string>{ "run", absent },
+                                                     { "run", folder / "absent.vtkhdf" },
+                                                     { "bake", absent, "-o", folder / "m.vtkhdf" },
+                                                     { "bake", scene, "-o", folder / "none/m.vtkhdf" },
+                                                     { "bake", scene, "-o", folder.path() },
+                                                     { "bake", scene, "-o", scene } })
+  {
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.code, 1) << arguments.back();
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+class BadSceneRun : public testing::TestWithParam<std::string>
+{
+};
+
+std::vector<std::string> bad_scenes()
+{
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(bad_folder))
+    if (entry.path().extension() == ".yaml")
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_P(BadSceneRun, ends_with_1_and_its_one_message)
+{
+  const std::string path = bad_folder + "/" + GetParam() + ".yaml";
+  const std::string text = text_of(path);
+  const std::string first = text.substr(0, text.find('\n'));
+  const ProgramResult result = run_program({ "run", path });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  EXPECT_EQ(result.errors.compare(0, path.size(), path), 0) << result.errors;
+  const std::size_t colon = first.find(": ");
+  ASSERT_NE(colon, std::string::npos) << "the first line says what is expected";
+  expect_contains(result.errors, first.substr(colon + 2));
+}
+
+INSTANTIATE_TEST_SUITE_P(scenes, BadSceneRun, testing::ValuesIn(bad_scenes()),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace frontalis
