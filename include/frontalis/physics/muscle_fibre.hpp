@@ -58,9 +58,9 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
 }
 
 /// Largest slope of the Cauchy stress over the stress reference against stretch, full activation: what a time step has
-/// to allow for. d/dl [f(l) l] of the active curve is 2.4 at l = 0.6; the passive curve's end is p1 p2 e^(0.4 p2) (1
+/// to allow for. d/dl [f(l) l] of the active curve is 2.52 at l = 0.6; the passive curve's end is p1 p2 e^(0.4 p2) (1
 /// + 1.4).
-constexpr double active_slope_bound = 2.4;
+constexpr double active_slope_bound = 2.52;
 constexpr double passive_slope_bound = 11.1;
 
 }  // namespace physics

@@ -1,0 +1,120 @@
+#include "frontalis/physics/neo_hookean.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+using namespace frontalis::physics;
+
+namespace
+{
+
+using Matrix = Matrix3<double>;
+
+Kinematics<double> kinematics_of(const Matrix& F)
+{
+  // gradients sit at modes 1, 2, 4; scale 1 leaves them as they are
+  double mode[3][8] = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      mode[i][gradient_mode(j)] = F.a[i][j] - (i == j);
+  const double one[3] = { 1, 1, 1 };
+  return kinematics(mode[0], mode[1], mode[2], one);
+}
+
+Matrix first_piola(const NeoHookean<double>& material, const Matrix& F)
+{
+  const auto k = kinematics_of(F);
+  const auto s = stress(material, k);
+  Matrix P;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = s.on_gradient * F.a[i][j] + s.on_cofactor * k.cofactor.a[i][j];
+  return P;
+}
+
+Matrix diagonal(double x, double y, double z) { return { { { x, 0, 0 }, { 0, y, 0 }, { 0, 0, z } } }; }
+
+// nu = 0.49, mu = 1
+const NeoHookean<double> material{ 1.0, 2.0 * 1.49 / (3.0 * 0.02) };
+
+void expect_gradient_of_energy(const Matrix& F)
+{
+  const Matrix P = first_piola(material, F);
+  const double step = 1e-6;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      Matrix more = F, less = F;
+      more.a[i][j] += step;
+      less.a[i][j] -= step;
+      const double slope = (energy(material, kinematics_of(more)) - energy(material, kinematics_of(less))) / (2 * step);
+      EXPECT_NEAR(P.a[i][j], slope, 1e-6 * (1 + std::abs(slope))) << i << j;
+    }
+}
+
+}  // namespace
+
+TEST(NeoHookean, StressIsTheGradientOfTheEnergyAlsoWhereCrushedAndInverted)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> distribution(-0.6, 0.6);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    Matrix F = diagonal(1, 1, trial % 3 == 0 ? -0.7 : trial % 3 == 1 ? 0.1 : 1);
+    for (auto& row : F.a)
+      for (auto& x : row)
+        x += distribution(random);
+    expect_gradient_of_energy(F);
+  }
+}
+
+TEST(NeoHookean, UniaxialTable)
+{
+  // stretch, P11/mu, lateral stretch, J: sides free
+  const double table[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
+                               { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
+                               { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
+                               { 2.0, 1.718609, 0.715038, 1.022560 } };
+  for (const auto& row : table)
+  {
+    // bisection for the lateral stretch that frees the sides
+    double low = 0.3, high = 2.5;
+    for (int i = 0; i < 100; ++i)
+    {
+      const double middle = 0.5 * (low + high);
+      (first_piola(material, diagonal(row[0], middle, middle)).a[1][1] < 0 ? low : high) = middle;
+    }
+    const Matrix F = diagonal(row[0], low, low);
+    EXPECT_NEAR(low, row[2], 2e-6);
+    EXPECT_NEAR(first_piola(material, F).a[0][0], row[1], 2e-5);
+    EXPECT_NEAR(kinematics_of(F).J, row[3], 2e-6);
+  }
+}
+
+TEST(NeoHookean, SimpleShear)
+{
+  const double shear = 0.4;
+  Matrix F = diagonal(1, 1, 1);
+  F.a[0][1] = shear;
+  const Matrix P = first_piola(material, F);
+  // Cauchy stress P F^T / J, J = 1
+  const auto cauchy = [&](int i, int j)
+  { return P.a[i][0] * F.a[j][0] + P.a[i][1] * F.a[j][1] + P.a[i][2] * F.a[j][2]; };
+  EXPECT_NEAR(cauchy(0, 1), shear, 1e-12);
+  EXPECT_NEAR(cauchy(0, 0), 2.0 / 3 * shear * shear, 1e-12);
+  EXPECT_NEAR(cauchy(1, 1), -shear * shear / 3, 1e-12);
+  EXPECT_NEAR(cauchy(2, 2), -shear * shear / 3, 1e-12);
+}
+
+TEST(NeoHookean, CrushedAndInvertedElementsArePushedOpen)
+{
+  for (const double z : { 0.2, 0.1, 0.0, -0.3, -1.0 })
+  {
+    const double push = first_piola(material, diagonal(1, 1, z)).a[2][2];
+    EXPECT_TRUE(std::isfinite(push));
+    EXPECT_LT(push, 0) << "at " << z;
+  }
+}

@@ -1,0 +1,157 @@
+#include "backends.hpp"
+#include "block_model.hpp"
+
+#include <cmath>
+#include <random>
+
+using namespace frontalis;
+using Vectors = std::vector<std::array<double, 3>>;
+
+namespace
+{
+
+using Affine = std::array<std::array<double, 3>, 3>;
+
+Vectors affine(const Model& model, const Affine& F)
+{
+  Vectors u(model.nodes.size());
+  for (std::size_t n = 0; n < u.size(); ++n)
+  {
+    const auto X = test::rest(model, n);
+    for (int i = 0; i < 3; ++i)
+      u[n][i] = F[i][0] * X[0] + F[i][1] * X[1] + F[i][2] * X[2] - X[i];
+  }
+  return u;
+}
+
+// a block with a hole and an uneven edge, so that rows of voxels break off and begin again
+test::BlockSettings ragged()
+{
+  test::BlockSettings s;
+  s.voxels = { { 21, 5, 4 } };
+  s.spacing = { { 1e-3, 1.2e-3, 0.8e-3 } };
+  s.keep = [](int i, int j, int k) { return !(i == 7 && j == 2) && !(k == 3 && i > 12) && !(i == 20 && j == 0); };
+  return s;
+}
+
+double largest(const Vectors& a)
+{
+  double x = 0;
+  for (const auto& v : a)
+    for (const double c : v)
+      x = std::max(x, std::abs(c));
+  return x;
+}
+
+Vectors random_displacements(const Model& model, double amplitude)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> value(-amplitude, amplitude);
+  Vectors u(model.nodes.size());
+  for (auto& v : u)
+    for (auto& c : v)
+      c = value(random);
+  return u;
+}
+
+}  // namespace
+
+class Forces : public test::EveryBackend
+{
+};
+
+TEST_P(Forces, RigidMotionGivesNone)
+{
+  const Model model = test::block_model(ragged());
+  const double a = 0.7, c = std::cos(a), s = std::sin(a);
+  Vectors u = affine(model, { { { { c, -s, 0 } }, { { s, c, 0 } }, { { 0, 0, 1 } } } });
+  for (auto& v : u)
+    v[1] += 5e-3;
+  const auto solver_ = solver(model);
+  solver_->set_displacements(u);
+  Vectors f;
+  solver_->internal_forces(f);
+  // against the force of one per cent of stretch
+  solver_->set_displacements(affine(model, { { { { 1.01, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } } }));
+  Vectors scale;
+  solver_->internal_forces(scale);
+  EXPECT_LT(largest(f), largest(scale) * (single_precision() ? 1e-2 : 1e-9));
+}
+
+TEST_P(Forces, AffinePatchHasNoForceInside)
+{
+  const Model model = test::block_model();
+  const auto solver_ = solver(model);
+  solver_->set_displacements(affine(model, { { { { 1.2, 0.1, 0 } }, { { -0.05, 0.9, 0.2 } }, { { 0.1, 0, 1.1 } } } }));
+  Vectors f;
+  solver_->internal_forces(f);
+  double inside = 0;
+  for (std::size_t n = 0; n < f.size(); ++n)
+  {
+    bool interior = true;
+    for (int axis = 0; axis < 3; ++axis)
+      interior = interior && model.nodes[n][axis] > 0 && model.nodes[n][axis] < model.size[axis];
+    if (interior)
+      for (const double c : f[n])
+        inside = std::max(inside, std::abs(c));
+  }
+  EXPECT_LT(inside, largest(f) * (single_precision() ? 2e-5 : 1e-12));
+}
+
+TEST_P(Forces, AreTheGradientOfTheEnergy)
+{
+  test::BlockSettings s = ragged();
+  s.voxels = { { 3, 2, 2 } };
+  s.keep = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
+  const Model model = test::block_model(s);
+  // energy comes from the reference in double; the forces from the backend under test
+  const auto energies = make_solver(std::make_shared<const Model>(model), { Backend::reference, 0, 0 });
+  const auto solver_ = solver(model);
+  const Vectors u = random_displacements(model, 2e-4);
+  solver_->set_displacements(u);
+  Vectors f;
+  solver_->internal_forces(f);
+  const double step = 1e-8;
+  for (std::size_t n = 0; n < u.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      double energy[2];
+      for (int side = 0; side < 2; ++side)
+      {
+        Vectors moved = u;
+        moved[n][axis] += side == 0 ? -step : step;
+        energies->set_displacements(moved);
+        const Monitor m = energies->monitor();
+        energy[side] = m.internal + m.hourglass;
+      }
+      EXPECT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), largest(f) * 2e-5) << n << " " << axis;
+    }
+}
+
+TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)
+{
+  Model model = test::block_model(ragged());
+  Muscle muscle;
+  muscle.name = "m";
+  muscle.passive = true;
+  test::add_muscle(model, { { 0.6f, 0.0f, 0.8f } }, muscle);
+  const Vectors u = random_displacements(model, 3e-4);
+  const auto reference = make_solver(std::make_shared<const Model>(model), { Backend::reference, 0, 0 });
+  const auto solver_ = solver(model);
+  Vectors expected, found;
+  for (auto* s : { reference.get(), solver_.get() })
+  {
+    Controls controls{ { 0.7f }, {} };
+    s->advance(1e-9, controls);  // takes the activation over
+    s->set_displacements(u);
+  }
+  reference->internal_forces(expected);
+  solver_->internal_forces(found);
+  double difference = 0;
+  for (std::size_t n = 0; n < expected.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      difference = std::max(difference, std::abs(expected[n][axis] - found[n][axis]));
+  EXPECT_LT(difference, largest(expected) * 2e-6);
+}
+
+FRONTALIS_EVERY_BACKEND(Forces);

@@ -1,0 +1,260 @@
+#include "backends.hpp"
+#include "block_model.hpp"
+#include "frontalis/error.hpp"
+
+#include <cmath>
+
+using namespace frontalis;
+using Vectors = std::vector<std::array<double, 3>>;
+
+namespace
+{
+
+// prescribes the chosen components of the nodes of a face: axis, at its lower or upper end
+void prescribe(Model& model, int axis, bool upper, const std::array<bool, 3>& fixed, const std::array<double, 3>& value,
+               double ramp)
+{
+  Load load;
+  load.name = "face";
+  load.kind = Load::Kind::displacement;
+  load.fixed = fixed;
+  load.value = value;
+  load.ramp = ramp;
+  const auto index = static_cast<std::int32_t>(model.loads.size());
+  model.loads.push_back(load);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][axis] == (upper ? model.size[axis] : 0))
+      model.prescribed.push_back({ static_cast<std::int32_t>(n), index });
+}
+
+// the planes of symmetry x = 0, y = 0, z = 0
+void symmetry(Model& model)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    std::array<bool, 3> fixed{ { false, false, false } };
+    fixed[axis] = true;
+    prescribe(model, axis, false, fixed, { { 0, 0, 0 } }, 0);
+  }
+}
+
+std::size_t far_corner(const Model& model)
+{
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n] == model.size)
+      return n;
+  return 0;
+}
+
+// runs until the kinetic energy has fallen below `share` of young times volume, or gives up
+void settle(Solver& solver, const Controls& controls, double slice, double share, const test::BlockSettings& s)
+{
+  const double scale = s.young * s.voxels[0] * s.voxels[1] * s.voxels[2] * s.spacing[0] * s.spacing[1] * s.spacing[2];
+  for (int i = 0; i < 100; ++i)
+  {
+    solver.advance(slice, controls);
+    if (solver.monitor().kinetic < share * scale)
+      return;
+  }
+  FAIL() << "did not come to rest";
+}
+
+}  // namespace
+
+class Motion : public test::EveryBackend
+{
+};
+
+TEST_P(Motion, UniaxialStretchesAsTheTableSays)
+{
+  const double table[3][3] = { { 0.7, 1.191455, 0.993695 }, { 1.3, 0.879723, 1.006086 }, { 2.0, 0.715038, 1.022560 } };
+  for (const auto& row : table)
+  {
+    test::BlockSettings s;
+    s.voxels = { { 3, 3, 3 } };
+    s.damping = 3000;
+    Model model = test::block_model(s);
+    symmetry(model);
+    prescribe(model, 0, true, { { true, false, false } }, { { (row[0] - 1) * 3e-3, 0, 0 } }, 0.02);
+    const auto solver_ = solver(model);
+    solver_->advance(0.02, {});
+    settle(*solver_, {}, 0.01, 1e-10, s);
+    Vectors u;
+    solver_->displacements(u);
+    const std::size_t corner = far_corner(model);
+    EXPECT_NEAR(1 + u[corner][1] / 3e-3, row[1], 1e-4);
+    EXPECT_NEAR(1 + u[corner][2] / 3e-3, row[1], 1e-4);
+    EXPECT_NEAR(solver_->monitor().worst_jacobian, row[2], 1e-4);
+  }
+}
+
+TEST_P(Motion, ActiveBarShortensAsTheClosedFormSays)
+{
+  const double table[4][2] = { { 0.1, 0.96873 }, { 0.5, 0.87358 }, { 1, 0.79370 }, { 2, 0.69336 } };
+  for (const auto& row : table)
+  {
+    test::BlockSettings s;
+    s.voxels = { { 4, 2, 2 } };
+    s.poisson = 0.4995;  // the closed form is incompressible
+    s.damping = 3000;
+    Model model = test::block_model(s);
+    symmetry(model);
+    Muscle muscle;
+    muscle.name = "bar";
+    muscle.tension_length = false;
+    muscle.stress_reference = 2 * test::shear_modulus(s);
+    test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+    const auto solver_ = solver(model);
+    const Controls controls{ { static_cast<float>(row[0] / 2) }, {} };
+    solver_->advance(0.02, controls);
+    settle(*solver_, controls, 0.01, 1e-10, s);
+    Vectors u;
+    solver_->displacements(u);
+    EXPECT_NEAR(1 + u[far_corner(model)][0] / 4e-3, row[1], 1e-3);
+  }
+}
+
+TEST_P(Motion, CantileverBendsAsBeamTheorySays)
+{
+  // square section, length 10 heights, tip force as gravity load: q L^4 / (8 E I) with shear correction
+  // (Timoshenko: + q L^2 / (2 k G A), k = 5/6), small deflection
+  for (const int through : { 1, 2, 4 })
+  {
+    test::BlockSettings s;
+    const double height = 8e-3;
+    const double h = height / through;
+    s.voxels = { { 10 * through, through, through } };
+    s.spacing = { { h, h, h } };
+    s.poisson = 0.3;
+    s.young = 1e5;
+    s.damping = 60;
+    Model model = test::block_model(s);
+    prescribe(model, 0, false, { { true, true, true } }, { { 0, 0, 0 } }, 0);
+    const double gravity = 0.05;
+    model.gravity = { { 0, 0, -gravity } };
+    const auto solver_ = solver(model);
+    solver_->advance(0.5, {});
+    settle(*solver_, {}, 0.05, 1e-12, s);
+    Vectors u;
+    solver_->displacements(u);
+    const double length = 10 * height, load = s.density * gravity * height * height;
+    const double inertia = std::pow(height, 4) / 12;
+    const double exact = load * std::pow(length, 4) / (8 * s.young * inertia) +
+                         load * length * length / (2 * (5.0 / 6) * test::shear_modulus(s) * height * height);
+    EXPECT_NEAR(-u[far_corner(model)][2] / exact, 1, 0.07) << through << " elements through the thickness";
+  }
+}
+
+TEST_P(Motion, ComesBackFromActivation)
+{
+  test::BlockSettings s;
+  s.voxels = { { 6, 3, 3 } };
+  s.damping = 2000;
+  Model model = test::block_model(s);
+  symmetry(model);
+  Muscle muscle;
+  muscle.name = "bar";
+  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  const auto solver_ = solver(model);
+  solver_->advance(0.01, Controls{ { 1.0f }, {} });
+  settle(*solver_, Controls{ { 1.0f }, {} }, 0.01, 1e-10, s);
+  Vectors u;
+  solver_->displacements(u);
+  EXPECT_LT(u[far_corner(model)][0], -1e-3);
+  solver_->advance(0.01, Controls{ { 0.0f }, {} });
+  for (int i = 0; i < 20; ++i)
+    solver_->advance(0.01, Controls{ { 0.0f }, {} });
+  solver_->displacements(u);
+  EXPECT_NEAR(u[far_corner(model)][0], 0, 1e-8);
+}
+
+TEST_P(Motion, FreeFallIsExact)
+{
+  Model model = test::block_model();
+  model.gravity = { { 0, 0, -9.81 } };
+  const auto solver_ = solver(model);
+  solver_->advance(0.02, {});
+  Vectors u;
+  solver_->displacements(u);
+  for (const auto& v : u)
+    EXPECT_NEAR(v[2], -0.5 * 9.81 * 0.02 * 0.02, 0.5 * 9.81 * 0.02 * solver_->time_step() * 1.1 + 1e-6);
+}
+
+TEST_P(Motion, BonesCarryTheirNodes)
+{
+  test::BlockSettings s;
+  s.damping = 2000;
+  Model model = test::block_model(s);
+  model.bones = { "jaw" };
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][0] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  const auto solver_ = solver(model);
+  RigidTransform pose;
+  const double a = 0.3;
+  pose.rotation = { { std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1 } };
+  pose.translation = { { 1e-3, 0, 2e-3 } };
+  solver_->advance(0.02, Controls{ {}, { pose } });
+  settle(*solver_, Controls{ {}, { pose } }, 0.01, 1e-11, s);
+  // once settled, all of the block has moved with its bone
+  Vectors u;
+  solver_->displacements(u);
+  for (std::size_t n = 0; n < u.size(); ++n)
+  {
+    const auto X = test::rest(model, n);
+    EXPECT_NEAR(u[n][0], std::cos(a) * X[0] - std::sin(a) * X[1] + 1e-3 - X[0], 2e-6);
+    EXPECT_NEAR(u[n][1], std::sin(a) * X[0] + std::cos(a) * X[1] - X[1], 2e-6);
+    EXPECT_NEAR(u[n][2], 2e-3, 2e-6);
+  }
+}
+
+TEST_P(Motion, RefusesBadControlsAndKeepsItsState)
+{
+  Model model = test::block_model();
+  Muscle muscle;
+  muscle.name = "bar";
+  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  const auto solver_ = solver(model);
+  solver_->advance(1e-3, Controls{ { 0.5f }, {} });
+  Vectors before, after;
+  solver_->displacements(before);
+  for (const float bad : { -0.1f, 1.1f, std::nanf("") })
+    EXPECT_THROW(solver_->advance(1e-3, Controls{ { bad }, {} }), Error);
+  EXPECT_THROW(solver_->advance(1e-3, Controls{ {}, {} }), Error);
+  EXPECT_THROW(solver_->advance(-1, Controls{ { 0.5f }, {} }), Error);
+  solver_->displacements(after);
+  EXPECT_EQ(before, after);
+  EXPECT_DOUBLE_EQ(solver_->time(), 1e-3);
+}
+
+TEST_P(Motion, RefusesATimeStepAboveTheCriticalOne)
+{
+  const auto model = std::make_shared<const Model>(test::block_model());
+  const double critical = make_solver(model, { GetParam(), 0, 0 })->monitor().critical_time_step;
+  EXPECT_THROW(make_solver(model, { GetParam(), 0, critical * 1.01 }), Error);
+  EXPECT_NO_THROW(make_solver(model, { GetParam(), 0, critical * 0.5 }));
+}
+
+TEST_P(Motion, SameInputSameBits)
+{
+  test::BlockSettings s;
+  s.voxels = { { 19, 7, 11 } };
+  s.keep = [](int i, int j, int k) { return (i + 2 * j + 3 * k) % 17 != 0; };
+  Model model = test::block_model(s);
+  Muscle muscle;
+  muscle.name = "bar";
+  test::add_muscle(model, { { 0, 1, 0 } }, muscle);
+  Vectors first;
+  for (const int threads : { 1, 2, 4, 2 })
+  {
+    const auto solver_ = solver(model, threads);
+    solver_->advance(5e-3, Controls{ { 0.8f }, {} });
+    Vectors u;
+    solver_->displacements(u);
+    if (first.empty())
+      first = u;
+    EXPECT_EQ(first, u) << threads << " threads";
+  }
+}
+
+FRONTALIS_EVERY_BACKEND(Motion);
