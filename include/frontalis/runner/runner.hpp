@@ -63,7 +63,8 @@ public:
   bool paused() const;
   /// Back to rest and zero activation; clears a failure.
   void reset();
-  /// Advances by exactly `seconds` and returns the frame there; pauses the runner's own stepping first. Throws Error.
+  /// Advances by exactly `seconds` (on the activations' clock), activations going linearly to what was set last, and
+  /// returns the frame there; pauses the runner's own stepping first. Throws Error.
   Frame step(double seconds);
 
   const Model& model() const;

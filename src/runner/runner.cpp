@@ -1,0 +1,373 @@
+#include "frontalis/runner/runner.hpp"
+
+#include "frame_clock.hpp"
+#include "frontalis/error.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace frontalis
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+using Points = std::vector<std::array<float, 3>>;
+
+// time steps between two looks at the wall clock
+constexpr int steps_a_slice = 32;
+
+void transform(const RigidTransform& map, bool with_translation, Points& points)
+{
+  for (auto& p : points)
+  {
+    const std::array<float, 3> q = p;
+    for (int i = 0; i < 3; ++i)
+      p[i] = static_cast<float>(map.rotation[3 * i] * q[0] + map.rotation[3 * i + 1] * q[1] +
+                                map.rotation[3 * i + 2] * q[2] + (with_translation ? map.translation[i] : 0));
+  }
+}
+
+bool finite(const Points& points)
+{
+  return std::all_of(points.begin(), points.end(),
+                     [](const auto& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); });
+}
+
+}  // namespace
+
+struct Runner::Implementation
+{
+  std::shared_ptr<const Model> model;
+  RunnerSettings settings;
+  OnFrame on_frame;
+  std::unique_ptr<Solver> solver;
+
+  // shared with the callers' threads, under the mutex
+  mutable std::mutex mutex;
+  std::condition_variable wake;
+  Controls target;
+  bool stop = false;
+  bool paused = false;
+  bool reset_wanted = false;
+  struct StepRequest
+  {
+    double seconds = 0;
+    bool done = false;
+    std::string error;
+    Frame frame;
+  };
+  StepRequest* step_request = nullptr;
+  std::mutex step_mutex;  // one step at a time
+
+  // the runner's thread alone
+  Frame frame;
+  FrameClock clock;
+  Clock::time_point start = Clock::now();
+  Clock::time_point last_monitor{};
+  std::thread thread;
+
+  double period() const { return 1 / settings.frame_rate; }
+  /// On the clock on which activations are given.
+  double time() const { return solver->time() * model->time_scaling; }
+
+  void advance(double seconds, const Controls& to);
+  void make_frame(bool renew_monitor);
+  void publish(bool renew_monitor = false);
+  void run_frame();
+  void serve_step(StepRequest& request);
+  void loop();
+};
+
+// advances on the activations' clock; a motion that cannot be trusted stops the face until reset
+void Runner::Implementation::advance(double seconds, const Controls& to)
+{
+  try
+  {
+    solver->advance(seconds / model->time_scaling, to);
+  }
+  catch (const Error& error)
+  {
+    frame.failed = true;
+    frame.failure = error.what();
+  }
+}
+
+void Runner::Implementation::make_frame(bool renew_monitor)
+{
+  const auto now = Clock::now();
+  if (!frame.failed)
+  {
+    SkinState skin;
+    solver->skin(skin);
+    if (finite(skin.vertices) && finite(skin.normals) && finite(skin.landmarks))
+    {
+      transform(model->to_face, true, skin.vertices);
+      transform(model->to_face, false, skin.normals);
+      transform(model->to_face, true, skin.landmarks);
+      frame.skin = std::move(skin);
+    }
+    else
+    {
+      frame.failed = true;
+      frame.failure = "the skin is no longer finite";
+    }
+    if (renew_monitor || now - last_monitor > std::chrono::seconds(1))
+    {
+      frame.monitor = solver->monitor();
+      last_monitor = now;
+    }
+  }
+  frame.time = time();
+  frame.wall_time = std::chrono::duration<double>(now - start).count();
+  frame.time_step = solver->time_step();
+  frame.steps = solver->profile().steps;
+  frame.activation = solver->controls().activation;
+  ++frame.sequence;
+}
+
+void Runner::Implementation::publish(bool renew_monitor)
+{
+  frame.real_time_factor = clock.note(time());
+  make_frame(renew_monitor);
+  if (on_frame)
+    on_frame(frame);
+}
+
+// one frame's worth of stepping: until the simulated time that is due is reached or the frame's wall time is over
+void Runner::Implementation::run_frame()
+{
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
+  const double end =
+      settings.pace == Pace::fastest ? time() + 1e9 : time() + clock.due(time(), 2 * period()) + period();
+  while (!frame.failed && time() < end && Clock::now() < deadline)
+  {
+    Controls to;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (stop || paused || reset_wanted || step_request != nullptr)
+        return;
+      to = target;
+    }
+    // activations reach their target within a frame's time, not in one step
+    const double slice = std::min(end - time(), steps_a_slice * solver->time_step() * model->time_scaling);
+    const auto part = static_cast<float>(std::min(1.0, slice / period()));
+    const Controls& now = solver->controls();
+    for (std::size_t m = 0; m < to.activation.size(); ++m)
+    {
+      const float way = to.activation[m] - now.activation[m];
+      to.activation[m] = std::abs(way) < 1e-4f ? to.activation[m] : now.activation[m] + way * std::min(1.0f, 3 * part);
+    }
+    advance(slice, to);
+  }
+  publish();
+  std::unique_lock<std::mutex> lock(mutex);
+  if (settings.pace == Pace::real_time || frame.failed)
+    wake.wait_until(lock, deadline, [&] { return stop || reset_wanted || step_request != nullptr; });
+}
+
+void Runner::Implementation::serve_step(StepRequest& request)
+{
+  Controls to;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    to = target;
+  }
+  if (frame.failed)
+    request.error = frame.failure + "; reset first";
+  const Controls from = solver->controls();
+  for (double done = 0; done < request.seconds && request.error.empty();)
+  {
+    // in slices, so that a long step can be stopped
+    const double slice = std::min(request.seconds - done, steps_a_slice * solver->time_step() * model->time_scaling);
+    done += slice;
+    const auto part = static_cast<float>(std::min(1.0, done / request.seconds));
+    Controls on_the_way = to;
+    for (std::size_t m = 0; m < to.activation.size(); ++m)
+      on_the_way.activation[m] = from.activation[m] + part * (to.activation[m] - from.activation[m]);
+    advance(slice, on_the_way);
+    request.error = frame.failure;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (stop)
+      request.error = "the runner is being stopped";
+  }
+  publish(true);
+  request.frame = frame;
+}
+
+void Runner::Implementation::loop()
+{
+  clock.restart(time());
+  for (;;)
+  {
+    StepRequest* request = nullptr;
+    bool reset = false;
+    bool rest = false;
+    {
+      std::unique_lock<std::mutex> lock(mutex);
+      const auto idle = [&] { return paused || settings.pace == Pace::lock_step; };
+      rest = idle();
+      wake.wait(lock, [&] { return stop || reset_wanted || step_request != nullptr || !idle(); });
+      if (stop)
+      {
+        if (step_request != nullptr)
+        {
+          step_request->error = "the runner is being stopped";
+          step_request->done = true;
+          wake.notify_all();
+        }
+        return;
+      }
+      std::swap(reset, reset_wanted);
+      request = step_request;
+    }
+    if (reset)
+    {
+      solver->reset();
+      frame.failed = false;
+      frame.failure.clear();
+      clock.restart(0);
+      publish(true);
+    }
+    else if (request != nullptr)
+    {
+      serve_step(*request);
+      const std::lock_guard<std::mutex> lock(mutex);
+      request->done = true;
+      step_request = nullptr;
+    }
+    else
+    {
+      if (rest)
+        clock.restart(time());
+      run_frame();
+      continue;
+    }
+    wake.notify_all();
+  }
+}
+
+Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& settings, OnFrame on_frame)
+    : self_(std::make_unique<Implementation>())
+{
+  self_->model = model;
+  self_->settings = settings;
+  if (!(self_->settings.frame_rate > 0))
+    self_->settings.frame_rate = model->frame_rate;
+  self_->on_frame = std::move(on_frame);
+  self_->solver = make_solver(model, settings.solver);
+  self_->target = self_->solver->controls();
+  self_->thread = std::thread([this] { self_->loop(); });
+}
+
+Runner::~Runner()
+{
+  {
+    const std::lock_guard<std::mutex> lock(self_->mutex);
+    self_->stop = true;
+  }
+  self_->wake.notify_all();
+  self_->thread.join();
+}
+
+void Runner::set_activation(const std::map<std::string, double>& activation)
+{
+  const auto& muscles = self_->model->muscles;
+  std::vector<std::pair<std::size_t, float>> changes;
+  std::string faults;
+  for (const auto& entry : activation)
+  {
+    const auto muscle =
+        std::find_if(muscles.begin(), muscles.end(), [&](const Muscle& m) { return m.name == entry.first; });
+    if (muscle == muscles.end())
+    {
+      faults += "unknown muscle \"" + entry.first + "\"; known are";
+      for (const auto& m : muscles)
+        faults += " " + m.name;
+      faults += ". ";
+    }
+    else if (!(entry.second >= 0 && entry.second <= 1))
+      faults += "activation of " + entry.first + " is " + std::to_string(entry.second) + "; allowed is 0 to 1. ";
+    else
+      changes.emplace_back(muscle - muscles.begin(), static_cast<float>(entry.second));
+  }
+  if (!faults.empty())
+    throw Error(faults.substr(0, faults.size() - 1));
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  for (const auto& change : changes)
+    self_->target.activation[change.first] = change.second;
+}
+
+void Runner::set_expression(const std::string& name)
+{
+  const auto& expressions = self_->model->expressions;
+  std::vector<float> activation(self_->model->muscles.size(), 0);
+  if (name != "relax")
+  {
+    const auto expression =
+        std::find_if(expressions.begin(), expressions.end(), [&](const auto& e) { return e.name == name; });
+    if (expression == expressions.end())
+    {
+      std::string known = "relax";
+      for (const auto& e : expressions)
+        known += " " + e.name;
+      throw Error("unknown expression \"" + name + "\"; known are " + known);
+    }
+    for (const auto& entry : expression->activation)
+      activation[entry.first] = entry.second;
+  }
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  self_->target.activation = activation;
+}
+
+void Runner::pause(bool paused)
+{
+  {
+    const std::lock_guard<std::mutex> lock(self_->mutex);
+    self_->paused = paused;
+  }
+  self_->wake.notify_all();
+}
+
+bool Runner::paused() const
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  return self_->paused;
+}
+
+void Runner::reset()
+{
+  std::unique_lock<std::mutex> lock(self_->mutex);
+  std::fill(self_->target.activation.begin(), self_->target.activation.end(), 0.0f);
+  self_->reset_wanted = true;
+  self_->wake.notify_all();
+}
+
+Frame Runner::step(double seconds)
+{
+  if (!(seconds > 0) || !std::isfinite(seconds))
+    throw Error("step of " + std::to_string(seconds) + " s: allowed are finite durations above 0");
+  const std::lock_guard<std::mutex> one_at_a_time(self_->step_mutex);
+  Implementation::StepRequest request;
+  request.seconds = seconds;
+  std::unique_lock<std::mutex> lock(self_->mutex);
+  self_->paused = true;
+  self_->step_request = &request;
+  self_->wake.notify_all();
+  self_->wake.wait(lock, [&] { return request.done; });
+  if (!request.error.empty())
+    throw Error(request.error);
+  return request.frame;
+}
+
+const Model& Runner::model() const { return *self_->model; }
+
+std::string Runner::description() const { return self_->solver->description(); }
+
+}  // namespace frontalis

@@ -1,0 +1,165 @@
+#include "frontalis/runner/runner.hpp"
+
+#include "block_model.hpp"
+#include "frontalis/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+using namespace frontalis;
+using namespace std::chrono_literals;
+
+namespace
+{
+
+// a bar along x, fixed at x = 0, one muscle along it, its far end as skin
+std::shared_ptr<const Model> bar()
+{
+  test::BlockSettings s;
+  s.voxels = { { 6, 2, 2 } };
+  s.damping = 500;
+  Model model = test::block_model(s);
+  Muscle muscle;
+  muscle.name = "puller";
+  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][0] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  model.skin.vertices = { { { 6e-3, 0, 0 } }, { { 6e-3, 2e-3, 0 } }, { { 6e-3, 2e-3, 2e-3 } } };
+  model.skin.triangles = { { { 0, 1, 2 } } };
+  model.skin_binding.voxel = { 5, 11, 23 };
+  model.skin_binding.coordinates = { { { 1, 0, 0 } }, { { 1, 1, 0 } }, { { 1, 1, 1 } } };
+  model.landmarks = { "tip" };
+  model.landmark_positions = { { { 6e-3, 0, 0 } } };
+  model.landmark_binding.voxel = { 5 };
+  model.landmark_binding.coordinates = { { { 1, 0, 0 } } };
+  model.expressions.push_back({ "pull", { { 0, 0.8f } } });
+  // the face frame: local x is its z
+  model.to_face.rotation = { { 0, 1, 0, 0, 0, 1, 1, 0, 0 } };
+  model.to_face.translation = { { 0, 0, 1 } };
+  return std::make_shared<const Model>(model);
+}
+
+double tip(const Frame& frame) { return frame.skin.landmarks[0][2] - 1; }
+
+RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { Backend::cpu, 1, 0 }, pace, frame_rate }; }
+
+}  // namespace
+
+TEST(Runner, LockStepAdvancesExactlyAndComesBack)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  const Frame rest = runner.step(0.01);
+  EXPECT_NEAR(rest.time, 0.01, 1e-12);
+  EXPECT_NEAR(tip(rest), 6e-3, 1e-6);
+  runner.set_expression("pull");
+  runner.step(0.02);
+  const Frame pulled = runner.step(0.05);
+  EXPECT_NEAR(pulled.time, 0.08, 1e-12);
+  EXPECT_LT(tip(pulled), 5.5e-3);
+  EXPECT_FLOAT_EQ(pulled.activation[0], 0.8f);
+  EXPECT_GT(pulled.monitor.internal, 0);
+  // the skin's outward normal is the face's z
+  EXPECT_NEAR(pulled.skin.normals[0][2], 1, 0.1);
+  runner.set_expression("relax");
+  runner.step(0.02);
+  EXPECT_NEAR(tip(runner.step(0.2)), 6e-3, 2e-5);
+}
+
+TEST(Runner, LockStepIsRepeatable)
+{
+  std::vector<std::array<float, 3>> first;
+  for (int run = 0; run < 2; ++run)
+  {
+    Runner runner(bar(), settings(Pace::lock_step), {});
+    runner.set_activation({ { "puller", 1.0 } });
+    const Frame frame = runner.step(0.03);
+    if (run == 0)
+      first = frame.skin.vertices;
+    EXPECT_EQ(first, frame.skin.vertices);
+  }
+}
+
+TEST(Runner, RealTimeKeepsPaceWithTheClock)
+{
+  std::mutex mutex;
+  std::vector<Frame> frames;
+  {
+    Runner runner(bar(), settings(Pace::real_time, 50),
+                  [&](const Frame& frame)
+                  {
+                    const std::lock_guard<std::mutex> lock(mutex);
+                    frames.push_back(frame);
+                  });
+    std::this_thread::sleep_for(1s);
+  }
+  ASSERT_GT(frames.size(), 25u);
+  EXPECT_LT(frames.size(), 56u);
+  EXPECT_LT(frames.back().time, 1.1);
+  EXPECT_GT(frames.back().time, 0.5);
+  EXPECT_LE(frames.back().real_time_factor, 1.1);
+  for (std::size_t f = 1; f < frames.size(); ++f)
+    EXPECT_GE(frames[f].time, frames[f - 1].time);
+}
+
+TEST(Runner, FastestRunsAheadOfTheClock)
+{
+  std::atomic<double> factor{ 0 };
+  Runner runner(bar(), settings(Pace::fastest), [&](const Frame& frame) { factor = frame.real_time_factor; });
+  std::this_thread::sleep_for(600ms);
+  EXPECT_GT(factor, 1.5);
+}
+
+TEST(Runner, PauseStopsTimeAndResetRewinds)
+{
+  std::atomic<double> time{ 0 };
+  Runner runner(bar(), settings(Pace::fastest), [&](const Frame& frame) { time = frame.time; });
+  std::this_thread::sleep_for(200ms);
+  runner.pause(true);
+  EXPECT_TRUE(runner.paused());
+  std::this_thread::sleep_for(100ms);
+  const double then = time;
+  EXPECT_GT(then, 0);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(time, then);
+  runner.set_activation({ { "puller", 1.0 } });
+  runner.reset();
+  const Frame frame = runner.step(1e-3);
+  EXPECT_NEAR(frame.time, 1e-3, 1e-12);
+  EXPECT_FLOAT_EQ(frame.activation[0], 0.0f);
+}
+
+TEST(Runner, BadInputIsRefusedWhole)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  EXPECT_THROW(runner.set_activation({ { "nobody", 0.5 } }), Error);
+  EXPECT_THROW(runner.set_activation({ { "puller", 0.5 }, { "nobody", 0.5 } }), Error);
+  for (const double bad : { -0.1, 1.1, std::nan("") })
+    EXPECT_THROW(runner.set_activation({ { "puller", bad } }), Error);
+  EXPECT_THROW(runner.set_expression("grin"), Error);
+  EXPECT_THROW(runner.step(0), Error);
+  EXPECT_THROW(runner.step(std::nan("")), Error);
+  EXPECT_FLOAT_EQ(runner.step(1e-3).activation[0], 0.0f);
+  try
+  {
+    runner.set_expression("grin");
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("relax pull"), std::string::npos);
+  }
+}
+
+TEST(Runner, TimeScalingPlaysTheSameClock)
+{
+  auto model = std::make_shared<Model>(*bar());
+  model->time_scaling = 4;
+  Runner runner(model, settings(Pace::lock_step), {});
+  runner.set_activation({ { "puller", 1.0 } });
+  EXPECT_NEAR(runner.step(0.04).time, 0.04, 1e-12);
+}
