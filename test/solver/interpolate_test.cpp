@@ -1,0 +1,45 @@
+#include "../../src/solver/restricted_nodes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace frontalis;
+
+namespace
+{
+
+RigidTransform turn_about_z(double angle, double x)
+{
+  RigidTransform pose;
+  pose.rotation = { { std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1 } };
+  pose.translation = { { x, 0, 0 } };
+  return pose;
+}
+
+void expect_same(const RigidTransform& a, const RigidTransform& b)
+{
+  for (int i = 0; i < 9; ++i)
+    EXPECT_NEAR(a.rotation[i], b.rotation[i], 1e-12);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(a.translation[i], b.translation[i], 1e-12);
+}
+
+}  // namespace
+
+TEST(Interpolate, TurnsAboutTheShortestAxis)
+{
+  const RigidTransform from = turn_about_z(0.2, 1), to = turn_about_z(1.0, 3);
+  expect_same(interpolate(from, to, 0), from);
+  expect_same(interpolate(from, to, 1), to);
+  expect_same(interpolate(from, to, 0.25), turn_about_z(0.4, 1.5));
+}
+
+TEST(Interpolate, HalfATurnAndNone)
+{
+  const double pi = std::acos(-1.0);
+  const RigidTransform half = interpolate(turn_about_z(0, 0), turn_about_z(pi, 0), 0.5);
+  EXPECT_NEAR(std::abs(half.rotation[1]), 1, 1e-9);
+  EXPECT_NEAR(half.rotation[8], 1, 1e-9);
+  expect_same(interpolate(turn_about_z(0.3, 0), turn_about_z(0.3, 0), 0.5), turn_about_z(0.3, 0));
+}

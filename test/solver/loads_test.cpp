@@ -1,0 +1,112 @@
+#include "backends.hpp"
+#include "block_model.hpp"
+
+#include <cmath>
+
+using namespace frontalis;
+using Vectors = std::vector<std::array<double, 3>>;
+
+namespace
+{
+
+// a square on top of the block, four triangles a voxel, bound to the voxels below it; normals up
+Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3>& value)
+{
+  Load load;
+  load.name = "top";
+  load.kind = kind;
+  load.value = value;
+  load.ramp = 0.01;
+  const int nx = model.size[0], ny = model.size[1], nz = model.size[2];
+  const auto voxel = [&](int i, int j) { return ((nz - 1) * ny + std::min(j, ny - 1)) * nx + std::min(i, nx - 1); };
+  for (int j = 0; j <= ny; ++j)
+    for (int i = 0; i <= nx; ++i)
+    {
+      load.mesh.vertices.push_back({ { i * model.spacing[0], j * model.spacing[1], nz * model.spacing[2] } });
+      load.binding.voxel.push_back(voxel(i, j));
+      load.binding.coordinates.push_back({ { i == nx ? 1.0f : 0.0f, j == ny ? 1.0f : 0.0f, 1.0f } });
+    }
+  // a vertex in the middle of each square: its nodes then get a quarter of its force each
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i)
+    {
+      const int a = j * (nx + 1) + i, b = a + 1, c = a + nx + 1, d = c + 1;
+      const auto middle = static_cast<std::int32_t>(load.mesh.vertices.size());
+      load.mesh.vertices.push_back(
+          { { (i + 0.5) * model.spacing[0], (j + 0.5) * model.spacing[1], nz * model.spacing[2] } });
+      load.binding.voxel.push_back(voxel(i, j));
+      load.binding.coordinates.push_back({ { 0.5f, 0.5f, 1.0f } });
+      for (const auto& edge :
+           { std::make_pair(a, b), std::make_pair(b, d), std::make_pair(d, c), std::make_pair(c, a) })
+        load.mesh.triangles.push_back({ { edge.first, edge.second, middle } });
+    }
+  return load;
+}
+
+// fixes one component on the lower face of an axis
+void roller(Model& model, int axis)
+{
+  Load load;
+  load.kind = Load::Kind::displacement;
+  load.fixed = { { axis == 0, axis == 1, axis == 2 } };
+  model.loads.push_back(load);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][axis] == 0)
+      model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(model.loads.size()) - 1 });
+}
+
+Model loaded_block(Load::Kind kind, const std::array<double, 3>& value, test::BlockSettings& s)
+{
+  s.voxels = { { 3, 4, 5 } };
+  s.damping = 3000;
+  Model model = test::block_model(s);
+  for (int axis = 0; axis < 3; ++axis)
+    roller(model, axis);
+  model.loads.push_back(top_surface(model, kind, value));
+  return model;
+}
+
+double top_stretch(Solver& solver, const Model& model)
+{
+  for (int i = 0; i < 10; ++i)
+    solver.advance(0.01, {});
+  Vectors u;
+  solver.displacements(u);
+  double sum = 0;
+  int count = 0;
+  for (std::size_t n = 0; n < u.size(); ++n)
+    if (model.nodes[n][2] == model.size[2])
+    {
+      sum += u[n][2];
+      ++count;
+    }
+  return 1 + sum / count / (model.size[2] * model.spacing[2]);
+}
+
+}  // namespace
+
+class Loads : public test::EveryBackend
+{
+};
+
+TEST_P(Loads, TractionStretchesAsTheUniaxialTableSays)
+{
+  // P33 / mu = 0.701838 at stretch 1.3; a dead traction is a first Piola-Kirchhoff stress
+  test::BlockSettings s;
+  const double mu = test::shear_modulus(s);
+  const Model model = loaded_block(Load::Kind::traction, { { 0, 0, 0.701838 * mu } }, s);
+  const auto solver_ = solver(model);
+  EXPECT_NEAR(top_stretch(*solver_, model), 1.3, 1e-4);
+}
+
+TEST_P(Loads, PressureFollowsTheArea)
+{
+  // at stretch 0.7 Cauchy stress is P33 / (lateral stretch)^2
+  test::BlockSettings s;
+  const double mu = test::shear_modulus(s);
+  const Model model = loaded_block(Load::Kind::pressure, { { 1.333561 * mu / (1.191455 * 1.191455), 0, 0 } }, s);
+  const auto solver_ = solver(model);
+  EXPECT_NEAR(top_stretch(*solver_, model), 0.7, 1e-4);
+}
+
+FRONTALIS_EVERY_BACKEND(Loads);
