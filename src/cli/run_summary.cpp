@@ -80,10 +80,10 @@ void print_result(const Model& model, const RunSummary& summary)
     std::printf("landmark           %s: %+.3f mm up, %+.3f mm forward, %+.3f mm left\n", model.landmarks[l].c_str(),
                 motion[2], motion[0], motion[1]);
   }
-  std::printf("kinetic/internal   %.4f at the end, %.4f peak over peak\n",
+  std::printf("kinetic/internal   %.3g at the end, %.3g peak over peak\n",
               ratio(summary.monitor.kinetic, summary.monitor.internal),
               ratio(summary.peak_kinetic, summary.peak_internal));
-  std::printf("hourglass share    %.4f of the elastic energy at the end\n", hourglass_share(summary.monitor));
+  std::printf("hourglass share    %.3g of the elastic energy at the end\n", hourglass_share(summary.monitor));
   std::printf("worst J            %.4f at the end, %.4f in the run\n", summary.monitor.worst_jacobian,
               summary.worst_jacobian);
   std::printf("simulated          %.4f s in %lld steps, %.3f us the last\n", summary.seconds,

@@ -120,21 +120,21 @@ int Node::integer(int lower, int upper, int fallback) const
   std::string text;
   if (!given_ || !scalar(text, expected))
     return fallback;
-  double value = std::nan("");
+  std::optional<double> value;
   try
   {
     value = parse_quantity(text, Dimension::number, 1);
   }
   catch (const Error&)
   {
-    // reported below
+    value.reset();
   }
-  if (!(value >= lower && value <= upper && value == std::floor(value)))
+  if (!value || *value < lower || *value > upper || *value != std::floor(*value))
   {
     fault(found() + "; must be " + expected);
     return fallback;
   }
-  return static_cast<int>(value);
+  return static_cast<int>(*value);
 }
 
 double Node::number(Dimension dimension, const Bound& bound, double fallback) const
