@@ -1,0 +1,54 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/scene/scene.hpp"
+
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Dimensions of the generated forehead [m] and their defaults. Coordinates are those of the face frame: origin at the
+/// sellion (the deepest point of the nasal root) on the skin, x out of the face, y to the subject's left, z up.
+///
+/// The bone is an elliptic cylinder whose profile leans and curves backwards with height, with a brow ridge, a
+/// glabella, a nasal root below it and flattened temples; the skin lies `thickness` in front of it along its normal.
+/// The defaults lie within ranges of adult anthropometry and imaging:
+/// - forehead height (brow to hairline) 55-75 mm, minimum frontal breadth 90-110 mm, head breadth 140-160 mm
+///   (Farkas, Anthropometry of the Head and Face, 2nd ed. 1994);
+/// - soft tissue over the frontal bone 3.5-5.5 mm, at the glabella and brow 5-8 mm (facial soft-tissue depth tables,
+///   Stephan & Simpson 2008);
+/// - frontalis 30-45 mm wide a side, corrugator 25-40 mm long, procerus 20-30 mm long (dissection series).
+struct ForeheadDimensions
+{
+  double height = 70e-3;               ///< from the brow to the hairline, in the midline
+  double width = 150e-3;               ///< arc from temple to temple
+  double front_radius = 75e-3;         ///< of the horizontal section of the bone in the midline
+  double half_breadth = 68e-3;         ///< lateral semi-axis of that section; it tightens towards the temples
+  double brow_height = 18e-3;          ///< of the brow over the sellion
+  double brow_thickness = 8e-3;        ///< of the soft tissue at the brow
+  double hairline_thickness = 4.5e-3;  ///< of the soft tissue at the hairline
+  double profile_radius = 130e-3;      ///< of the bone's profile in the midline
+  double ridge = 3e-3;                 ///< height of the brow ridge over the bone around it
+  double glabella = 2e-3;              ///< the same for the glabella
+  double temple_flattening = 3e-3;     ///< how far the temples lie behind the ellipse
+  double margin = 8e-3;                ///< by which the part `skull` reaches beyond the skin's edges
+  double muscle_thickness = 2e-3;      ///< of frontalis, corrugators and procerus
+  double galea_thickness = 1e-3;       ///< of the tendon sheet
+};
+
+/// Parts: `skin`, `skull` (both face outwards; open sheets), `rim` (joins the edges of skin and bone) and its pieces
+/// `rim_upper`, `rim_lower`, `rim_lateral`; `tissue` (closed: skin, rim and the bone below them); the muscles
+/// `frontalis_left`, `frontalis_right`, `corrugator_left`, `corrugator_right`, `procerus` and the tendon sheet `galea`
+/// (closed, following the curvature).
+const std::vector<std::string>& forehead_parts();
+
+/// Names of the dimensions that a scene may set.
+std::vector<std::string> forehead_dimension_names();
+
+/// Triangles of one part. Throws Error on an unknown part or dimension, listing those that exist, and on dimensions
+/// that make no forehead.
+TriangleMesh make_forehead(const Shape& shape);
+
+}  // namespace frontalis

@@ -1,0 +1,107 @@
+#include "frontalis/bake/bake.hpp"
+
+#include "bind_points.hpp"
+#include "frontalis/error.hpp"
+#include "local_frame.hpp"
+#include "restricted_nodes.hpp"
+#include "surface.hpp"
+#include "volumes.hpp"
+#include "voxelise.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace frontalis
+{
+namespace
+{
+
+/// Refuses volumes without a point in the tissue and says how much of each muscle was clipped.
+void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, Stages& stages)
+{
+  for (std::size_t v = 0; v < volumes.entries().size(); ++v)
+  {
+    const Volumes::Entry& entry = volumes.entries()[v];
+    const double size = voxels.volume_size.empty() ? 0 : voxels.volume_size[v];
+    if (size <= 0)
+    {
+      if (entry.volume->tissue)
+        throw Error(
+            volumes.place(*entry.volume) +
+            ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; check "
+            "these, the units and the voxel size");
+      const std::string what = entry.muscle >= 0
+                                   ? "muscle '" + scene.muscles[static_cast<std::size_t>(entry.muscle)].name +
+                                         "' lies wholly outside the tissue"
+                                   : "no point of it lies in the tissue";
+      throw Error(volumes.place(*entry.volume) + ": " + what +
+                  ", or is thinner than the samples can see; check its surfaces, its crop and the voxel size");
+    }
+    if (entry.muscle < 0 || entry.volume->closed_by.size() > 0 || entry.inside.empty())
+      continue;
+    double whole = 0;
+    bool closed = true;
+    for (const int s : entry.inside)
+    {
+      const PreparedSurface& surface = *volumes.solids()[static_cast<std::size_t>(s)].surface;
+      whole += signed_volume(surface.mesh());
+      closed = closed && surface.closed();
+    }
+    char text[256];
+    std::snprintf(text, sizeof(text), "muscle '%s': %.4g cm3 in the tissue, %.4g cm3 by its surface (%.0f %% clipped)",
+                  scene.muscles[static_cast<std::size_t>(entry.muscle)].name.c_str(), 1e6 * size, 1e6 * whole,
+                  100 * std::max(0.0, 1 - size / whole));
+    stages.found(closed ? text : std::string(text) + "; the surface is open");
+  }
+}
+
+}  // namespace
+
+Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
+{
+  if (report != nullptr)
+    *report = {};
+  Stages stages(report, progress);
+  if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
+    throw Error(scene.file + ": accuracy: samples is " + std::to_string(scene.accuracy.samples) +
+                "; 1 to 32 are meant");
+
+  stages.begin("surfaces");
+  const auto surfaces = prepare_surfaces(scene, stages);
+  const Vector3& edges = scene.accuracy.voxel;
+  const double sample_spacing = std::min({ edges[0], edges[1], edges[2] }) / scene.accuracy.samples;
+  const Volumes volumes(scene, surfaces, sample_spacing);
+  const Grid grid = make_grid(volumes.tissue_box(), edges, scene.file);
+
+  stages.begin("voxels");
+  Model model;
+  LocalFrame frame;
+  {
+    const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min, stages);
+    check_volumes(scene, volumes, voxels, stages);
+    if (voxels.place.empty())
+      throw Error(scene.file +
+                  ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: take smaller "
+                  "ones, or a smaller fill_min");
+    frame = assemble_voxels(scene, grid, voxels, model);
+  }
+  copy_settings(scene, frame, model);
+  build_nodes(model);
+
+  stages.begin("constraints");
+  restrict_nodes(scene, surfaces, frame, model, stages);
+  remove_islands(model, stages);
+
+  stages.begin("layers");
+  add_thin_layers(volumes, frame, model, stages);
+
+  stages.begin("skin");
+  bind_surfaces(scene, surfaces, frame, model, stages);
+
+  stages.begin("check");
+  check_model(model);
+  stages.finish();
+  return model;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,222 @@
+#include "bind_points.hpp"
+
+#include "frontalis/error.hpp"
+#include "parallel.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr std::size_t grain = 1024;
+constexpr double farthest_landmark = 20e-3;
+
+struct BoundMesh
+{
+  TriangleMesh mesh;
+  Binding binding;
+  std::size_t cropped = 0;  ///< triangles outside the crop
+  std::size_t too_far = 0;  ///< triangles inside it with a vertex too far from every voxel
+};
+
+BoundMesh bind_mesh(const TriangleMesh& surface, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
+                    Stages& stages)
+{
+  const std::size_t count = surface.vertices.size();
+  std::vector<std::int32_t> voxel(count, -1);
+  std::vector<std::array<float, 3>> coordinates(count);
+  std::vector<std::uint8_t> inside(count, 0);
+  parallel_ranges(
+      count, grain,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t v = begin; v < end; ++v)
+        {
+          inside[v] = contains(crop, surface.vertices[v]) ? 1 : 0;
+          if (inside[v] != 0 && !binder.bind(frame.to_local(surface.vertices[v]), voxel[v], coordinates[v]))
+            voxel[v] = -1;
+        }
+      },
+      &stages);
+
+  BoundMesh bound;
+  std::vector<bool> keep(surface.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t)
+  {
+    bool in = true, near = true;
+    for (const std::int32_t v : surface.triangles[t])
+    {
+      in = in && inside[static_cast<std::size_t>(v)] != 0;
+      near = near && voxel[static_cast<std::size_t>(v)] >= 0;
+    }
+    keep[t] = in && near;
+    bound.cropped += in ? 0 : 1;
+    bound.too_far += in && !near ? 1 : 0;
+  }
+  std::vector<std::int32_t> vertex_of;
+  bound.mesh = frame.to_local(keep_triangles(surface, keep, &vertex_of));
+  for (const std::int32_t v : vertex_of)
+  {
+    bound.binding.voxel.push_back(voxel[static_cast<std::size_t>(v)]);
+    bound.binding.coordinates.push_back(coordinates[static_cast<std::size_t>(v)]);
+  }
+  return bound;
+}
+
+const PreparedSurface& find(const std::vector<std::unique_ptr<PreparedSurface>>& surfaces, const std::string& name,
+                            const std::string& place)
+{
+  for (const auto& surface : surfaces)
+  {
+    if (surface->name() == name)
+      return *surface;
+  }
+  throw Error(place + ": there is no surface '" + name + "'");
+}
+
+std::string millimetres(double length)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g mm", 1e3 * length);
+  return text;
+}
+
+void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
+{
+  const TriangleTree tree(model.skin);
+  for (const SceneLandmark& landmark : scene.landmarks)
+  {
+    const std::string place = scene.file + ":" + std::to_string(landmark.line) + ": landmark '" + landmark.name + "'";
+    const ClosestPoint closest = tree.closest(frame.to_local(landmark.position));
+    if (closest.triangle < 0)
+      throw Error(place + ": there is no published skin that it could lie on");
+    if (closest.distance > farthest_landmark)
+      throw Error(place + ": lies " + millimetres(closest.distance) + " from the published skin; at most " +
+                  millimetres(farthest_landmark) + " are allowed: check its coordinates and the skin's crop");
+    std::int32_t voxel = -1;
+    std::array<float, 3> coordinates{};
+    if (!binder.bind(closest.point, voxel, coordinates))
+      throw Error(place + ": no voxel is near enough to carry it; raise the skin's 'extrapolation'");
+    model.landmarks.push_back(landmark.name);
+    model.landmark_positions.push_back(closest.point);
+    model.landmark_binding.voxel.push_back(voxel);
+    model.landmark_binding.coordinates.push_back(coordinates);
+  }
+}
+
+}  // namespace
+
+PointBinder::PointBinder(const Model& model, double extrapolation)
+    : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
+{
+}
+
+bool PointBinder::bind(const Vector3& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
+{
+  std::array<std::int32_t, 3> cell{};
+  for (std::size_t a = 0; a < 3; ++a)
+    cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
+  voxel = index_.find(cell);
+  if (voxel < 0)
+  {
+    // rings of cells around it, until no nearer voxel can come
+    const double edge = std::min({ model_.spacing[0], model_.spacing[1], model_.spacing[2] });
+    const auto rings = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
+    double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
+    for (std::int32_t ring = 1; ring <= rings && (ring - 1) * edge * (ring - 1) * edge <= best; ++ring)
+    {
+      for (std::int32_t k = -ring; k <= ring; ++k)
+      {
+        for (std::int32_t j = -ring; j <= ring; ++j)
+        {
+          const bool whole = std::abs(k) == ring || std::abs(j) == ring;
+          for (std::int32_t i = -ring; i <= ring; i += whole ? 1 : 2 * ring)
+          {
+            const std::array<std::int32_t, 3> place{ { cell[0] + i, cell[1] + j, cell[2] + k } };
+            const std::int32_t candidate = index_.find(place);
+            if (candidate < 0)
+              continue;
+            Box box;
+            for (std::size_t a = 0; a < 3; ++a)
+            {
+              box.lower[a] = place[a] * model_.spacing[a];
+              box.upper[a] = (place[a] + 1) * model_.spacing[a];
+            }
+            const double squared = box.squared_distance(local);
+            if (squared < best || (squared == best && (voxel < 0 || candidate < voxel)))
+            {
+              best = squared;
+              voxel = candidate;
+            }
+          }
+        }
+      }
+    }
+  }
+  if (voxel < 0)
+    return false;
+  for (std::size_t a = 0; a < 3; ++a)
+    coordinates[a] =
+        static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[static_cast<std::size_t>(voxel)][a]);
+  return true;
+}
+
+void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
+                   const LocalFrame& frame, Model& model, Stages& stages)
+{
+  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
+  const double extrapolation = scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+  const PointBinder binder(model, extrapolation);
+
+  if (!scene.skin.surface.empty())
+  {
+    const PreparedSurface& skin = find(surfaces, scene.skin.surface, scene.file + ": skin");
+    BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, stages);
+    if (bound.mesh.triangles.empty())
+      throw Error(scene.file + ": skin: no triangle of surface '" + scene.skin.surface +
+                  "' lies in the crop and within " + millimetres(extrapolation) +
+                  " of the tissue; check its crop and the tissue volumes");
+    if (bound.too_far > 0)
+      stages.found("skin: " + std::to_string(bound.too_far) + " of " +
+                   std::to_string(skin.mesh().triangles.size() - bound.cropped) +
+                   " triangles in the crop left out, farther than " + millimetres(extrapolation) + " from the tissue");
+    model.skin = std::move(bound.mesh);
+    model.skin_binding = std::move(bound.binding);
+  }
+  bind_landmarks(scene, frame, binder, model);
+
+  for (const SceneLoad& load : scene.loads)
+  {
+    Load out;
+    out.name = load.name;
+    out.ramp = load.ramp;
+    out.value = frame.turn(load.value);
+    if (load.kind == SceneLoad::Kind::displacement)
+    {
+      out.kind = Load::Kind::displacement;
+      out.fixed = frame.turn(load.fixed);
+    }
+    else
+    {
+      const std::string place = scene.file + ":" + std::to_string(load.line) + ": load '" + load.name + "'";
+      BoundMesh bound = bind_mesh(find(surfaces, load.surface, place).mesh(), load.crop, frame, binder, stages);
+      if (bound.mesh.triangles.empty())
+        throw Error(place + ": no triangle of surface '" + load.surface + "' lies in its crop and within " +
+                    millimetres(extrapolation) + " of the tissue");
+      if (bound.too_far > 0)
+        stages.found("load '" + load.name + "': " + std::to_string(bound.too_far) +
+                     " triangles left out, too far from the tissue");
+      out.kind = load.kind == SceneLoad::Kind::pressure ? Load::Kind::pressure : Load::Kind::traction;
+      if (out.kind == Load::Kind::pressure)
+        out.value = load.value;
+      out.mesh = std::move(bound.mesh);
+      out.binding = std::move(bound.binding);
+    }
+    model.loads.push_back(std::move(out));
+  }
+}
+
+}  // namespace frontalis

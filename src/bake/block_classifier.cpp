@@ -1,0 +1,354 @@
+#include "block_classifier.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double deep = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min)
+    : volumes_(volumes),
+      grid_(grid),
+      fill_min_(fill_min),
+      voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
+      reach_(0.5 * norm(grid.spacing)),
+      crossings_(volumes.solids().size()),
+      gathered_(volumes.solids().size()),
+      centre_distance_(volumes.depths().size()),
+      solid_here_(volumes.solids().size()),
+      depth_here_(volumes.depths().size())
+{
+  // R3 sequence: steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
+  const Vector3 step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
+  for (int s = 0; s < samples * samples * samples; ++s)
+    offsets_.push_back(
+        { std::fmod(0.5 + s * step[0], 1.0), std::fmod(0.5 + s * step[1], 1.0), std::fmod(0.5 + s * step[2], 1.0) });
+  voxels_.volume_size.assign(volumes.entries().size(), 0);
+  volume_share_.assign(volumes.entries().size(), 0);
+  int materials = 0, muscles = 0;
+  for (const Volumes::Entry& entry : volumes.entries())
+  {
+    materials = std::max(materials, entry.material + 1);
+    muscles = std::max(muscles, entry.muscle + 1);
+    for (const Volumes::Band& band : entry.bands)
+      materials = std::max(materials, band.material + 1);
+  }
+  material_share_.assign(static_cast<std::size_t>(materials), 0);
+  muscle_share_.assign(static_cast<std::size_t>(muscles), 0);
+}
+
+void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end)
+{
+  BlockState state;
+  state.solid.assign(volumes_.solids().size(), Answer::unknown);
+  state.depth.resize(volumes_.depths().size());
+  state.volume.assign(volumes_.entries().size(), Answer::unknown);
+  visit(begin, end, state);
+}
+
+void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end,
+                            BlockState state)
+{
+  Box box;
+  bool single = true;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    box.lower[a] = grid_.lower[a] + begin[a] * grid_.spacing[a];
+    box.upper[a] = grid_.lower[a] + end[a] * grid_.spacing[a];
+    single = single && end[a] - begin[a] == 1;
+  }
+  const bool known = settle(box, state);
+  bool tissue = false;
+  for (std::size_t v = 0; v < state.volume.size(); ++v)
+    tissue = tissue || (volumes_.entries()[v].volume->tissue && state.volume[v] != Answer::no);
+  if (!tissue)
+    return;
+
+  if (known)
+  {
+    std::fill(material_share_.begin(), material_share_.end(), 0);
+    std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
+    std::vector<double> depth;
+    for (const auto& interval : state.depth)
+      depth.push_back(interval.depth);
+    count(state.volume, depth, 1);
+    double voxels = 0;
+    for (std::int32_t k = begin[2]; k < end[2]; ++k)
+      for (std::int32_t j = begin[1]; j < end[1]; ++j)
+        for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
+          emit({ i, j, k }, 1);
+    for (std::size_t v = 0; v < state.volume.size(); ++v)
+    {
+      if (state.volume[v] == Answer::yes)
+        voxels_.volume_size[v] += voxels * voxel_volume_;
+    }
+    return;
+  }
+  if (single)
+  {
+    sample(box, state);
+    double fill = 0;
+    for (const double share : material_share_)
+      fill += share;
+    for (std::size_t v = 0; v < volume_share_.size(); ++v)
+      voxels_.volume_size[v] += volume_share_[v] * voxel_volume_;
+    if (fill > 0 && fill >= fill_min_)
+      emit(begin, fill);
+    return;
+  }
+
+  // halves along each side that is longer than a voxel
+  std::array<std::int32_t, 3> middle{};
+  for (std::size_t a = 0; a < 3; ++a)
+    middle[a] = begin[a] + (end[a] - begin[a] + 1) / 2;
+  for (int part = 0; part < 8; ++part)
+  {
+    std::array<std::int32_t, 3> from{}, to{};
+    bool empty = false;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const bool upper = (part >> a & 1) != 0;
+      from[a] = upper ? middle[a] : begin[a];
+      to[a] = upper ? end[a] : middle[a];
+      empty = empty || from[a] >= to[a];
+    }
+    if (!empty)
+      visit(from, to, state);
+  }
+}
+
+bool BlockClassifier::settle(const Box& box, BlockState& state)
+{
+  // tissue first: where there is none, nothing else is asked
+  const auto ask = [&](std::size_t v)
+  {
+    if (state.volume[v] != Answer::unknown)
+      return;
+    const Volumes::Entry& entry = volumes_.entries()[v];
+    state.volume[v] = volume_answer(entry, box, state);
+    const auto solid = [&](int s)
+    {
+      if (s >= 0 && state.volume[v] == Answer::unknown && state.solid[static_cast<std::size_t>(s)] == Answer::unknown)
+      {
+        settle_solid(static_cast<std::size_t>(s), box, state);
+        state.volume[v] = volume_answer(entry, box, state);
+      }
+    };
+    if (state.volume[v] == Answer::unknown && entry.within >= 0 &&
+        !state.depth[static_cast<std::size_t>(entry.within)].known)
+    {
+      settle_depth(static_cast<std::size_t>(entry.within), box, state);
+      state.volume[v] = volume_answer(entry, box, state);
+    }
+    solid(entry.closed_by);
+    for (const int s : entry.inside)
+      solid(s);
+    for (const int s : entry.outside)
+      solid(s);
+  };
+  bool tissue = false;
+  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  {
+    if (!volumes_.entries()[v].volume->tissue)
+      continue;
+    ask(v);
+    tissue = tissue || state.volume[v] != Answer::no;
+  }
+  if (!tissue)
+    return true;
+  bool known = true;
+  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  {
+    if (!volumes_.entries()[v].volume->tissue)
+      ask(v);
+    known = known && state.volume[v] != Answer::unknown;
+  }
+  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  {
+    if (state.volume[v] == Answer::no)
+      continue;
+    for (const Volumes::Band& band : volumes_.entries()[v].bands)
+    {
+      if (!state.depth[static_cast<std::size_t>(band.depth)].known)
+        settle_depth(static_cast<std::size_t>(band.depth), box, state);
+    }
+  }
+  return known && layers_known(state);
+}
+
+bool BlockClassifier::layers_known(const BlockState& state) const
+{
+  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  {
+    if (state.volume[v] == Answer::no)
+      continue;
+    for (const Volumes::Band& band : volumes_.entries()[v].bands)
+    {
+      if (!state.depth[static_cast<std::size_t>(band.depth)].known)
+        return false;
+    }
+  }
+  return true;
+}
+
+void BlockClassifier::settle_solid(std::size_t solid, const Box& box, BlockState& state) const
+{
+  const PreparedSurface& surface = *volumes_.solids()[solid].surface;
+  if (surface.closed() && !surface.box().overlaps(box))
+  {
+    state.solid[solid] = Answer::no;
+    return;
+  }
+  if (surface.tree().overlaps(box))
+    return;
+  const Vector3 centre = box.centre();
+  const double winding = surface.tree().winding_number(centre);
+  if (!surface.closed() &&
+      std::abs(winding - 0.5) <= surface.winding_variation(centre, norm(box.upper - centre)) + 0.01)
+    return;
+  state.solid[solid] = winding > 0.5 ? Answer::yes : Answer::no;
+}
+
+void BlockClassifier::settle_depth(std::size_t depth, const Box& box, BlockState& state) const
+{
+  const Volumes::Depth& field = volumes_.depths()[depth];
+  const Vector3 centre = box.centre();
+  const double radius = norm(box.upper - centre);
+  const double farthest = std::max(std::abs(field.thresholds.front()), std::abs(field.thresholds.back()));
+  const ClosestPoint closest = field.surface->tree().closest(centre, farthest + radius);
+  if (closest.triangle < 0)
+  {
+    state.depth[depth] = { true, deep };
+    return;
+  }
+  const double signed_depth = -field.surface->signed_distance(centre, closest);
+  double low = signed_depth - radius, high = signed_depth + radius;
+  // near the rim of an open surface the sign may change without passing through it
+  if (!field.surface->closed() && field.surface->rim_within(centre, closest.distance + 2 * radius))
+  {
+    high = closest.distance + radius;
+    low = -high;
+  }
+  for (const double threshold : field.thresholds)
+  {
+    if (threshold >= low && threshold <= high)
+      return;
+  }
+  state.depth[depth] = { true, signed_depth };
+}
+
+Answer BlockClassifier::volume_answer(const Volumes::Entry& entry, const Box& box, const BlockState& state) const
+{
+  bool unknown = false;
+  const auto solid = [&](int s) { return state.solid[static_cast<std::size_t>(s)]; };
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    const Region& crop = entry.volume->crop;
+    if (box.upper[a] <= crop.lower[a] || box.lower[a] >= crop.upper[a])
+      return Answer::no;
+    unknown = unknown || box.lower[a] < crop.lower[a] || box.upper[a] > crop.upper[a];
+  }
+  if (entry.closed_by >= 0)
+  {
+    if (solid(entry.closed_by) == Answer::no)
+      return Answer::no;
+    unknown = unknown || solid(entry.closed_by) == Answer::unknown;
+  }
+  if (!entry.inside.empty())
+  {
+    Answer any = Answer::no;
+    for (const int s : entry.inside)
+    {
+      if (solid(s) == Answer::yes)
+        any = Answer::yes;
+      else if (solid(s) == Answer::unknown && any == Answer::no)
+        any = Answer::unknown;
+    }
+    if (any == Answer::no)
+      return Answer::no;
+    unknown = unknown || any == Answer::unknown;
+  }
+  for (const int s : entry.outside)
+  {
+    if (solid(s) == Answer::yes)
+      return Answer::no;
+    unknown = unknown || solid(s) == Answer::unknown;
+  }
+  if (entry.within >= 0)
+  {
+    const BlockState::Interval& interval = state.depth[static_cast<std::size_t>(entry.within)];
+    if (interval.known && (interval.depth < entry.volume->depth_min || interval.depth > entry.volume->depth_max))
+      return Answer::no;
+    unknown = unknown || !interval.known;
+  }
+  return unknown ? Answer::unknown : Answer::yes;
+}
+
+void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
+{
+  // the highest priority among those that bring a material; equals share
+  int highest = std::numeric_limits<int>::min();
+  int sharers = 0;
+  for (std::size_t v = 0; v < inside.size(); ++v)
+  {
+    const Volumes::Entry& entry = volumes_.entries()[v];
+    if (inside[v] != Answer::yes)
+      continue;
+    if (entry.muscle >= 0)
+      muscle_share_[static_cast<std::size_t>(entry.muscle)] += share;
+    if (entry.material < 0 || entry.volume->priority < highest)
+      continue;
+    sharers = entry.volume->priority > highest ? 1 : sharers + 1;
+    highest = entry.volume->priority;
+  }
+  for (std::size_t v = 0; v < inside.size(); ++v)
+  {
+    const Volumes::Entry& entry = volumes_.entries()[v];
+    if (inside[v] != Answer::yes || entry.material < 0 || entry.volume->priority != highest)
+      continue;
+    int material = entry.material;
+    for (const Volumes::Band& band : entry.bands)
+    {
+      const double d = depth[static_cast<std::size_t>(band.depth)];
+      if (d >= band.from && d < band.to)
+      {
+        material = band.material;
+        break;
+      }
+    }
+    material_share_[static_cast<std::size_t>(material)] += share / sharers;
+  }
+}
+
+void BlockClassifier::emit(const std::array<std::int32_t, 3>& place, double fill)
+{
+  voxels_.place.push_back(place);
+  voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
+  for (std::size_t m = 0; m < material_share_.size(); ++m)
+  {
+    if (material_share_[m] <= 0)
+      continue;
+    voxels_.material.push_back(static_cast<std::int16_t>(m));
+    voxels_.proportion.push_back(static_cast<float>(material_share_[m] / fill));
+  }
+  voxels_.mixture_begin.push_back(static_cast<std::uint32_t>(voxels_.material.size()));
+  for (std::size_t m = 0; m < muscle_share_.size(); ++m)
+  {
+    if (muscle_share_[m] <= 0)
+      continue;
+    voxels_.muscle.push_back(static_cast<std::int16_t>(m));
+    voxels_.weight.push_back(static_cast<float>(std::min(1.0, muscle_share_[m] / fill)));
+  }
+  voxels_.muscle_begin.push_back(static_cast<std::uint32_t>(voxels_.muscle.size()));
+}
+
+}  // namespace frontalis

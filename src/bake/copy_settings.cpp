@@ -1,0 +1,141 @@
+#include "frontalis/error.hpp"
+#include "frontalis/scene/content_hash.hpp"
+#include "local_frame.hpp"
+
+#include <map>
+
+namespace frontalis
+{
+namespace
+{
+
+Material material_of(const Scene& scene, const SceneMaterial& material)
+{
+  const std::string place = scene.file + ":" + std::to_string(material.line) + ": material '" + material.name + "'";
+  if (material.law != "neo_hookean")
+    throw Error(place + ": law '" + material.law + "' is not known; there is neo_hookean");
+  const auto parameter = [&](const std::string& name)
+  {
+    const auto found = material.parameters.find(name);
+    if (found == material.parameters.end())
+      throw Error(place + ": has no '" + name + "'");
+    return found->second;
+  };
+  const double young = parameter("young"), poisson = parameter("poisson");
+  if (!(young > 0) || !(poisson > -1) || !(poisson < 0.5))
+    throw Error(place + ": young is " + std::to_string(young) + " Pa and poisson " + std::to_string(poisson) +
+                "; young above 0 and poisson in -1..0.5, without the ends, are meant");
+  if (!(material.density > 0))
+    throw Error(place + ": density is " + std::to_string(material.density) + " kg/m3; it must be above 0");
+  Material out;
+  out.name = material.name;
+  out.law = Law::neo_hookean;
+  // linear elasticity: shear modulus and bulk modulus
+  out.parameters[0] = young / (2 * (1 + poisson));
+  out.parameters[1] = young / (3 * (1 - 2 * poisson));
+  out.density = material.density;
+  return out;
+}
+
+/// Rows of the face frame: forward, left, up, in scene axes.
+std::array<Vector3, 3> face_axes(const Scene& scene)
+{
+  const Vector3 forward = normalised(scene.frame.forward);
+  const Vector3 up = normalised(scene.frame.up - dot(scene.frame.up, forward) * forward);
+  if (norm(forward) < 0.5 || norm(up) < 0.5)
+    throw Error(scene.file + ": frame: 'forward' and 'up' must have a length and must not be parallel");
+  return { forward, cross(up, forward), up };
+}
+
+void copy_presets(const Scene& scene, Model& model)
+{
+  std::map<std::string, std::int32_t> muscle;
+  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+    muscle[model.muscles[m].name] = static_cast<std::int32_t>(m);
+  std::map<std::string, std::int32_t> expression;
+  for (const auto& [name, activations] : scene.expressions)
+  {
+    Model::Expression preset;
+    preset.name = name;
+    for (const auto& [muscle_name, activation] : activations)
+    {
+      const auto found = muscle.find(muscle_name);
+      if (found == muscle.end())
+        throw Error(scene.file + ": expression '" + name + "': there is no muscle '" + muscle_name + "'");
+      preset.activation.emplace_back(found->second, static_cast<float>(activation));
+    }
+    expression[name] = static_cast<std::int32_t>(model.expressions.size());
+    model.expressions.push_back(preset);
+  }
+  for (const DemoPhase& phase : scene.demo)
+  {
+    const auto found = expression.find(phase.expression);
+    if (found == expression.end() && phase.expression != "relax")
+      throw Error(scene.file + ": demo: there is no expression '" + phase.expression + "'");
+    model.demo.push_back({ found == expression.end() ? -1 : found->second, phase.ramp, phase.seconds });
+  }
+}
+
+void copy_mass_scaling(const Scene& scene, Model& model)
+{
+  const MassScaling& from = scene.accuracy.mass_scaling;
+  model.mass_scaling.factor = from.factor;
+  switch (from.kind)
+  {
+    case MassScaling::Kind::none:
+      model.mass_scaling.kind = MassScalingSettings::Kind::none;
+      break;
+    case MassScaling::Kind::uniform:
+      model.mass_scaling.kind = MassScalingSettings::Kind::uniform;
+      break;
+    case MassScaling::Kind::selective:
+      model.mass_scaling.kind = MassScalingSettings::Kind::selective;
+      break;
+  }
+  for (const std::string& name : from.materials)
+  {
+    std::int32_t index = -1;
+    for (std::size_t m = 0; m < model.materials.size(); ++m)
+    {
+      if (model.materials[m].name == name)
+        index = static_cast<std::int32_t>(m);
+    }
+    if (index < 0)
+      throw Error(scene.file + ": mass_scaling: there is no material '" + name + "'");
+    model.mass_scaling.materials.push_back(index);
+  }
+}
+
+}  // namespace
+
+void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
+{
+  const auto axes = face_axes(scene);
+  model.to_scene.rotation.fill(0);
+  for (std::size_t local = 0; local < 3; ++local)
+    model.to_scene.rotation[3 * frame.scene_axis(local) + local] = 1;
+  model.to_scene.translation = frame.origin;
+  for (std::size_t row = 0; row < 3; ++row)
+  {
+    const Vector3 turned = frame.turn(axes[row]);
+    for (std::size_t column = 0; column < 3; ++column)
+      model.to_face.rotation[3 * row + column] = turned[column];
+    model.to_face.translation[row] = dot(axes[row], frame.origin - scene.frame.origin);
+  }
+  model.face_frame = scene.frame.id;
+  model.gravity = frame.turn(scene.gravity);
+
+  for (const SceneMuscle& muscle : scene.muscles)
+    model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length });
+  model.damping = scene.time.damping;
+  model.time_scaling = scene.time.scaling;
+  model.frame_rate = scene.time.frame_rate;
+  model.time_step_share = scene.accuracy.time_step_share;
+  for (const SceneMaterial& material : scene.materials)
+    model.materials.push_back(material_of(scene, material));
+  copy_mass_scaling(scene, model);
+  copy_presets(scene, model);
+  model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
+}
+
+}  // namespace frontalis

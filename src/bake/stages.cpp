@@ -1,0 +1,25 @@
+#include "stages.hpp"
+
+#include "frontalis/error.hpp"
+
+namespace frontalis
+{
+
+void Stages::advance(double done)
+{
+  if (progress_ && !progress_(name_, done))
+    throw Error("interrupted");
+}
+
+void Stages::finish()
+{
+  if (name_.empty())
+    return;
+  advance(1);
+  if (report_ != nullptr)
+    report_->stages.push_back(
+        { name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() });
+  name_.clear();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "surface_mesh.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Closest point of a surface.
+struct ClosestPoint
+{
+  Vector3 point{ 0, 0, 0 };
+  double distance = 0;
+  std::int32_t triangle = -1;  ///< -1: none within the bound
+  /// 0: the face; 1..3: the edge from corner feature - 1 to the next; 4..6: the corner feature - 4
+  std::int8_t feature = 0;
+};
+
+/// Bounding-volume hierarchy over a mesh's triangles: closest points, overlap with boxes, and the generalised winding
+/// number, evaluated hierarchically as in Barill et al., Fast winding numbers for soups and clouds, ACM Trans. Graph.
+/// 37(4):43, 2018: far groups of triangles by the Taylor series of the dipole potential about their area centroid (to
+/// the second derivative of the kernel), near triangles by their exact solid angles (van Oosterom & Strackee 1983).
+class TriangleTree
+{
+public:
+  explicit TriangleTree(const TriangleMesh& mesh);
+
+  const TriangleMesh& mesh() const { return *mesh_; }
+
+  /// The closest point within `bound` of p [m].
+  ClosestPoint closest(const Vector3& p, double bound = 1e300) const;
+
+  bool overlaps(const Box& box) const;
+  /// Appends the triangles that overlap the box, in ascending order.
+  void gather(const Box& box, std::vector<std::int32_t>& triangles) const;
+
+  /// 1 inside a closed outward-oriented surface, 0 outside; between them near the holes of an open one.
+  double winding_number(const Vector3& p) const;
+
+private:
+  struct Node
+  {
+    Box box;
+    std::int32_t begin = 0, end = 0;  ///< triangles in order_
+    std::int32_t right = 0;           ///< second child; the first is the next node; 0: leaf
+    // Taylor series of the winding number about the area centroid
+    Vector3 centre{ 0, 0, 0 };
+    double squared_reach = 0;
+    Vector3 dipole{ 0, 0, 0 };
+    std::array<double, 9> first{};    ///< sum of area normal i times offset j
+    std::array<double, 18> second{};  ///< sum of area normal i times offsets jk: xx, yy, zz, xy, yz, zx
+  };
+
+  std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3>& centroids);
+  void expand(Node& node) const;
+  static double far_field(const Node& node, const Vector3& p);
+  bool overlaps_triangle(std::int32_t triangle, const Box& box) const;
+  const Vector3& corner(std::int32_t triangle, std::size_t c) const
+  {
+    return mesh_->vertices[static_cast<std::size_t>(mesh_->triangles[static_cast<std::size_t>(triangle)][c])];
+  }
+
+  const TriangleMesh* mesh_;
+  std::vector<std::int32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+/// Solid angle of a triangle seen from p over 4 pi, positive where p sees its back.
+double winding_of_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c);
+
+}  // namespace frontalis

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Which voxel stands at (i,j,k): a sparse grid of blocks of 8^3.
+class VoxelIndex
+{
+public:
+  VoxelIndex(const std::vector<std::array<std::int32_t, 3>>& voxels, const std::array<std::int32_t, 3>& size)
+      : size_(size)
+  {
+    for (int a = 0; a < 3; ++a)
+      blocks_[a] = (size[a] + 7) / 8;
+    first_.assign(static_cast<std::size_t>(blocks_[0]) * static_cast<std::size_t>(blocks_[1]) *
+                      static_cast<std::size_t>(blocks_[2]),
+                  -1);
+    for (std::size_t e = 0; e < voxels.size(); ++e)
+    {
+      std::int32_t& first = first_[block(voxels[e])];
+      if (first < 0)
+      {
+        first = static_cast<std::int32_t>(number_.size() / 512);
+        number_.resize(number_.size() + 512, -1);
+      }
+      number_[static_cast<std::size_t>(first) * 512 + within(voxels[e])] = static_cast<std::int32_t>(e);
+    }
+  }
+
+  /// The voxel's number, -1 where there is none.
+  std::int32_t find(const std::array<std::int32_t, 3>& place) const
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      if (place[a] < 0 || place[a] >= size_[a])
+        return -1;
+    }
+    const std::int32_t first = first_[block(place)];
+    return first < 0 ? -1 : number_[static_cast<std::size_t>(first) * 512 + within(place)];
+  }
+
+private:
+  std::size_t block(const std::array<std::int32_t, 3>& p) const
+  {
+    return (static_cast<std::size_t>(p[2] / 8) * static_cast<std::size_t>(blocks_[1]) +
+            static_cast<std::size_t>(p[1] / 8)) *
+               static_cast<std::size_t>(blocks_[0]) +
+           static_cast<std::size_t>(p[0] / 8);
+  }
+  static std::size_t within(const std::array<std::int32_t, 3>& p)
+  {
+    return static_cast<std::size_t>((p[2] % 8 * 8 + p[1] % 8) * 8 + p[0] % 8);
+  }
+
+  std::array<std::int32_t, 3> size_;
+  std::array<std::int32_t, 3> blocks_{};
+  std::vector<std::int32_t> first_;
+  std::vector<std::int32_t> number_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,157 @@
+#include "block_classifier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+/// Sign of the volume of the tetrahedron (p, q, a, b); exactly opposite for (b, a), zero counted as a place on one
+/// side, so that a segment that meets a shared edge crosses exactly one of its triangles.
+bool left_of(const Vector3& direction, const Vector3& p, const Vector3& a, const Vector3& b, std::int32_t number_a,
+             std::int32_t number_b)
+{
+  const bool ordered = number_a < number_b;
+  const Vector3 first = (ordered ? a : b) - p, second = (ordered ? b : a) - p;
+  return (dot(direction, cross(first, second)) >= 0) == ordered;
+}
+
+/// Change of the winding number along the segment p -> q at a triangle: +1 inwards, -1 outwards, 0 no crossing.
+int crossing(const TriangleMesh& mesh, std::int32_t triangle, const Vector3& p, const Vector3& q)
+{
+  const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const Vector3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+  const Vector3& b = mesh.vertices[static_cast<std::size_t>(t[1])];
+  const Vector3& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+  const Vector3 normal = cross(b - a, c - a);
+  const bool p_above = dot(normal, p - a) > 0, q_above = dot(normal, q - a) > 0;
+  if (p_above == q_above)
+    return 0;
+  const Vector3 direction = q - p;
+  const bool ab = left_of(direction, p, a, b, t[0], t[1]);
+  const bool bc = left_of(direction, p, b, c, t[1], t[2]);
+  const bool ca = left_of(direction, p, c, a, t[2], t[0]);
+  if (ab != bc || bc != ca)
+    return 0;
+  return p_above ? 1 : -1;
+}
+
+}  // namespace
+
+void BlockClassifier::sample(const Box& box, const BlockState& state)
+{
+  std::fill(material_share_.begin(), material_share_.end(), 0);
+  std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
+  std::fill(volume_share_.begin(), volume_share_.end(), 0);
+  std::fill(gathered_.begin(), gathered_.end(), false);
+  std::fill(centre_distance_.begin(), centre_distance_.end(), -1);
+  // a little beside the centre: symmetric scenes have edges and corners there
+  base_ = box.centre() + Vector3{ 0.0131 * grid_.spacing[0], 0.0073 * grid_.spacing[1], -0.0113 * grid_.spacing[2] };
+
+  const double share = 1.0 / static_cast<double>(offsets_.size());
+  std::vector<Answer> inside(state.volume.size());
+  for (const Vector3& offset : offsets_)
+  {
+    Vector3 p{};
+    for (std::size_t a = 0; a < 3; ++a)
+      p[a] = box.lower[a] + offset[a] * grid_.spacing[a];
+    std::fill(solid_here_.begin(), solid_here_.end(), std::int8_t{ -1 });
+    std::fill(depth_here_.begin(), depth_here_.end(), std::numeric_limits<double>::quiet_NaN());
+
+    bool tissue = false;
+    for (std::size_t v = 0; v < inside.size(); ++v)
+    {
+      if (!volumes_.entries()[v].volume->tissue)
+        continue;
+      inside[v] = sample_volume(volumes_.entries()[v], p, state) ? Answer::yes : Answer::no;
+      tissue = tissue || inside[v] == Answer::yes;
+    }
+    if (!tissue)
+      continue;
+    for (std::size_t v = 0; v < inside.size(); ++v)
+    {
+      const Volumes::Entry& entry = volumes_.entries()[v];
+      if (!entry.volume->tissue)
+      {
+        inside[v] = state.volume[v];
+        if (inside[v] == Answer::unknown)
+          inside[v] = sample_volume(entry, p, state) ? Answer::yes : Answer::no;
+      }
+      if (inside[v] != Answer::yes)
+        continue;
+      volume_share_[v] += share;
+      for (const Volumes::Band& band : entry.bands)
+        sample_depth(static_cast<std::size_t>(band.depth), p, state);
+    }
+    count(inside, depth_here_, share);
+  }
+}
+
+bool BlockClassifier::sample_volume(const Volumes::Entry& entry, const Vector3& p, const BlockState& state)
+{
+  if (!contains(entry.volume->crop, p))
+    return false;
+  if (entry.closed_by >= 0 && !sample_solid(static_cast<std::size_t>(entry.closed_by), p, state))
+    return false;
+  if (!entry.inside.empty() && std::none_of(entry.inside.begin(), entry.inside.end(),
+                                            [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); }))
+    return false;
+  if (entry.within >= 0)
+  {
+    const double depth = sample_depth(static_cast<std::size_t>(entry.within), p, state);
+    if (depth < entry.volume->depth_min || depth > entry.volume->depth_max)
+      return false;
+  }
+  return std::none_of(entry.outside.begin(), entry.outside.end(),
+                      [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); });
+}
+
+bool BlockClassifier::sample_solid(std::size_t solid, const Vector3& p, const BlockState& state)
+{
+  if (state.solid[solid] != Answer::unknown)
+    return state.solid[solid] == Answer::yes;
+  std::int8_t& here = solid_here_[solid];
+  if (here >= 0)
+    return here != 0;
+  const PreparedSurface& surface = *volumes_.solids()[solid].surface;
+  Crossing& known = crossings_[solid];
+  if (!gathered_[solid])
+  {
+    // the winding number at one point of the voxel; elsewhere it differs by the triangles between
+    Box box;
+    box.include(base_ - 0.52 * grid_.spacing);
+    box.include(base_ + 0.52 * grid_.spacing);
+    known.triangles.clear();
+    surface.tree().gather(box, known.triangles);
+    known.winding = surface.tree().winding_number(base_);
+    known.variation = surface.closed() ? 0 : surface.winding_variation(base_, 1.1 * reach_);
+    gathered_[solid] = true;
+  }
+  double winding = known.winding;
+  for (const std::int32_t triangle : known.triangles)
+    winding += crossing(surface.mesh(), triangle, base_, p);
+  if (std::abs(winding - 0.5) <= known.variation)
+    winding = surface.tree().winding_number(p);
+  here = winding > 0.5 ? 1 : 0;
+  return here != 0;
+}
+
+double BlockClassifier::sample_depth(std::size_t depth, const Vector3& p, const BlockState& state)
+{
+  double& here = depth_here_[depth];
+  if (!std::isnan(here))
+    return here;
+  if (state.depth[depth].known)
+    return here = state.depth[depth].depth;
+  const Volumes::Depth& field = volumes_.depths()[depth];
+  double& centre = centre_distance_[depth];
+  if (centre < 0)
+    centre = field.surface->tree().closest(base_).distance;
+  const ClosestPoint closest = field.surface->tree().closest(p, (centre + norm(p - base_)) * (1 + 1e-9) + 1e-12);
+  return here = -field.surface->signed_distance(p, closest);
+}
+
+}  // namespace frontalis
