@@ -25,6 +25,8 @@ struct Number<xsimd::batch<float, Architecture>>
   static FRONTALIS_LAW Batch min(const Batch& a, const Batch& b) { return xsimd::min(a, b); }
   static FRONTALIS_LAW Batch sqrt(const Batch& a) { return xsimd::sqrt(a); }
   static FRONTALIS_LAW Batch exp(const Batch& a) { return xsimd::exp(a); }
+  static FRONTALIS_LAW Batch log(const Batch& a) { return xsimd::log(a); }
+  static constexpr bool is_double = false;
 
   /// First guess from the exponent (3.4 % off), then two cubically convergent corrections: 1 ulp or two.
   static FRONTALIS_LAW Batch inverse_cube_root(const Batch& a)

@@ -29,6 +29,8 @@ struct Number
   static FRONTALIS_LAW T min(T a, T b) { return a < b ? a : b; }
   static FRONTALIS_LAW T sqrt(T a) { return static_cast<T>(::sqrt(static_cast<double>(a))); }
   static FRONTALIS_LAW T exp(T a) { return static_cast<T>(::exp(static_cast<double>(a))); }
+  static FRONTALIS_LAW T log(T a) { return static_cast<T>(::log(static_cast<double>(a))); }
+  static constexpr bool is_double = sizeof(T) == sizeof(double);
   /// a^(-1/3) for a > 0.
   static FRONTALIS_LAW T inverse_cube_root(T a) { return static_cast<T>(1.0 / ::cbrt(static_cast<double>(a))); }
 };
@@ -43,6 +45,8 @@ struct Number<float>
   static FRONTALIS_LAW float min(float a, float b) { return fminf(a, b); }
   static FRONTALIS_LAW float sqrt(float a) { return sqrtf(a); }
   static FRONTALIS_LAW float exp(float a) { return expf(a); }
+  static FRONTALIS_LAW float log(float a) { return logf(a); }
+  static constexpr bool is_double = false;
   static FRONTALIS_LAW float inverse_cube_root(float a)
   {
 #if defined(__CUDA_ARCH__)

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "frontalis/physics/isochoric.hpp"
+#include "frontalis/physics/voxel_element.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Isochoric Mooney-Rivlin solid: psi = c1 (g I1 - 3) + c2 (g^2 I2 - 3), g = J^(-2/3) (Bonet & Wood, 6.5), continued
+/// below a small J with g. Shear modulus at rest 2 (c1 + c2).
+template <class T>
+struct MooneyRivlin
+{
+  T c1;  ///< [Pa]
+  T c2;  ///< [Pa]
+};
+
+/// F^T F.
+template <class T>
+FRONTALIS_LAW Matrix3<T> right_cauchy_green(const Matrix3<T>& F)
+{
+  Matrix3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      C.a[i][j] = F.a[0][i] * F.a[0][j] + F.a[1][i] * F.a[1][j] + F.a[2][i] * F.a[2][j];
+  return C;
+}
+
+/// Second invariant of C, (I1^2 - tr C^2) / 2.
+template <class T>
+FRONTALIS_LAW T second_invariant(const Matrix3<T>& C)
+{
+  return C.a[0][0] * C.a[1][1] + C.a[1][1] * C.a[2][2] + C.a[2][2] * C.a[0][0] - C.a[0][1] * C.a[0][1] -
+         C.a[1][2] * C.a[1][2] - C.a[2][0] * C.a[2][0];
+}
+
+/// Adds the first Piola-Kirchhoff stress [Pa] to P.
+template <class T>
+FRONTALIS_LAW void add_stress(const MooneyRivlin<T>& material, const Kinematics<T>& k, Matrix3<T>& P)
+{
+  using N = Number<T>;
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const Matrix3<T> C = right_cauchy_green(k.F);
+  const T twice = N::of(2) * material.c2 * g.value;
+  const T on_gradient = N::of(2) * material.c1 * g.value + twice * g.value * k.I1;
+  const T on_product = twice * g.value;
+  const T on_cofactor = g.slope * (material.c1 * k.I1 + twice * second_invariant(C));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = P.a[i][j] + on_gradient * k.F.a[i][j] + on_cofactor * k.cofactor.a[i][j] -
+                  on_product * (k.F.a[i][0] * C.a[0][j] + k.F.a[i][1] * C.a[1][j] + k.F.a[i][2] * C.a[2][j]);
+}
+
+/// Strain energy a volume at rest [J/m3].
+template <class T>
+FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  return material.c1 * (g * k.I1 - N::of(3)) +
+         material.c2 * (g * g * second_invariant(right_cauchy_green(k.F)) - N::of(3));
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "frontalis/physics/mooney_rivlin.hpp"
+#include "frontalis/physics/symmetric_eigen.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Isochoric Ogden solid of two terms: psi = sum_p mu_p / alpha_p (sum_a (g c_a)^(alpha_p / 2) - 3), c_a the
+/// eigenvalues of C and g = J^(-2/3) (Ogden 1972). Shear modulus at rest 1/2 sum mu_p alpha_p. Below a small J, C gets
+/// a multiple of the identity that grows as J falls (C1), so that no power of a vanishing stretch is taken.
+template <class T>
+struct Ogden
+{
+  T mu[2];     ///< [Pa]
+  T alpha[2];  ///< exponent, not 0 [-]
+};
+
+/// What is added to C below the continuation: value and derivative with respect to J.
+template <class T>
+FRONTALIS_LAW IsochoricScale<T> eigenvalue_shift(T J)
+{
+  using N = Number<T>;
+  const double j0 = continuation_jacobian;
+  const T below = N::max(N::of(1) - J * N::of(1 / j0), N::of(0));
+  return { N::of(j0 * j0) * below * below, N::of(-2 * j0) * below };
+}
+
+/// Adds the first Piola-Kirchhoff stress [Pa] to P.
+template <class T>
+FRONTALIS_LAW void add_stress(const Ogden<T>& material, const Kinematics<T>& k, Matrix3<T>& P)
+{
+  using N = Number<T>;
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const IsochoricScale<T> shift = eigenvalue_shift(k.J);
+  const SymmetricEigen<T> eigen = symmetric_eigen(right_cauchy_green(k.F));
+  T slope[3];  // 2 d psi / d c_a
+  T on_g = N::of(0), trace = N::of(0);
+  for (int a = 0; a < 3; ++a)
+  {
+    const T c = N::max(eigen.value[a] + shift.value, N::of(1e-6));
+    const T logarithm = N::log(g.value * c);
+    T sum = N::of(0);
+    for (int p = 0; p < 2; ++p)
+      sum = sum + material.mu[p] * N::exp(N::of(0.5) * material.alpha[p] * logarithm);
+    slope[a] = sum / c;
+    trace = trace + slope[a];
+    on_g = on_g + sum;
+  }
+  const T on_cofactor = N::of(0.5) * (on_g / g.value * g.slope + trace * shift.slope);
+  Matrix3<T> S;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      S.a[i][j] = slope[0] * eigen.vector.a[i][0] * eigen.vector.a[j][0] +
+                  slope[1] * eigen.vector.a[i][1] * eigen.vector.a[j][1] +
+                  slope[2] * eigen.vector.a[i][2] * eigen.vector.a[j][2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = P.a[i][j] + on_cofactor * k.cofactor.a[i][j] + k.F.a[i][0] * S.a[0][j] + k.F.a[i][1] * S.a[1][j] +
+                  k.F.a[i][2] * S.a[2][j];
+}
+
+/// Strain energy a volume at rest [J/m3].
+template <class T>
+FRONTALIS_LAW T energy(const Ogden<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  const SymmetricEigen<T> eigen = symmetric_eigen(right_cauchy_green(k.F));
+  const T shift = eigenvalue_shift(k.J).value;
+  T sum = N::of(0);
+  for (int p = 0; p < 2; ++p)
+  {
+    T powers = N::of(-3);
+    for (int a = 0; a < 3; ++a)
+    {
+      const T c = N::max(eigen.value[a] + shift, N::of(1e-6));
+      powers = powers + N::exp(N::of(0.5) * material.alpha[p] * N::log(g * c));
+    }
+    sum = sum + material.mu[p] / material.alpha[p] * powers;
+  }
+  return sum;
+}
+
+}  // namespace physics
+}  // namespace frontalis
