@@ -1,0 +1,124 @@
+#pragma once
+
+#include "frontalis/physics/closest_point.hpp"
+
+#include <cstdint>
+
+namespace frontalis
+{
+
+/// Exact closest points over the arrays of a SurfaceTree, with the pseudonormal of the face, edge or corner found
+/// (Baerentzen & Aanaes 2005), which tells the side. Plain pointers: the same search runs on host and GPU.
+struct SurfaceSearch
+{
+  using Point = physics::Vec3<double>;
+
+  struct Box
+  {
+    float lower[3];
+    float upper[3];
+    std::int32_t first = 0;  ///< inner: right child (the left one follows); leaf: first triangle
+    std::int32_t count = 0;  ///< triangles of a leaf; 0: inner
+  };
+  struct Triangle
+  {
+    Point corner[3];
+    Point face_normal;
+    Point edge_normal[3];    ///< of edges 01, 12, 20
+    Point vertex_normal[3];  ///< angle-weighted
+    std::int32_t index;      ///< in the mesh
+  };
+  struct Closest
+  {
+    Point point;
+    Point normal;  ///< unit pseudonormal there
+    double squared_distance;
+    std::int32_t triangle;
+  };
+
+  const Box* boxes;
+  const Triangle* triangles;
+  std::int32_t box_count;
+
+  static FRONTALIS_LAW double squared_distance(const Box& box, const Point& p)
+  {
+    using N = physics::Number<double>;
+    const double x[3] = { p.x, p.y, p.z };
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double d = N::max(N::max(box.lower[axis] - x[axis], x[axis] - box.upper[axis]), 0.0);
+      sum += d * d;
+    }
+    return sum;
+  }
+
+  static FRONTALIS_LAW Point pseudonormal(const Triangle& triangle, const Point& at)
+  {
+    // barycentric coordinates say whether the point lies on the face, an edge or a corner
+    const Point& a = triangle.corner[0];
+    const Point ab = triangle.corner[1] - a, ac = triangle.corner[2] - a, ap = at - a;
+    const double d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
+    const double determinant = d00 * d11 - d01 * d01;
+    if (!(determinant > 0))
+      return triangle.vertex_normal[0];
+    double weight[3];
+    weight[1] = (d11 * d20 - d01 * d21) / determinant;
+    weight[2] = (d00 * d21 - d01 * d20) / determinant;
+    weight[0] = 1 - weight[1] - weight[2];
+    constexpr double on_boundary = 1e-7;
+    for (int c = 0; c < 3; ++c)
+      if (weight[c] > 1 - on_boundary)
+        return triangle.vertex_normal[c];
+    for (int c = 0; c < 3; ++c)
+      if (weight[(c + 2) % 3] < on_boundary)
+        return triangle.edge_normal[c];
+    return triangle.face_normal;
+  }
+
+  /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
+  FRONTALIS_LAW Closest closest(const Point& p, double within) const
+  {
+    Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, -1 };
+    std::int32_t found = -1;
+    std::int32_t stack[64];
+    int depth = 0;
+    if (box_count > 0)
+      stack[depth++] = 0;
+    while (depth > 0)
+    {
+      const std::int32_t self = stack[--depth];
+      const Box box = boxes[self];
+      if (squared_distance(box, p) > best.squared_distance)
+        continue;
+      for (std::int32_t t = box.first; t < box.first + box.count; ++t)
+      {
+        const Triangle& triangle = triangles[t];
+        const Point c = physics::closest_point(p, triangle.corner[0], triangle.corner[1], triangle.corner[2]);
+        const Point d = p - c;
+        const double squared = dot(d, d);
+        if (squared < best.squared_distance || (found < 0 && squared <= best.squared_distance))
+        {
+          best.squared_distance = squared;
+          best.point = c;
+          found = t;
+        }
+      }
+      if (box.count == 0)
+      {
+        const std::int32_t left = self + 1, right = box.first;
+        const bool left_first = squared_distance(boxes[left], p) < squared_distance(boxes[right], p);
+        stack[depth++] = left_first ? right : left;
+        stack[depth++] = left_first ? left : right;
+      }
+    }
+    if (found >= 0)
+    {
+      best.triangle = triangles[found].index;
+      best.normal = pseudonormal(triangles[found], best.point);
+    }
+    return best;
+  }
+};
+
+}  // namespace frontalis
