@@ -1,0 +1,38 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// The model's demo as a function of simulated time, repeated for ever: each phase ramps linearly from the expression
+/// before to its own, then holds it. The first round starts relaxed. A ramp longer than its phase is cut to the phase.
+class DemoPlayer
+{
+public:
+  explicit DemoPlayer(const Model& model);
+
+  /// True where the model has no demo.
+  bool empty() const { return phases_.empty(); }
+  /// Length of one round [s].
+  double period() const { return period_; }
+  /// Activation of every muscle, 0..1, at a simulated time [s]; times below 0 count as 0.
+  std::map<std::string, double> activation(double time) const;
+
+private:
+  struct Phase
+  {
+    std::vector<double> target;  ///< activation of every muscle
+    double begin = 0;            ///< [s] after the start of the round
+    double ramp = 0;             ///< [s]
+  };
+  std::vector<std::string> muscles_;
+  std::vector<Phase> phases_;
+  double period_ = 0;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,21 @@
+#include "frontalis/ros/face_node.hpp"
+
+#include <ros/ros.h>
+
+#include <nodelet/nodelet.h>
+#include <pluginlib/class_list_macros.hpp>
+
+namespace frontalis
+{
+
+/// frontalis/face: the face in a nodelet manager.
+class FaceNodelet : public nodelet::Nodelet
+{
+  void onInit() override { face_ = std::make_unique<FaceNode>(getMTNodeHandle(), getMTPrivateNodeHandle(), getName()); }
+
+  std::unique_ptr<FaceNode> face_;
+};
+
+}  // namespace frontalis
+
+PLUGINLIB_EXPORT_CLASS(frontalis::FaceNodelet, nodelet::Nodelet)

@@ -1,0 +1,93 @@
+#include "frontalis/ros/shading.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+namespace
+{
+
+using Vector = std::array<float, 3>;
+
+float dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector unit(const Vector& a)
+{
+  const float length = std::sqrt(dot(a, a));
+  return { { a[0] / length, a[1] / length, a[2] / length } };
+}
+
+/// Lambert's cosine wrapped around the terminator by w, as light scattered below the skin does.
+float wrapped(float cosine, float w) { return std::max(0.0f, (cosine + w) / (1 + w)); }
+
+// face frame: x out of the face, y to its left, z up
+const Vector key_light = unit({ { 0.62f, 0.48f, 0.62f } });
+const Vector fill_light = unit({ { 0.55f, -0.80f, 0.05f } });
+const Vector view = { { 1, 0, 0 } };
+const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
+
+const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear
+const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // red light goes farthest
+const Vector key_colour = { { 0.95f, 0.90f, 0.84f } };
+const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
+const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
+constexpr float hollow_depth = 3.0e-3f;  ///< [m] light lost a unit of mean curvature
+
+}  // namespace
+
+SkinShading::SkinShading(const TriangleMesh& mesh)
+{
+  std::vector<std::vector<std::int32_t>> neighbours(mesh.vertices.size());
+  for (const auto& triangle : mesh.triangles)
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      auto& list = neighbours[triangle[corner]];
+      list.push_back(triangle[(corner + 1) % 3]);
+      list.push_back(triangle[(corner + 2) % 3]);
+    }
+  neighbour_begin_.push_back(0);
+  for (auto& list : neighbours)
+  {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    neighbours_.insert(neighbours_.end(), list.begin(), list.end());
+    neighbour_begin_.push_back(static_cast<std::int32_t>(neighbours_.size()));
+  }
+}
+
+void SkinShading::colours(const SkinState& skin, std::vector<std::array<float, 3>>& out) const
+{
+  out.resize(skin.vertices.size());
+  for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
+  {
+    const Vector& position = skin.vertices[vertex];
+    const Vector& normal = skin.normals[vertex];
+
+    // mean normal curvature [1/m], positive in hollows: twice the neighbours' height over their squared distance
+    float curvature = 0;
+    const auto begin = neighbour_begin_[vertex], end = neighbour_begin_[vertex + 1];
+    for (auto entry = begin; entry < end; ++entry)
+    {
+      const Vector& other = skin.vertices[neighbours_[entry]];
+      const Vector edge = { { other[0] - position[0], other[1] - position[1], other[2] - position[2] } };
+      curvature += 2 * dot(edge, normal) / std::max(dot(edge, edge), 1e-8f);
+    }
+    curvature /= static_cast<float>(std::max(1, end - begin));
+    const float openness = std::clamp(1 - hollow_depth * curvature, 0.45f, 1.12f);
+
+    const float key = dot(normal, key_light), fill = dot(normal, fill_light), sky = 0.5f + 0.5f * normal[2];
+    const float highlight = 0.10f * std::pow(std::max(0.0f, dot(normal, half_way)), 22.0f);
+    const float rim = 0.10f * std::pow(1 - std::clamp(dot(normal, view), 0.0f, 1.0f), 3.0f);
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      const float light = key_colour[channel] * wrapped(key, wrap[channel]) +
+                          fill_colour[channel] * wrapped(fill, wrap[channel]) + sky_colour[channel] * sky;
+      const float linear = openness * (albedo[channel] * light + highlight + rim * sky_colour[channel]);
+      out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f);
+    }
+  }
+}
+
+}  // namespace frontalis
