@@ -20,7 +20,8 @@ struct CpuKernelArguments
   // blocks of Tile::width a tile
   const float* mu;                 ///< shear modulus times tissue volume [N m]
   const float* kappa;              ///< bulk modulus times tissue volume [N m]
-  const float* hourglass;          ///< [N/m]
+  const float* hourglass;          ///< scalar stiffness [N/m]
+  const float* assumed_strain[4];  ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control alone
   const float* frequency_squared;  ///< bound at rest [1/s2]
   const FibreSlot* fibres;
   const float* activation;     ///< one a muscle
@@ -28,6 +29,7 @@ struct CpuKernelArguments
   const float* with_passive;   ///< one a muscle: 1 or 0
   float scale[3];              ///< 1 / (4 h)
   float stretch_weight[3];     ///< 1/h^2 over the sum of the three
+  float hourglass_weight[3];   ///< 1 / (4 sqrt(3) h)
   float dt, keep, gain;        ///< v = keep v - gain f / m + impulse
   float impulse[3];            ///< gain times gravity
   std::int32_t buffer_stride;  ///< floats a component of a plane buffer

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cpu_kernel.hpp"
+#include "frontalis/physics/assumed_strain.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
@@ -45,7 +46,7 @@ struct CpuKernelBody
   }
 
   // forces of a tile's voxels [offset, offset + lanes) added to the plane buffers below and above
-  template <bool Look>
+  template <bool Look, bool AssumedStrain>
   static FRONTALIS_LAW void element(const CpuKernelArguments& g, const Tile& tile, std::size_t block, int offset,
                                     float* below, float* above, const std::int32_t* row, Batch& frequency_squared)
   {
@@ -78,13 +79,22 @@ struct CpuKernelBody
       frequency_squared = N::max(frequency_squared, now) + (growth - growth);
     }
     const Batch hourglass = load(g.hourglass + block + offset);
+    if (AssumedStrain)
+    {
+      const physics::AssumedStrain<Batch> stiffness{ load(g.assumed_strain[0] + block + offset),
+                                                     load(g.assumed_strain[1] + block + offset),
+                                                     load(g.assumed_strain[2] + block + offset),
+                                                     load(g.assumed_strain[3] + block + offset) };
+      physics::hourglass_forces(stiffness, hourglass, g.hourglass_weight, k.F, mode, P);
+    }
     for (int c = 0; c < 3; ++c)
     {
       mode[c][0] = N::of(0);
       for (int j = 0; j < 3; ++j)
         mode[c][physics::gradient_mode(j)] = P.a[c][j] * Batch(g.scale[j]);
-      for (const int m : { 3, 5, 6, 7 })
-        mode[c][m] = mode[c][m] * hourglass;
+      if (!AssumedStrain)
+        for (const int m : { 3, 5, 6, 7 })
+          mode[c][m] = mode[c][m] * hourglass;
       physics::walsh_hadamard_transposed(mode[c]);
       for (int r = 0; r < 4; ++r)
       {
@@ -95,7 +105,7 @@ struct CpuKernelBody
     }
   }
 
-  template <bool Look>
+  template <bool Look, bool AssumedStrain>
   static float plane_forces(const CpuKernelArguments& g, std::int32_t plane, float* below, float* above)
   {
     Batch frequency_squared(0.0f);
@@ -105,7 +115,8 @@ struct CpuKernelBody
       const std::int32_t row[4] = { tile.node[0] - g.plane_nodes[plane], tile.node[1] - g.plane_nodes[plane],
                                     tile.node[2] - g.plane_nodes[plane + 1], tile.node[3] - g.plane_nodes[plane + 1] };
       for (int offset = 0; offset < tile.count; offset += lanes)
-        element<Look>(g, tile, static_cast<std::size_t>(t) * Tile::width, offset, below, above, row, frequency_squared);
+        element<Look, AssumedStrain>(g, tile, static_cast<std::size_t>(t) * Tile::width, offset, below, above, row,
+                                     frequency_squared);
     }
     float result = 0;
     if (Look)
@@ -147,7 +158,7 @@ struct CpuKernelBody
       p[i] = 0;
   }
 
-  template <bool Look>
+  template <bool Look, bool AssumedStrain>
   static float step(const CpuKernelArguments& g, std::int32_t first, std::int32_t last, float* buffer, bool forces_only)
   {
     float* below = buffer;
@@ -160,7 +171,7 @@ struct CpuKernelBody
       clear(above, 3 * g.buffer_stride);
       if (k >= 0 && k < g.planes - 1)
       {
-        const float now = plane_forces<Look>(g, k, below, above);
+        const float now = plane_forces<Look, AssumedStrain>(g, k, below, above);
         frequency_squared = larger(frequency_squared, now);
       }
       if (k >= first)
@@ -181,9 +192,12 @@ struct CpuKernelBody
 
   static float run(const CpuKernelArguments& g, std::int32_t first, std::int32_t last, float* buffer, KernelTask task)
   {
-    if (task == KernelTask::step_and_look)
-      return step<true>(g, first, last, buffer, false);
-    return step<false>(g, first, last, buffer, task == KernelTask::forces);
+    const bool look = task == KernelTask::step_and_look, forces_only = task == KernelTask::forces;
+    if (g.assumed_strain[0] != nullptr)
+      return look ? step<true, true>(g, first, last, buffer, false)
+                  : step<false, true>(g, first, last, buffer, forces_only);
+    return look ? step<true, false>(g, first, last, buffer, false)
+                : step<false, false>(g, first, last, buffer, forces_only);
   }
 };
 

@@ -48,6 +48,7 @@ private:
   void add_loads(std::int32_t first, std::int32_t last, const CpuKernelArguments& g);
 
   VoxelRows rows_;
+  std::array<std::vector<float>, 4> assumed_strain_;
   std::vector<float> mu_, kappa_, hourglass_, frequency_squared_, inverse_mass_, with_length_, with_passive_;
   Components u_, next_, v_;
   std::int32_t buffer_stride_ = 0;
@@ -86,6 +87,9 @@ CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& s
     with_length_.push_back(muscle.tension_length ? 1.0f : 0.0f);
     with_passive_.push_back(muscle.passive ? 1.0f : 0.0f);
   }
+  for (int part = 0; part < 4; ++part)
+    if (!discretisation_.assumed_strain[part].empty())
+      assumed_strain_[part] = rows_.blocks(discretisation_.assumed_strain[part]);
   std::int32_t largest = 0;
   for (std::int32_t k = 0; k < rows_.planes; ++k)
     largest = std::max(largest, rows_.plane_nodes[k + 1] - rows_.plane_nodes[k]);
@@ -151,8 +155,11 @@ CpuKernelArguments CpuSolver::arguments(double dt, const float* activation)
     g.v[axis] = v_[axis].data();
     g.scale[axis] = static_cast<float>(0.25 / h[axis]);
     g.impulse[axis] = static_cast<float>(gain(dt) * model_->gravity[axis]);
+    g.hourglass_weight[axis] = static_cast<float>(discretisation_.hourglass_weight[axis]);
     sum += 1 / (h[axis] * h[axis]);
   }
+  for (int part = 0; part < 4; ++part)
+    g.assumed_strain[part] = assumed_strain_[part].empty() ? nullptr : assumed_strain_[part].data();
   for (int axis = 0; axis < 3; ++axis)
     g.stretch_weight[axis] = static_cast<float>(1 / (h[axis] * h[axis]) / sum);
   g.inverse_mass = inverse_mass_.data();

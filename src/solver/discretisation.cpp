@@ -6,6 +6,7 @@
 #include "frontalis/physics/time_step.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
@@ -72,12 +73,20 @@ void scale_mass(const Model& model, Discretisation& d)
 
 }  // namespace
 
+physics::AssumedStrain<double> stabilisation(const Discretisation& discretisation, std::size_t voxel)
+{
+  const auto& parts = discretisation.assumed_strain;
+  return { parts[0][voxel], parts[1][voxel], parts[2][voxel], parts[3][voxel] };
+}
+
 Discretisation::Discretisation(const Model& model)
 {
   const auto& h = model.spacing;
   const double longest = std::max({ h[0], h[1], h[2] });
   const std::size_t count = model.voxels.size();
   volume = h[0] * h[1] * h[2];
+  for (int axis = 0; axis < 3; ++axis)
+    hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
   for (auto* array : { &mu, &kappa, &tissue_volume, &hourglass, &density, &frequency_squared })
     array->assign(count, 0);
   for (std::size_t e = 0; e < count; ++e)
@@ -94,6 +103,14 @@ Discretisation::Discretisation(const Model& model)
       throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
     tissue_volume[e] = volume * model.fill[e];
     hourglass[e] = physics::hourglass_stiffness(physics::young_modulus(mu[e], kappa[e]), tissue_volume[e], longest);
+    if (model.hourglass == HourglassControl::assumed_strain)
+    {
+      const auto k = physics::assumed_strain(mu[e], kappa[e], tissue_volume[e]);
+      const double parts[4] = { k.bending, k.coupling, k.torsion, k.warping };
+      for (int part = 0; part < 4; ++part)
+        assumed_strain[part].push_back(parts[part]);
+      hourglass[e] *= physics::assumed_strain_floor;
+    }
     frequency_squared[e] =
         physics::frequency_squared_bound(mu[e], kappa[e], fibre_stiffness(model, e), density[e], h[0], h[1], h[2]);
   }

@@ -1,4 +1,5 @@
 #include "bound_points.hpp"
+#include "frontalis/physics/assumed_strain.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
@@ -146,22 +147,32 @@ void ReferenceSolver::add_element(std::size_t e, const std::vector<float>& activ
         P[i][j] += S * along[i] * a[j];
   }
 
+  // transformed displacements of the hourglass modes, and the forces conjugate to them
+  static constexpr int mode_of_shape[4] = { 3, 5, 6, 7 };
+  double mode[3][8] = {};
   for (int i = 0; i < 3; ++i)
-  {
-    double mode[4] = { 0, 0, 0, 0 };
     for (int m = 0; m < 4; ++m)
       for (int b = 0; b < 8; ++b)
-        mode[m] += hourglass_shape_[m][b] * u_[i][nodes[b]];
+        mode[i][mode_of_shape[m]] += hourglass_shape_[m][b] * u_[i][nodes[b]];
+  physics::Matrix3<double> Q{};
+  if (!discretisation_.assumed_strain[0].empty())
+    physics::hourglass_forces(stabilisation(discretisation_, e), discretisation_.hourglass[e],
+                              discretisation_.hourglass_weight.data(), k.F, mode, Q);
+  else
+    for (auto& component : mode)
+      for (const int m : mode_of_shape)
+        component[m] *= discretisation_.hourglass[e];
+
+  for (int i = 0; i < 3; ++i)
     for (int b = 0; b < 8; ++b)
     {
       double force = 0;
       for (int j = 0; j < 3; ++j)
-        force += discretisation_.tissue_volume[e] * P[i][j] * shape_derivative_[b][j];
+        force += (discretisation_.tissue_volume[e] * P[i][j] + Q.a[i][j]) * shape_derivative_[b][j];
       for (int m = 0; m < 4; ++m)
-        force += discretisation_.hourglass[e] * hourglass_shape_[m][b] * mode[m];
+        force += hourglass_shape_[m][b] * mode[i][mode_of_shape[m]];
       f_[i][nodes[b]] += force;
     }
-  }
 
   const double d[3] = { std::pow(model_->spacing[0], -2), std::pow(model_->spacing[1], -2),
                         std::pow(model_->spacing[2], -2) };

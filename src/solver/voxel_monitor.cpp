@@ -29,11 +29,16 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
       for (int b = 0; b < 8; ++b)
         mode[axis][b] = u[model.voxel_nodes[e][b]][axis];
       physics::walsh_hadamard(mode[axis]);
-      for (int m = 0; m < 8; ++m)
-        if (physics::is_hourglass_mode(m))
-          result.hourglass += 0.5 * d.hourglass[e] * mode[axis][m] * mode[axis][m];
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
+    if (!d.assumed_strain[0].empty())
+      result.hourglass +=
+          physics::hourglass_energy(stabilisation(d, e), d.hourglass[e], d.hourglass_weight.data(), k.F, mode);
+    else
+      for (const auto& component : mode)
+        for (int m = 0; m < 8; ++m)
+          if (physics::is_hourglass_mode(m))
+            result.hourglass += 0.5 * d.hourglass[e] * component[m] * component[m];
     result.internal += d.tissue_volume[e] * physics::energy(physics::NeoHookean<double>{ d.mu[e], d.kappa[e] }, k);
     if (!(k.J >= result.worst_jacobian))
     {

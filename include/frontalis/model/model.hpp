@@ -102,6 +102,13 @@ struct MassScalingSettings
   std::vector<std::int32_t> materials;
 };
 
+/// What gives stiffness to the modes that one-point quadrature leaves without.
+enum class HourglassControl : std::uint8_t
+{
+  scalar,         ///< one stiffness a voxel, tied to Young's modulus: cheap
+  assumed_strain  ///< a stiffness an axis, Poisson coupling and torsion, turned with the element: accurate
+};
+
 /// Rigid map from local coordinates to another frame: p = rotation * local + translation; rotation row by row.
 struct RigidTransform
 {
@@ -168,6 +175,7 @@ struct Model
   double frame_rate = 30;      ///< [1/s] of wall time
   double time_step_share = 0.9;
   MassScalingSettings mass_scaling;
+  HourglassControl hourglass = HourglassControl::scalar;
 
   // presets by name: activations by muscle index
   struct Expression

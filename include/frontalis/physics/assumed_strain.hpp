@@ -1,0 +1,104 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Assumed-strain hourglass control of a box voxel (Belytschko & Bindeman 1993, Comput. Methods Appl. Mech. Eng.
+/// 105:225, their ASQBI field): a stiffness an axis, Poisson coupling between the two bendings of a plate, torsion by
+/// the shear modulus. The modes are pulled back by the deformation gradient, as a total Lagrangian strain has them, so
+/// that the stiffness turns with the element; the energy 1/2 r K r, r = F^T q, is frame-indifferent and its full
+/// gradient is taken, so that neither energy nor angular momentum is lost. A share of the scalar stiffness keeps
+/// crushed elements controlled.
+template <class T>
+struct AssumedStrain
+{
+  T bending;   ///< 2 mu / (1 - nu) times tissue volume [N m]
+  T coupling;  ///< 2 mu nu / (1 - nu) times tissue volume [N m]
+  T torsion;   ///< mu times tissue volume [N m]
+  T warping;   ///< 2 mu (1 + nu) / 3 times tissue volume [N m]
+};
+
+/// Share of the scalar hourglass stiffness that is added.
+constexpr double assumed_strain_floor = 0.02;
+
+template <class T>
+FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
+{
+  using N = Number<T>;
+  const T nu = (N::of(3) * kappa - N::of(2) * mu) / (N::of(6) * kappa + N::of(2) * mu);
+  const T twice = N::of(2) * mu * tissue_volume;
+  const T bending = twice / (N::of(1) - nu);
+  return { bending, nu * bending, mu * tissue_volume, twice * (N::of(1) + nu) * N::of(1.0 / 3) };
+}
+
+/// Hourglass modes in the order in which they pair with axes: yz, xz, xy, xyz (indices of the transformed
+/// displacements).
+FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
+
+/// Forces conjugate to pulled-back modes r[pair][axis], likewise ordered; weight[i] = 1 / (4 sqrt(3) h_i): products of
+/// two are the integrals of mode derivatives over the volume, for modes of amplitude 8.
+template <class T, class S>
+FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    const int j = (i + 1) % 3, l = (i + 2) % 3;
+    const T wi(weight[i]), wj(weight[j]), wl(weight[l]);
+    // u_i with the mode that does not vary along i: torsion, and its coupling to the other two
+    force[i][i] = k.torsion * (((wj * wj) + (wl * wl)) * r[i][i] + wi * (wj * r[j][j] + wl * r[l][l]));
+    // u_i with the modes paired with j and l: bending along i, coupled to bending along j and l
+    force[j][i] = wi * (k.bending * wi * r[j][i] + k.coupling * wj * r[i][j]);
+    force[l][i] = wi * (k.bending * wi * r[l][i] + k.coupling * wl * r[i][l]);
+    force[3][i] = k.warping * wi * wi * r[3][i];
+  }
+}
+
+/// Replaces the hourglass modes of the transformed displacements q[axis][mode] by the forces conjugate to them, and
+/// adds to Q[i][j] the force conjugate to F_ij [N m]. scalar: hourglass_stiffness times assumed_strain_floor [N/m].
+template <class T, class S>
+FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const T& scalar, const S* weight, const Matrix3<T>& F,
+                                    T (&q)[3][8], Matrix3<T>& Q)
+{
+  T r[4][3], conjugate[4][3];
+  for (int pair = 0; pair < 4; ++pair)
+    for (int j = 0; j < 3; ++j)
+      r[pair][j] = F.a[0][j] * q[0][paired_mode(pair)] + F.a[1][j] * q[1][paired_mode(pair)] +
+                   F.a[2][j] * q[2][paired_mode(pair)];
+  hourglass_forces(k, weight, r, conjugate);
+  for (int pair = 0; pair < 4; ++pair)
+    for (int i = 0; i < 3; ++i)
+    {
+      T& mode = q[i][paired_mode(pair)];
+      for (int j = 0; j < 3; ++j)
+        Q.a[i][j] = Q.a[i][j] + mode * conjugate[pair][j];
+      mode = scalar * mode + F.a[i][0] * conjugate[pair][0] + F.a[i][1] * conjugate[pair][1] +
+             F.a[i][2] * conjugate[pair][2];
+    }
+}
+
+/// Energy [J] of the modes q[axis][mode] before they are replaced.
+template <class T, class S>
+FRONTALIS_LAW T hourglass_energy(const AssumedStrain<T>& k, const T& scalar, const S* weight, const Matrix3<T>& F,
+                                 const T (&q)[3][8])
+{
+  T r[4][3], conjugate[4][3], sum = Number<T>::of(0);
+  for (int pair = 0; pair < 4; ++pair)
+    for (int j = 0; j < 3; ++j)
+    {
+      r[pair][j] = F.a[0][j] * q[0][paired_mode(pair)] + F.a[1][j] * q[1][paired_mode(pair)] +
+                   F.a[2][j] * q[2][paired_mode(pair)];
+      sum = sum + scalar * q[j][paired_mode(pair)] * q[j][paired_mode(pair)];
+    }
+  hourglass_forces(k, weight, r, conjugate);
+  for (int pair = 0; pair < 4; ++pair)
+    for (int j = 0; j < 3; ++j)
+      sum = sum + r[pair][j] * conjugate[pair][j];
+  return Number<T>::of(0.5) * sum;
+}
+
+}  // namespace physics
+}  // namespace frontalis
