@@ -175,6 +175,7 @@ void to_state(const Model& model, const Frame& frame, SimulationState& out)
   for (const auto& muscle : model.muscles)
     out.name.push_back(muscle.name);
   out.activation.assign(frame.activation.begin(), frame.activation.end());
+  out.landmark = model.landmarks;
   out.voxels = static_cast<std::uint32_t>(model.voxels.size());
   out.nodes = static_cast<std::uint32_t>(model.nodes.size());
   out.skin_vertices = static_cast<std::uint32_t>(model.skin.vertices.size());

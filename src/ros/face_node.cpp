@@ -126,6 +126,9 @@ void FaceNode::load()
     frames.unlock();
 
     paused_ = made->paused();
+    // in lock-step nothing moves yet: show the face at rest
+    if (parameters.runner.pace == Pace::lock_step)
+      made->reset();
     ROS_INFO_STREAM(name_ << ": running on " << made->description() << ", frame " << frame_name);
     const std::lock_guard<std::mutex> lock(runner_mutex_);
     runner_ = made;

@@ -1,0 +1,213 @@
+#!/usr/bin/python3
+"""Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again.
+
+usage: take_pictures.py SCENE FOLDER [LAUNCH_ARGUMENT:=VALUE ...]
+
+Launches SCENE.launch of this package in lock-step with rviz full screen, under Xvfb where there is no display, moves the face by
+~expression and ~step, so that every picture shows an exact simulated time, and prints each picture's path with the landmarks'
+movement. Needs the environment of the package's setup file, Xvfb and ImageMagick.
+"""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+SCREEN = "1280x900x24"
+RAMP = 0.3  # [s] simulated, from one expression to the next
+HOLD = 0.9  # [s] simulated, until the picture
+START_TIMEOUT = 300  # [s] wall, for baking and for rviz
+DRAW_TIMEOUT = 20  # [s] wall, for rviz to show a new skin
+
+
+def fail(message):
+    sys.stderr.write("take_pictures: %s\n" % message)
+    sys.exit(1)
+
+
+def enter_display():
+    """Runs this script again under Xvfb where no display is there."""
+    if os.environ.get("DISPLAY"):
+        return
+    if not shutil.which("xvfb-run"):
+        fail("there is no display, and xvfb-run was not found; install the packages xvfb and xauth")
+    command = ["xvfb-run", "-a", "-s", "-screen 0 " + SCREEN, sys.executable]
+    os.execvp(command[0], command + sys.argv)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def grab():
+    """The screen as a portable pixmap."""
+    return subprocess.run(
+        ["import", "-window", "root", "-depth", "8", "ppm:-"], check=True, stdout=subprocess.PIPE
+    ).stdout
+
+
+def is_blank(picture):
+    """True while the middle of the screen shows no face: a shaded face has many colours."""
+    header, size = picture[:15].split(b"\n")[0:2]
+    assert header == b"P6", "unexpected picture format"
+    width, height = (int(number) for number in size.split())
+    row = len(picture) - 3 * width * (height - height // 2)
+    pixels = picture[row : row + 3 * width]
+    return len({pixels[i : i + 3] for i in range(0, len(pixels), 3)}) < 16
+
+
+def settled_picture(before):
+    """Waits until rviz shows a face that differs from the picture before, and shows it twice alike."""
+    deadline = time.monotonic() + DRAW_TIMEOUT
+    last = None
+    while time.monotonic() < deadline:
+        picture = grab()
+        if picture == last and picture != before and not is_blank(picture):
+            return picture
+        last = picture
+        time.sleep(0.7)
+    fail("rviz showed no new face within %d s" % DRAW_TIMEOUT)
+    return None
+
+
+def save(picture, path):
+    subprocess.run(
+        ["convert", "ppm:-", "-define", "png:exclude-chunks=date,time", path], check=True, input=picture
+    )
+
+
+class Face:
+    """The face under /face, as this script drives it. ROS is imported once the master's address is set."""
+
+    def __init__(self):
+        import rosgraph
+        import rospy
+        from frontalis.msg import SimulationState
+        from frontalis.srv import ListMuscles, Step
+        from geometry_msgs.msg import PoseArray
+        from std_msgs.msg import String
+
+        rospy.init_node("take_pictures", disable_signals=True)
+        self.master = rosgraph.Master("take_pictures")
+        self.landmarks = None
+        self.state = None
+        self.expression = rospy.Publisher("/face/expression", String, queue_size=1)
+        self.list_muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
+        self.advance = rospy.ServiceProxy("/face/step", Step)
+        rospy.Subscriber("/face/landmarks", PoseArray, self.take_landmarks)
+        rospy.Subscriber("/face/state", SimulationState, self.take_state)
+
+    def take_landmarks(self, message):
+        self.landmarks = [(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses]
+
+    def take_state(self, message):
+        self.state = message
+
+    def is_seen(self):
+        """True once rviz listens to the skin."""
+        subscribers = dict(self.master.getSystemState()[1])
+        return any("rviz" in node for node in subscribers.get("/face/skin", []))
+
+    def express(self, name):
+        """Commands an expression and advances until it is held. Returns the simulated time [s]."""
+        # a topic and a service are two ways in: go on only once the command has arrived
+        self.command("relax", lambda target: not any(target))
+        if name != "relax":
+            self.command(name, any)
+        for seconds in (RAMP, HOLD):
+            answer = self.advance(seconds)
+            if not answer.success:
+                fail("the simulation failed in '%s': %s" % (name, answer.message))
+        return answer.time
+
+    def command(self, name, arrived):
+        for _ in range(100):
+            self.expression.publish(name)
+            if arrived(self.muscles().target):
+                return
+            time.sleep(0.1)
+        fail("expression '%s' did not reach the face" % name)
+
+    def muscles(self):
+        return self.list_muscles()
+
+
+def wait_for(what, ready, launch, timeout):
+    deadline = time.monotonic() + timeout
+    while True:
+        if launch.poll() is not None:
+            fail("roslaunch ended early, with %d" % launch.returncode)
+        try:
+            if ready():
+                return
+        except Exception as error:  # pylint: disable=broad-except
+            if time.monotonic() > deadline:
+                fail("%s: %s" % (what, error))
+        if time.monotonic() > deadline:
+            fail("%s: not within %d s" % (what, timeout))
+        time.sleep(0.5)
+
+
+def is_ready(face):
+    answer = face.muscles()
+    if face.state is not None and face.state.failed:
+        fail(face.state.message)
+    return answer.success and face.landmarks is not None
+
+
+def movement(face, rest):
+    """Upward movement of the landmarks in millimetres, as text."""
+    moved = ["%s %+.1f" % (name, 1e3 * (now[2] - then[2]))
+             for name, now, then in zip(face.state.landmark, face.landmarks, rest)]
+    return "landmarks up [mm]: " + ", ".join(moved) if moved else ""
+
+
+def take(folder, launch):
+    face = Face()
+    wait_for("the face", lambda: is_ready(face), launch, START_TIMEOUT)
+    wait_for("rviz", face.is_seen, launch, START_TIMEOUT)
+    names = [name for name in face.muscles().expressions if name != "relax"]
+    rest = face.landmarks
+    picture = None
+    for title, expression in [("neutral", None)] + [(name, name) for name in names] + [("relaxed", "relax")]:
+        moment = face.express(expression) if expression else 0
+        picture = settled_picture(picture)
+        path = os.path.join(folder, title + ".png")
+        save(picture, path)
+        print("%s  at %.1f s  %s" % (path, moment, movement(face, rest)), flush=True)
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.stderr.write(__doc__)
+        sys.exit(2)
+    scene, folder, arguments = sys.argv[1], os.path.abspath(sys.argv[2]), sys.argv[3:]
+    enter_display()
+    os.makedirs(folder, exist_ok=True)
+
+    # software rendering, a master of our own that nobody else talks to
+    os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")
+    os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % free_port()
+    port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]
+    launch = subprocess.Popen(
+        ["roslaunch", "-p", port, "frontalis", scene + ".launch", "pace:=lock_step", "demo:=false", "rviz:=true",
+         "rviz_args:=--fullscreen"] + arguments
+    )
+    try:
+        take(folder, launch)
+    finally:
+        if launch.poll() is None:
+            launch.send_signal(signal.SIGINT)
+        try:
+            launch.wait(30)
+        except subprocess.TimeoutExpired:
+            launch.kill()
+
+
+if __name__ == "__main__":
+    main()

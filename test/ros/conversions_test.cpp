@@ -1,0 +1,190 @@
+#include "frontalis/ros/conversions.hpp"
+
+#include "ros/small_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+/// The skin at rest in the face frame, lifted by `lift` [m].
+SkinState lifted(const Model& model, float lift)
+{
+  SkinState skin;
+  skin.vertices = rest_in_face(model);
+  for (auto& vertex : skin.vertices)
+    vertex[2] += lift;
+  skin.normals.assign(skin.vertices.size(), { { 0, 0, 1 } });
+  skin.landmarks = { skin.vertices[0] };
+  return skin;
+}
+
+float value(const sensor_msgs::PointCloud2& cloud, std::size_t point, std::size_t field)
+{
+  float out = 0;
+  std::memcpy(&out, cloud.data.data() + point * cloud.point_step + cloud.fields.at(field).offset, sizeof out);
+  return out;
+}
+
+TEST(Conversions, RestIsInTheFaceFrame)
+{
+  const auto rest = rest_in_face(small_model());
+  ASSERT_EQ(rest.size(), 4u);
+  EXPECT_NEAR(rest[1][0], 1, 1e-6);
+  EXPECT_NEAR(rest[1][1], 0.01, 1e-6);
+  EXPECT_NEAR(rest[3][0], 0.99, 1e-6);
+}
+
+TEST(Conversions, MeshKeepsTheOrderOfVerticesAndCorners)
+{
+  const auto mesh = to_mesh(small_model());
+  ASSERT_EQ(mesh.vertices.size(), 4u);
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.triangles[1].vertex_indices[1], 2u);
+  EXPECT_NEAR(mesh.vertices[2].x, 0.99, 1e-6);
+  EXPECT_NEAR(mesh.vertices[2].y, 0.01, 1e-6);
+}
+
+TEST(Conversions, MarkerHasThreePointsAndColoursATriangle)
+{
+  const Model model = small_model();
+  const SkinShading shading(model.skin);
+  visualization_msgs::Marker marker;
+  to_marker(model, shading, lifted(model, 0.002f), marker);
+  EXPECT_EQ(marker.type, visualization_msgs::Marker::TRIANGLE_LIST);
+  ASSERT_EQ(marker.points.size(), 6u);
+  ASSERT_EQ(marker.colors.size(), 6u);
+  EXPECT_NEAR(marker.points[4].x, 0.99, 1e-6);
+  EXPECT_NEAR(marker.points[4].z, 0.012, 1e-6);
+  EXPECT_EQ(marker.scale.x, 1);
+  EXPECT_EQ(marker.pose.orientation.w, 1);
+  for (const auto& colour : marker.colors)
+  {
+    EXPECT_EQ(colour.a, 1);
+    EXPECT_GT(colour.r, 0);
+    EXPECT_LE(colour.r, 1);
+  }
+}
+
+TEST(Conversions, PointCloudHasPositionNormalAndDisplacement)
+{
+  const Model model = small_model();
+  sensor_msgs::PointCloud2 cloud;
+  to_point_cloud(lifted(model, 0.002f), rest_in_face(model), cloud);
+  EXPECT_EQ(cloud.width, 4u);
+  EXPECT_EQ(cloud.height, 1u);
+  EXPECT_EQ(cloud.data.size(), cloud.row_step);
+  const char* const names[] = { "x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity" };
+  ASSERT_EQ(cloud.fields.size(), 7u);
+  for (std::size_t field = 0; field < 7; ++field)
+    EXPECT_EQ(cloud.fields[field].name, names[field]);
+  EXPECT_NEAR(value(cloud, 1, 0), 1, 1e-6);
+  EXPECT_NEAR(value(cloud, 1, 2), 0.012, 1e-6);
+  EXPECT_EQ(value(cloud, 1, 5), 1);
+  EXPECT_NEAR(value(cloud, 1, 6), 0.002, 1e-6);
+}
+
+TEST(Conversions, LandmarksBecomePosesAndFrames)
+{
+  const Model model = small_model();
+  geometry_msgs::PoseArray poses;
+  to_poses(lifted(model, 0.002f), poses);
+  ASSERT_EQ(poses.poses.size(), 1u);
+  EXPECT_NEAR(poses.poses[0].position.z, 0.012, 1e-6);
+  EXPECT_EQ(poses.poses[0].orientation.w, 1);
+
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  to_transforms(model, lifted(model, 0.002f), "face_7", ros::Time(5), transforms);
+  ASSERT_EQ(transforms.size(), 1u);
+  EXPECT_EQ(transforms[0].header.frame_id, "face_7");
+  EXPECT_EQ(transforms[0].child_frame_id, "face_7/brow");
+  EXPECT_EQ(transforms[0].header.stamp, ros::Time(5));
+  EXPECT_NEAR(transforms[0].transform.translation.x, 1, 1e-6);
+}
+
+TEST(Conversions, StateNamesMusclesAndLandmarks)
+{
+  Frame frame;
+  frame.time = 1.5;
+  frame.steps = 300;
+  frame.activation = { 0.25f, 0.5f };
+  frame.failed = true;
+  frame.failure = "a voxel turned inside out";
+  frame.monitor.kinetic = 2e-6;
+  SimulationState state;
+  to_state(small_model(), frame, state);
+  EXPECT_EQ(state.time, 1.5);
+  EXPECT_EQ(state.steps, 300u);
+  ASSERT_EQ(state.name.size(), 2u);
+  EXPECT_EQ(state.name[1], "knitter");
+  ASSERT_EQ(state.activation.size(), 2u);
+  EXPECT_EQ(state.activation[0], 0.25);
+  EXPECT_EQ(state.landmark, std::vector<std::string>{ "brow" });
+  EXPECT_TRUE(state.failed);
+  EXPECT_EQ(state.message, "a voxel turned inside out");
+  EXPECT_EQ(state.kinetic_energy, 2e-6);
+  EXPECT_EQ(state.voxels, 1u);
+  EXPECT_EQ(state.nodes, 8u);
+  EXPECT_EQ(state.skin_vertices, 4u);
+}
+
+TEST(Conversions, SkinThatIsNotFiniteOrNotWholeIsNotPublishable)
+{
+  const Model model = small_model();
+  EXPECT_TRUE(is_publishable(lifted(model, 0), model));
+  const float bad[] = { std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity() };
+  for (const float number : bad)
+  {
+    SkinState skin = lifted(model, 0);
+    skin.vertices[3][1] = number;
+    EXPECT_FALSE(is_publishable(skin, model));
+    skin = lifted(model, 0);
+    skin.normals[0][2] = number;
+    EXPECT_FALSE(is_publishable(skin, model));
+    skin = lifted(model, 0);
+    skin.landmarks[0][0] = number;
+    EXPECT_FALSE(is_publishable(skin, model));
+  }
+  SkinState skin = lifted(model, 0);
+  skin.normals.pop_back();
+  EXPECT_FALSE(is_publishable(skin, model));
+}
+
+TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
+{
+  // a pyramid of four sides about vertex 0, seen from +x; apex pushed in or out
+  TriangleMesh mesh;
+  mesh.vertices.assign(5, { { 0, 0, 0 } });
+  mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } }, { { 0, 3, 4 } }, { { 0, 4, 1 } } };
+  const SkinShading shading(mesh);
+  SkinState skin;
+  skin.vertices = {
+    { { 0, 0, 0 } }, { { 0, 0.01f, 0 } }, { { 0, 0, 0.01f } }, { { 0, -0.01f, 0 } }, { { 0, 0, -0.01f } }
+  };
+  skin.normals.assign(5, { { 1, 0, 0 } });
+  std::vector<std::array<float, 3>> flat, hollow, raised;
+  shading.colours(skin, flat);
+  skin.vertices[0][0] = -0.002f;
+  shading.colours(skin, hollow);
+  skin.vertices[0][0] = 0.002f;
+  shading.colours(skin, raised);
+  EXPECT_LT(hollow[0][0], flat[0][0]);
+  EXPECT_GT(raised[0][0], flat[0][0]);
+
+  std::vector<std::array<float, 3>> up, down;
+  skin.vertices[0][0] = 0;
+  skin.normals.assign(5, { { 0.6f, 0, 0.8f } });
+  shading.colours(skin, up);
+  skin.normals.assign(5, { { 0.6f, 0, -0.8f } });
+  shading.colours(skin, down);
+  EXPECT_GT(up[0][1], down[0][1]);
+}
+
+}  // namespace
+}  // namespace frontalis

@@ -1,0 +1,158 @@
+#include "frontalis/ros/model_source.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace frontalis
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// Programs that stand in for `frontalis`, in a folder that also takes the place of the temporary folder.
+class ModelSource : public testing::Test
+{
+protected:
+  ModelSource()
+  {
+    std::string pattern = (fs::temp_directory_path() / "model_source_test-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    fs::create_directory(folder_ / "temporary");
+    setenv("TMPDIR", (folder_ / "temporary").c_str(), 1);
+  }
+  ~ModelSource() override { fs::remove_all(folder_); }
+
+  std::string program(const std::string& body)
+  {
+    const fs::path path = folder_ / "program";
+    std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
+    chmod(path.c_str(), 0755);
+    return path.string();
+  }
+
+  std::string fault(const BakeRequest& request)
+  {
+    try
+    {
+      bake_in_process(
+          request, [this](const std::string& line) { log_.push_back(line); }, cancelled_);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+
+  bool left_nothing() const { return fs::is_empty(folder_ / "temporary"); }
+
+  fs::path folder_;
+  std::vector<std::string> log_;
+  std::atomic<bool> cancelled_{ false };
+};
+
+TEST_F(ModelSource, BakesASmallScene)
+{
+  BakeRequest request;
+  request.program = FRONTALIS_PROGRAM;
+  request.scene = FRONTALIS_SOURCE_DIRECTORY "/test/ros/small.yaml";
+  request.accuracy = "draft";
+  const Model model = bake_in_process(
+      request, [this](const std::string& line) { log_.push_back(line); }, cancelled_);
+  EXPECT_EQ(model.voxels.size(), 2u * 2u * 6u);
+  ASSERT_EQ(model.muscles.size(), 1u);
+  EXPECT_EQ(model.muscles[0].name, "lift");
+  EXPECT_FALSE(log_.empty());
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(ModelSource, HandsOnArgumentsWithoutAShell)
+{
+  BakeRequest request;
+  request.program = program("for a in \"$@\"; do echo \"<$a>\"; done; exit 1");
+  request.scene = "a scene; $(true).yaml";
+  request.mesh_directory = "meshes of mine";
+  request.accuracy = "fine";
+  fault(request);
+  ASSERT_EQ(log_.size(), 8u);
+  EXPECT_EQ(log_[0], "<bake>");
+  EXPECT_EQ(log_[1], "<a scene; $(true).yaml>");
+  EXPECT_EQ(log_[2], "<-o>");
+  EXPECT_EQ(log_[5], "<meshes of mine>");
+  EXPECT_EQ(log_[6], "<--accuracy>");
+  EXPECT_EQ(log_[7], "<fine>");
+}
+
+TEST_F(ModelSource, AFailedBakeIsAnErrorWithWhatItSaid)
+{
+  BakeRequest request;
+  request.program = program("echo voxelise ...; echo 'scene.yaml:3: skin: bad' >&2; exit 1");
+  EXPECT_EQ(fault(request), "scene.yaml:3: skin: bad");
+  EXPECT_EQ(log_.size(), 2u);
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(ModelSource, ACrashIsAnErrorWithItsSignal)
+{
+  BakeRequest request;
+  request.program = program("kill -SEGV $$");
+  EXPECT_NE(fault(request).find("signal 11"), std::string::npos);
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(ModelSource, ABakeThatWritesNothingIsAnError)
+{
+  BakeRequest request;
+  request.program = program("exit 0");
+  EXPECT_NE(fault(request).find("model.vtkhdf"), std::string::npos);
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(ModelSource, AProgramThatIsNotThereIsAnError)
+{
+  BakeRequest request;
+  request.program = "/nowhere/frontalis";
+  EXPECT_NE(fault(request).find("/nowhere/frontalis"), std::string::npos);
+  EXPECT_THROW(find_program("/nowhere/frontalis"), Error);
+  EXPECT_THROW(find_program(folder_.string()), Error);
+  const std::string there = program("exit 0");
+  EXPECT_EQ(find_program(there), there);
+}
+
+TEST_F(ModelSource, FindsTheProgramBesideTheLibraryOrOnThePath)
+{
+  EXPECT_TRUE(fs::equivalent(find_program(""), FRONTALIS_PROGRAM));
+}
+
+TEST_F(ModelSource, ABakeCanBeInterrupted)
+{
+  BakeRequest request;
+  request.program = program("exec sleep 60");
+  std::thread later(
+      [this]
+      {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        cancelled_ = true;
+      });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_NE(fault(request).find("interrupted"), std::string::npos);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  later.join();
+  EXPECT_TRUE(left_nothing());
+}
+
+}  // namespace
+}  // namespace frontalis
