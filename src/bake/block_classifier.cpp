@@ -23,7 +23,7 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       reach_(0.5 * norm(grid.spacing)),
       crossings_(volumes.solids().size()),
       gathered_(volumes.solids().size()),
-      centre_distance_(volumes.depths().size()),
+      nearby_(volumes.depths().size()),
       solid_here_(volumes.solids().size()),
       depth_here_(volumes.depths().size())
 {

@@ -73,7 +73,15 @@ private:
   Vector3 base_{};
   std::vector<Crossing> crossings_;
   std::vector<bool> gathered_;
-  std::vector<double> centre_distance_;
+  struct Nearby
+  {
+    bool known = false;
+    std::int32_t triangle = -1;  ///< closest to base_
+    double distance = 0;         ///< of base_
+    double depth = 0;            ///< of base_
+    bool steady = false;         ///< no rim so near that the sign could change without the distance
+  };
+  std::vector<Nearby> nearby_;
   std::vector<double> material_share_;
   std::vector<double> muscle_share_;
   std::vector<double> volume_share_;

@@ -23,7 +23,7 @@ ForeheadMap::ForeheadMap(const ForeheadDimensions& dimensions)
       // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
       depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
 {
-  shift_ = -at(0, 0, 0)[0];
+  shift_ = -1 * at(0, 0, 0);
 }
 
 Vector3 ForeheadMap::bone(double s, double z) const
@@ -46,8 +46,8 @@ Vector3 ForeheadMap::bone(double s, double z) const
   const double relief = ridge + glabella - root - temple;
 
   const Vector3 normal = normalised({ std::cos(angle) / depth_axis_, std::sin(angle) / d.half_breadth, 0 });
-  return Vector3{ depth_axis_ * std::cos(angle) - setback + shift_, d.half_breadth * std::sin(angle), z } +
-         relief * normal;
+  return Vector3{ depth_axis_ * std::cos(angle) - setback, d.half_breadth * std::sin(angle), z } + relief * normal +
+         shift_;
 }
 
 double ForeheadMap::thickness(double z) const
@@ -70,7 +70,7 @@ double ForeheadMap::lower_edge(double s) const
   const double arc = std::abs(s);
   const double brow = dimensions_.brow_height;
   // nasal root, then the orbital rim, then down towards the cheek bone
-  return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 6e-3) / 14e-3) -
+  return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 4e-3) / 20e-3) -
          0.35 * brow * smooth_step((arc - 42e-3) / 30e-3);
 }
 

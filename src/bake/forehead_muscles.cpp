@@ -22,8 +22,10 @@ struct Sheet
 
 TriangleMesh thicken(const ForeheadMap& map, const Sheet& sheet, double edge)
 {
-  const auto count = [&](double length) { return std::max(2, static_cast<std::int32_t>(std::ceil(length / edge))); };
-  const std::int32_t n = count(sheet.length_a), m = count(sheet.length_b), l = count(sheet.thickness) - 1;
+  const auto count = [&](double length)
+  { return 2 * std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * length / edge))); };
+  const std::int32_t n = count(sheet.length_a), m = count(sheet.length_b),
+                     l = std::max(1, static_cast<std::int32_t>(std::ceil(sheet.thickness / edge)));
   const auto at = [&](std::int32_t i, std::int32_t j, std::int32_t k)
   {
     const double a = static_cast<double>(i) / n, b = static_cast<double>(j) / m;

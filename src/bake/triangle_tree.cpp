@@ -68,8 +68,15 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(&mesh), order_(mesh
   for (const std::int32_t t : order_)
     centroids.push_back((1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2)));
   nodes_.reserve(order_.size());
-  if (!order_.empty())
-    build(0, static_cast<std::int32_t>(order_.size()), centroids);
+  if (order_.empty())
+    return;
+  build(0, static_cast<std::int32_t>(order_.size()), centroids);
+  corners_.reserve(order_.size());
+  for (const std::int32_t t : order_)
+    corners_.push_back({ corner(t, 0), corner(t, 1), corner(t, 2) });
+  expansions_.reserve(nodes_.size());
+  for (const Node& node : nodes_)
+    expansions_.push_back(expand(node));
 }
 
 std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std::vector<Vector3>& centroids)
@@ -87,7 +94,6 @@ std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std
       node.box.include(corner(t, c));
     centres.include(centroids[static_cast<std::size_t>(t)]);
   }
-  expand(node);
   if (end - begin > leaf_size)
   {
     // halves by the median along the longest side; ties by number, so that the tree is always the same
@@ -109,12 +115,27 @@ std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std
   return index;
 }
 
-ClosestPoint TriangleTree::closest(const Vector3& p, double bound) const
+ClosestPoint TriangleTree::closest(const Vector3& p, double bound, std::int32_t hint) const
 {
   ClosestPoint best;
   if (nodes_.empty())
     return best;
   double squared = bound >= 1e150 ? 1e300 : bound * bound;
+  const auto ask = [&](std::int32_t t, const Vector3& a, const Vector3& b, const Vector3& c)
+  {
+    std::int8_t feature = 0;
+    const Vector3 q = closest_on_triangle(p, a, b, c, feature);
+    const double d = dot(q - p, q - p);
+    if (d < squared || (d == squared && (best.triangle < 0 || t < best.triangle)))
+    {
+      squared = d;
+      best.point = q;
+      best.triangle = t;
+      best.feature = feature;
+    }
+  };
+  if (hint >= 0)
+    ask(hint, corner(hint, 0), corner(hint, 1), corner(hint, 2));
   struct Entry
   {
     std::int32_t node;
@@ -135,17 +156,8 @@ ClosestPoint TriangleTree::closest(const Vector3& p, double bound) const
     {
       for (std::int32_t i = node.begin; i < node.end; ++i)
       {
-        const std::int32_t t = order_[static_cast<std::size_t>(i)];
-        std::int8_t feature = 0;
-        const Vector3 q = closest_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2), feature);
-        const double d = dot(q - p, q - p);
-        if (d < squared || (d == squared && (best.triangle < 0 || t < best.triangle)))
-        {
-          squared = d;
-          best.point = q;
-          best.triangle = t;
-          best.feature = feature;
-        }
+        const auto& corners = corners_[static_cast<std::size_t>(i)];
+        ask(order_[static_cast<std::size_t>(i)], corners[0], corners[1], corners[2]);
       }
       continue;
     }
@@ -162,12 +174,12 @@ ClosestPoint TriangleTree::closest(const Vector3& p, double bound) const
   return best;
 }
 
-bool TriangleTree::overlaps_triangle(std::int32_t triangle, const Box& box) const
+bool TriangleTree::overlaps_triangle(const std::array<Vector3, 3>& corners, const Box& box)
 {
   // separating axes of a box and a triangle (Akenine-Moeller 2001)
   const Vector3 centre = box.centre();
   const Vector3 half = 0.5 * (box.upper - box.lower);
-  const Vector3 v[3] = { corner(triangle, 0) - centre, corner(triangle, 1) - centre, corner(triangle, 2) - centre };
+  const Vector3 v[3] = { corners[0] - centre, corners[1] - centre, corners[2] - centre };
   for (std::size_t a = 0; a < 3; ++a)
   {
     if (std::min({ v[0][a], v[1][a], v[2][a] }) > half[a] || std::max({ v[0][a], v[1][a], v[2][a] }) < -half[a])
@@ -214,7 +226,7 @@ bool TriangleTree::overlaps(const Box& box) const
     }
     for (std::int32_t i = node.begin; i < node.end; ++i)
     {
-      if (overlaps_triangle(order_[static_cast<std::size_t>(i)], box))
+      if (overlaps_triangle(corners_[static_cast<std::size_t>(i)], box))
         return true;
     }
   }
@@ -242,7 +254,7 @@ void TriangleTree::gather(const Box& box, std::vector<std::int32_t>& triangles) 
     }
     for (std::int32_t i = node.begin; i < node.end; ++i)
     {
-      if (overlaps_triangle(order_[static_cast<std::size_t>(i)], box))
+      if (overlaps_triangle(corners_[static_cast<std::size_t>(i)], box))
         triangles.push_back(order_[static_cast<std::size_t>(i)]);
     }
   }

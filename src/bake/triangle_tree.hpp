@@ -29,8 +29,9 @@ public:
 
   const TriangleMesh& mesh() const { return *mesh_; }
 
-  /// The closest point within `bound` of p [m].
-  ClosestPoint closest(const Vector3& p, double bound = 1e300) const;
+  /// The closest point within `bound` of p [m]. `hint`: a triangle that may be near, asked first; the answer is the
+  /// same.
+  ClosestPoint closest(const Vector3& p, double bound = 1e300, std::int32_t hint = -1) const;
 
   bool overlaps(const Box& box) const;
   /// Appends the triangles that overlap the box, in ascending order.
@@ -45,7 +46,10 @@ private:
     Box box;
     std::int32_t begin = 0, end = 0;  ///< triangles in order_
     std::int32_t right = 0;           ///< second child; the first is the next node; 0: leaf
-    // Taylor series of the winding number about the area centroid
+  };
+  /// Taylor series of a node's winding number about its area centroid.
+  struct Expansion
+  {
     Vector3 centre{ 0, 0, 0 };
     double squared_reach = 0;
     Vector3 dipole{ 0, 0, 0 };
@@ -54,9 +58,9 @@ private:
   };
 
   std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3>& centroids);
-  void expand(Node& node) const;
-  static double far_field(const Node& node, const Vector3& p);
-  bool overlaps_triangle(std::int32_t triangle, const Box& box) const;
+  Expansion expand(const Node& node) const;
+  static double far_field(const Expansion& node, const Vector3& p);
+  static bool overlaps_triangle(const std::array<Vector3, 3>& corners, const Box& box);
   const Vector3& corner(std::int32_t triangle, std::size_t c) const
   {
     return mesh_->vertices[static_cast<std::size_t>(mesh_->triangles[static_cast<std::size_t>(triangle)][c])];
@@ -64,7 +68,9 @@ private:
 
   const TriangleMesh* mesh_;
   std::vector<std::int32_t> order_;
+  std::vector<std::array<Vector3, 3>> corners_;  ///< of the triangles, in the order of order_
   std::vector<Node> nodes_;
+  std::vector<Expansion> expansions_;
 };
 
 /// Solid angle of a triangle seen from p over 4 pi, positive where p sees its back.

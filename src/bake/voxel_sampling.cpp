@@ -47,7 +47,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
   std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
   std::fill(volume_share_.begin(), volume_share_.end(), 0);
   std::fill(gathered_.begin(), gathered_.end(), false);
-  std::fill(centre_distance_.begin(), centre_distance_.end(), -1);
+  std::fill(nearby_.begin(), nearby_.end(), Nearby());
   // a little beside the centre: symmetric scenes have edges and corners there
   base_ = box.centre() + Vector3{ 0.0131 * grid_.spacing[0], 0.0073 * grid_.spacing[1], -0.0113 * grid_.spacing[2] };
 
@@ -147,10 +147,23 @@ double BlockClassifier::sample_depth(std::size_t depth, const Vector3& p, const 
   if (state.depth[depth].known)
     return here = state.depth[depth].depth;
   const Volumes::Depth& field = volumes_.depths()[depth];
-  double& centre = centre_distance_[depth];
-  if (centre < 0)
-    centre = field.surface->tree().closest(base_).distance;
-  const ClosestPoint closest = field.surface->tree().closest(p, (centre + norm(p - base_)) * (1 + 1e-9) + 1e-12);
+  Nearby& nearby = nearby_[depth];
+  if (!nearby.known)
+  {
+    const ClosestPoint closest = field.surface->tree().closest(base_);
+    nearby.known = true;
+    nearby.triangle = closest.triangle;
+    nearby.distance = closest.distance;
+    nearby.depth = -field.surface->signed_distance(base_, closest);
+    nearby.steady = field.surface->closed() || !field.surface->rim_within(base_, closest.distance + 2.2 * reach_);
+  }
+  // depths change no faster than places: without a threshold between, that of the voxel's middle stands for this one
+  const double way = norm(p - base_);
+  const auto next = std::lower_bound(field.thresholds.begin(), field.thresholds.end(), nearby.depth - way);
+  if (nearby.steady && (next == field.thresholds.end() || *next > nearby.depth + way))
+    return here = nearby.depth;
+  const ClosestPoint closest =
+      field.surface->tree().closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12, nearby.triangle);
   return here = -field.surface->signed_distance(p, closest);
 }
 

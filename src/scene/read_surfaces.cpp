@@ -21,10 +21,19 @@ const std::vector<std::pair<std::string, Shape::Kind>>& shape_kinds()
 
 const std::vector<std::string>& forehead_parts()
 {
-  static const std::vector<std::string> parts{
-    "skin",     "skull", "rim", "frontalis_left", "frontalis_right", "corrugator_left", "corrugator_right",
-    "procerus", "galea"
-  };
+  static const std::vector<std::string> parts{ "skin",
+                                               "skull",
+                                               "rim",
+                                               "rim_upper",
+                                               "rim_lower",
+                                               "rim_lateral",
+                                               "tissue",
+                                               "frontalis_left",
+                                               "frontalis_right",
+                                               "corrugator_left",
+                                               "corrugator_right",
+                                               "procerus",
+                                               "galea" };
   return parts;
 }
 

@@ -1,0 +1,136 @@
+#include "frontalis/error.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace
+{
+
+using namespace frontalis;
+
+/// A block of 20 x 12 x 8 mm whose lower corner is the origin, and thin plates at its faces.
+Scene block_scene()
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 10e-3, 6e-3, 4e-3 }, { 20e-3, 12e-3, 8e-3 }),
+                     box_surface("floor", { 10e-3, 6e-3, -1e-3 }, { 60e-3, 60e-3, 2e-3 }),
+                     box_surface("roof", { 10e-3, 6e-3, 9.3e-3 }, { 60e-3, 60e-3, 2e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  return scene;
+}
+
+SceneConstraint constraint(const std::string& name, SceneConstraint::Kind kind, const std::string& surface)
+{
+  SceneConstraint out;
+  out.name = name;
+  out.kind = kind;
+  out.surfaces = { surface };
+  out.line = 9;
+  return out;
+}
+
+TEST(RestrictedNodes, RigidFloorSlidingRoof)
+{
+  Scene scene = block_scene();
+  scene.constraints = { constraint("hold", SceneConstraint::Kind::rigid, "floor"),
+                        constraint("glide", SceneConstraint::Kind::sliding, "roof") };
+  scene.constraints[0].bone = "skull";
+  const Model model = bake(scene);
+  ASSERT_EQ(model.bones, std::vector<std::string>{ "skull" });
+  ASSERT_EQ(model.rigid.size(), 21u * 13u);
+  for (const RigidNode& node : model.rigid)
+  {
+    EXPECT_NEAR(transformed(model.to_scene, node_position(model, node.node))[2], 0, 1e-12);
+    EXPECT_EQ(node.bone, 0);
+  }
+  // the roof's lower face is 0.3 mm above the tissue, its outward normal points down to it
+  ASSERT_EQ(model.sliding.size(), 21u * 13u);
+  for (const SlidingNode& node : model.sliding)
+  {
+    EXPECT_NEAR(transformed(model.to_scene, node_position(model, node.node))[2], 8e-3, 1e-12);
+    EXPECT_NEAR(node.distance, 0.3e-3, 1e-12);
+  }
+  ASSERT_EQ(model.constraint_surfaces.size(), 1u);
+  EXPECT_EQ(model.constraint_surfaces[0].name, "roof");
+}
+
+TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)
+{
+  // the bone's surface cuts voxels: their outer nodes lie in the bone
+  Scene scene = block_scene();
+  scene.surfaces.push_back(box_surface("bone", { 10e-3, 6e-3, 0 }, { 60e-3, 60e-3, 5e-3 }));
+  scene.volumes[0].outside = { "bone" };
+  scene.constraints = { constraint("hold", SceneConstraint::Kind::rigid, "bone") };
+  scene.constraints[0].within = 0.1e-3;
+  const Model model = bake(scene);
+  std::set<double> heights;
+  for (const RigidNode& node : model.rigid)
+    heights.insert(std::round(1e6 * transformed(model.to_scene, node_position(model, node.node))[2]));
+  // bone up to 2.5 mm: the voxel from 2 to 3 mm is half tissue, its lower nodes are caught, its upper ones are free
+  EXPECT_EQ(heights.size(), 1u);
+  EXPECT_EQ(model.rigid.size(), 21u * 13u);
+}
+
+TEST(RestrictedNodes, RigidWinsOverPrescribedOverSliding)
+{
+  Scene scene = block_scene();
+  scene.constraints = { constraint("glide", SceneConstraint::Kind::sliding, "floor"),
+                        constraint("hold", SceneConstraint::Kind::rigid, "floor") };
+  scene.constraints[1].crop.upper[0] = 5.1e-3;
+  SceneLoad load;
+  load.name = "stretch";
+  load.kind = SceneLoad::Kind::displacement;
+  load.surface = "floor";
+  load.value = { 0, 0, 2e-3 };
+  load.fixed = { false, false, true };
+  load.crop.upper[0] = 9.1e-3;
+  scene.loads = { load };
+  const Model model = bake(scene);
+  EXPECT_EQ(model.rigid.size(), 6u * 13u);
+  EXPECT_EQ(model.prescribed.size(), 4u * 13u);
+  EXPECT_EQ(model.sliding.size(), 11u * 13u);
+  // along local axes
+  ASSERT_EQ(model.loads.size(), 1u);
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    EXPECT_EQ(model.loads[0].fixed[a], model.to_scene.rotation[6 + a] == 1);
+    EXPECT_EQ(model.loads[0].value[a], 2e-3 * model.to_scene.rotation[6 + a]);
+  }
+}
+
+TEST(RestrictedNodes, AConstraintThatCatchesNothingIsNamed)
+{
+  Scene scene = block_scene();
+  scene.surfaces.push_back(box_surface("away", { 10e-3, 6e-3, 90e-3 }, { 5e-3, 5e-3, 5e-3 }));
+  scene.constraints = { constraint("hold", SceneConstraint::Kind::rigid, "away") };
+  const std::string fault = fault_of(scene);
+  EXPECT_NE(fault.find("test.yaml:9: constraint 'hold'"), std::string::npos) << fault;
+}
+
+TEST(Islands, UnheldAndCornerHungPartsAreRemoved)
+{
+  Scene scene = plain_scene(1e-3);
+  // a block; one that touches it by an edge alone; one apart, held; one apart, loose
+  scene.surfaces = { box_surface("block", { 10e-3, 10e-3, 10e-3 }, { 20e-3, 20e-3, 20e-3 }),
+                     box_surface("edge", { 21e-3, 10e-3, 21e-3 }, { 2e-3, 4e-3, 2e-3 }),
+                     box_surface("held", { 40e-3, 10e-3, 5e-3 }, { 10e-3, 10e-3, 10e-3 }),
+                     box_surface("loose", { 60e-3, 10e-3, 5e-3 }, { 10e-3, 10e-3, 10e-3 }),
+                     box_surface("floor", { 25e-3, 10e-3, -1e-3 }, { 50e-3, 60e-3, 2e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block", "edge", "held", "loose" }, "fat", true) };
+  scene.constraints = { constraint("hold", SceneConstraint::Kind::rigid, "floor") };
+  BakeReport report;
+  const Model model = bake(scene, &report);
+  EXPECT_EQ(model.voxels.size(), 8000u + 1000u);
+  bool reported = false;
+  for (const std::string& finding : report.findings)
+    reported = reported || finding.find("1016 voxels removed: 2 islands") != std::string::npos;
+  EXPECT_TRUE(reported);
+  EXPECT_EQ(model.rigid.size(), 21u * 21u + 11u * 11u);
+  for (const RigidNode& node : model.rigid)
+    EXPECT_NEAR(transformed(model.to_scene, node_position(model, node.node))[2], 0, 1e-12);
+}
+
+}  // namespace

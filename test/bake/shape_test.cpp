@@ -1,0 +1,301 @@
+#include "../../src/bake/surface.hpp"
+
+#include "frontalis/bake/forehead_shape.hpp"
+#include "frontalis/error.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace
+{
+
+using namespace frontalis;
+
+TriangleMesh joined(TriangleMesh mesh)
+{
+  join_vertices(mesh);
+  return mesh;
+}
+
+Shape cylinder(double radius, double length)
+{
+  Shape shape;
+  shape.kind = Shape::Kind::cylinder;
+  shape.axis = { 1, 2, 3 };
+  shape.centre = { 5, 6, 7 };
+  shape.radius = radius;
+  shape.length = length;
+  shape.edge = 0.05 * radius;
+  return shape;
+}
+
+TEST(BuiltInShape, IsClosedOutwardAndOfTheRightVolume)
+{
+  const auto check = [](const Shape& shape, double volume, double tolerance)
+  {
+    const TriangleMesh mesh = joined(make_shape(shape));
+    EXPECT_TRUE(unbalanced_edges(mesh).empty());
+    TriangleMesh copy = mesh;
+    EXPECT_EQ(make_orientation_consistent(copy), 0u);
+    EXPECT_NEAR(signed_volume(mesh) / volume, 1, tolerance);
+  };
+  check(*box_surface("", { 1, 2, 3 }, { 1, 2, 3 }, 0.3).shape, 6, 1e-12);
+  check(*sphere_surface("", { 1, 2, 3 }, 2, 0.1).shape, 4.0 / 3 * pi * 8, 3e-3);
+  Shape ellipsoid = *box_surface("", { 0, 0, 0 }, { 1, 2, 3 }, 0.1).shape;
+  ellipsoid.kind = Shape::Kind::ellipsoid;
+  check(ellipsoid, 4.0 / 3 * pi * 6, 3e-3);
+  check(cylinder(1, 3), pi * 3, 3e-3);
+  Shape torus = cylinder(3, 0);
+  torus.kind = Shape::Kind::torus;
+  torus.minor_radius = 1;
+  torus.edge = 0.1;
+  check(torus, 2 * pi * pi * 3, 5e-3);
+}
+
+TEST(BuiltInShape, RefusesSizesThatMakeNoBody)
+{
+  EXPECT_THROW(make_shape(*box_surface("", { 0, 0, 0 }, { 1, 0, 1 }).shape), Error);
+  EXPECT_THROW(make_shape(*sphere_surface("", { 0, 0, 0 }, 0).shape), Error);
+  Shape torus = cylinder(1, 0);
+  torus.kind = Shape::Kind::torus;
+  torus.minor_radius = 2;
+  EXPECT_THROW(make_shape(torus), Error);
+}
+
+class MeshFile : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    folder_ = std::filesystem::temp_directory_path() / ("frontalis_mesh_file_test_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) const
+  {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::string fault(const std::string& file) const
+  {
+    try
+    {
+      import_mesh(file, 1);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(MeshFile, QuadsAreSplitAndUnitsApplied)
+{
+  const std::string file = write("quad.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
+  const TriangleMesh mesh = joined(import_mesh(file, 1e-3));
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  ASSERT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_NEAR(bounding_box(mesh).upper[1], 3e-3, 1e-9);
+}
+
+TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
+{
+  const std::string obj = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string stl = write("a.stl",
+                                "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                "endloop\nendfacet\nendsolid a\n");
+  const std::string ply = write("a.ply",
+                                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  for (const std::string& file : { obj, stl, ply })
+  {
+    const TriangleMesh mesh = joined(import_mesh(file, 1));
+    ASSERT_EQ(mesh.triangles.size(), 1u) << file;
+    const Vector3& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][0])];
+    const Vector3& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][1])];
+    const Vector3& c = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][2])];
+    EXPECT_NEAR(cross(b - a, c - a)[2], 1, 1e-6) << file;
+  }
+}
+
+TEST_F(MeshFile, BadFilesAreNamedWithTheReason)
+{
+  const std::string none = (folder_ / "none.obj").string();
+  EXPECT_NE(fault(none).find(none), std::string::npos);
+  EXPECT_NE(fault(none).find("no such file"), std::string::npos);
+  EXPECT_NE(fault(write("text.stl", "no mesh at all")).find("text.stl"), std::string::npos);
+  const std::string lines = fault(write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
+  EXPECT_NE(lines.find("lines.obj"), std::string::npos);
+  EXPECT_NE(lines.find("triangles"), std::string::npos);
+  // a binary STL whose first vertex is not a number
+  std::string nan(84, '\0');
+  nan[80] = 1;
+  std::string triangle(50, '\0');
+  const float corners[9] = { std::nanf(""), 0, 0, 1, 0, 0, 0, 1, 0 };
+  std::copy_n(reinterpret_cast<const char*>(corners), 36, triangle.begin() + 12);
+  const std::string what = fault(write("nan.stl", nan + triangle));
+  EXPECT_NE(what.find("nan.stl"), std::string::npos);
+  EXPECT_NE(what.find("finite"), std::string::npos) << what;
+}
+
+TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
+{
+  const auto write_box = [&](const std::string& name, bool inside_out, bool one_turned)
+  {
+    TriangleMesh mesh = joined(make_shape(*box_surface("", { 0, 0, 0 }, { 1, 1, 1 }, 0.5).shape));
+    if (inside_out)
+      flip(mesh);
+    if (one_turned)
+      std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+    std::string text;
+    for (const Vector3& v : mesh.vertices)
+      text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
+    for (const Triangle& t : mesh.triangles)
+      text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
+    return write(name, text);
+  };
+  Scene scene = plain_scene(0.1);
+  scene.surfaces = { file_surface("good", write_box("good.obj", false, false)),
+                     file_surface("turned", write_box("turned.obj", true, false)),
+                     file_surface("mixed", write_box("mixed.obj", false, true)) };
+  BakeReport report;
+  const BakeProgress progress;
+  Stages stages(&report, progress);
+  for (const auto& surface : prepare_surfaces(scene, stages))
+    EXPECT_NEAR(signed_volume(surface->mesh()), 1, 1e-6) << surface->name();
+  const auto reported = [&](const std::string& name, const std::string& text)
+  {
+    for (const std::string& finding : report.findings)
+      if (finding.find("'" + name + "'") != std::string::npos && finding.find(text) != std::string::npos)
+        return true;
+    return false;
+  };
+  EXPECT_FALSE(reported("good", "turned"));
+  EXPECT_TRUE(reported("turned", "inside-out"));
+  EXPECT_TRUE(reported("mixed", "1 triangles turned"));
+}
+
+TriangleMesh forehead(const std::string& part) { return joined(make_forehead(*forehead_surface(part).shape)); }
+
+TEST(Forehead, ClosedPartsAreClosedAndOutward)
+{
+  for (const char* part :
+       { "tissue", "frontalis_left", "frontalis_right", "corrugator_left", "corrugator_right", "procerus", "galea" })
+  {
+    TriangleMesh mesh = forehead(part);
+    EXPECT_TRUE(unbalanced_edges(mesh).empty()) << part;
+    EXPECT_EQ(make_orientation_consistent(mesh), 0u) << part;
+    EXPECT_GT(signed_volume(mesh), 0) << part;
+  }
+  // some 110 cm2 of 4 to 8 mm
+  const double tissue = signed_volume(forehead("tissue"));
+  EXPECT_GT(tissue, 45e-6);
+  EXPECT_LT(tissue, 80e-6);
+}
+
+TEST(Forehead, HasTheStatedDimensions)
+{
+  const TriangleMesh skin = forehead("skin");
+  const Box box = bounding_box(skin);
+  EXPECT_NEAR(box.upper[2], 88e-3, 2e-3);  // hairline: brow height and forehead height over the sellion
+  EXPECT_NEAR(box.lower[2], -2e-3, 1e-3);
+  EXPECT_NEAR(box.upper[1], -box.lower[1], 1e-12);
+  EXPECT_GT(box.upper[1], 60e-3);
+  EXPECT_LT(box.upper[1], 75e-3);
+  // the sellion is the origin, and the skin faces forwards
+  const PreparedSurface surface("skin", skin, 0);
+  EXPECT_LT(surface.tree().closest({ 0, 0, 0 }).distance, 0.2e-3);
+  double area_x = 0;
+  for (const Triangle& t : skin.triangles)
+    area_x += cross(skin.vertices[static_cast<std::size_t>(t[1])] - skin.vertices[static_cast<std::size_t>(t[0])],
+                    skin.vertices[static_cast<std::size_t>(t[2])] - skin.vertices[static_cast<std::size_t>(t[0])])[0];
+  EXPECT_GT(area_x, 0.01);
+  // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
+  const PreparedSurface skull("skull", forehead("skull"), 0);
+  double thinnest = 1, thickest = 0;
+  for (const Vector3& v : skin.vertices)
+  {
+    const ClosestPoint closest = skull.tree().closest(v);
+    EXPECT_GT(skull.signed_distance(v, closest), 0);
+    EXPECT_FALSE(skull.rim_within(closest.point, 1e-3));
+    thinnest = std::min(thinnest, closest.distance);
+    thickest = std::max(thickest, closest.distance);
+  }
+  EXPECT_NEAR(thinnest, 4.5e-3, 0.3e-3);
+  EXPECT_NEAR(thickest, 8e-3, 0.3e-3);
+}
+
+TEST(Forehead, SkinIsEvenlyTriangulated)
+{
+  const TriangleMesh skin = forehead("skin");
+  double shortest = 1, longest = 0;
+  for (const Triangle& t : skin.triangles)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const double edge =
+          norm(skin.vertices[static_cast<std::size_t>(t[c])] - skin.vertices[static_cast<std::size_t>(t[(c + 1) % 3])]);
+      shortest = std::min(shortest, edge);
+      longest = std::max(longest, edge);
+    }
+  }
+  EXPECT_GT(shortest, 0.7e-3);
+  EXPECT_LT(longest, 4e-3);
+}
+
+TEST(Forehead, MusclesLieBetweenSkinAndBone)
+{
+  const PreparedSurface tissue("tissue", forehead("tissue"), 0);
+  for (const char* part : { "frontalis_left", "frontalis_right", "corrugator_left", "corrugator_right", "procerus" })
+  {
+    const TriangleMesh mesh = forehead(part);
+    std::size_t outside = 0;
+    for (const Vector3& v : mesh.vertices)
+      outside += tissue.tree().winding_number(v) < 0.5 ? 1 : 0;
+    EXPECT_LT(static_cast<double>(outside), 0.25 * static_cast<double>(mesh.vertices.size())) << part;
+  }
+}
+
+TEST(Forehead, LeftAndRightMirror)
+{
+  EXPECT_NEAR(signed_volume(forehead("frontalis_left")), signed_volume(forehead("frontalis_right")), 1e-12);
+  EXPECT_GT(bounding_box(forehead("corrugator_left")).lower[1], 0);
+  EXPECT_NEAR(bounding_box(forehead("corrugator_left")).upper[1], -bounding_box(forehead("corrugator_right")).lower[1],
+              1e-12);
+}
+
+TEST(Forehead, UnknownPartsAndDimensionsAreListed)
+{
+  Shape shape = *forehead_surface("ear").shape;
+  try
+  {
+    make_forehead(shape);
+    FAIL();
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("frontalis_left"), std::string::npos);
+  }
+  shape.part = "skin";
+  shape.dimensions = { { "hight", 0.07 } };
+  try
+  {
+    make_forehead(shape);
+    FAIL();
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("brow_thickness"), std::string::npos);
+  }
+}
+
+}  // namespace

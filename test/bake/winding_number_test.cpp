@@ -1,0 +1,137 @@
+#include "../../src/bake/surface.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+
+namespace
+{
+
+using namespace frontalis;
+
+TriangleMesh sphere_with_holes()
+{
+  TriangleMesh mesh = make_shape(*sphere_surface("ball", { 0, 0, 0 }, 1, 0.04).shape);
+  join_vertices(mesh);
+  // holes around three axes, one large
+  std::vector<bool> keep;
+  for (const Triangle& t : mesh.triangles)
+  {
+    const Vector3& v = mesh.vertices[static_cast<std::size_t>(t[0])];
+    keep.push_back(v[2] < 0.8 && v[0] < 0.95 && v[1] > -0.97);
+  }
+  return keep_triangles(mesh, keep);
+}
+
+double exact_winding(const TriangleMesh& mesh, const Vector3& p)
+{
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum += winding_of_triangle(p, mesh.vertices[static_cast<std::size_t>(t[0])],
+                               mesh.vertices[static_cast<std::size_t>(t[1])],
+                               mesh.vertices[static_cast<std::size_t>(t[2])]);
+  return sum;
+}
+
+std::vector<Vector3> points(std::size_t count, double reach)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-reach, reach);
+  std::vector<Vector3> list;
+  for (std::size_t i = 0; i < count; ++i)
+    list.push_back({ uniform(random), uniform(random), uniform(random) });
+  return list;
+}
+
+TEST(WindingNumber, IsOneInsideAndZeroOutsideAClosedSurface)
+{
+  TriangleMesh mesh = make_shape(*sphere_surface("ball", { 0, 0, 0 }, 1, 0.05).shape);
+  join_vertices(mesh);
+  const TriangleTree tree(mesh);
+  for (const Vector3& p : points(500, 1.5))
+  {
+    const double radius = norm(p);
+    if (radius > 0.98 && radius < 1.001)
+      continue;
+    EXPECT_NEAR(tree.winding_number(p), radius < 1 ? 1 : 0, 5e-3);
+  }
+}
+
+TEST(WindingNumber, AgreesWithTheExactSumOnASphereWithHoles)
+{
+  const TriangleMesh mesh = sphere_with_holes();
+  ASSERT_FALSE(unbalanced_edges(mesh).empty());
+  const TriangleTree tree(mesh);
+  double worst = 0;
+  for (const Vector3& p : points(2000, 1.5))
+    worst = std::max(worst, std::abs(tree.winding_number(p) - exact_winding(mesh, p)));
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_LT(worst, 5e-3);
+  EXPECT_GT(worst, 0);  // the series is used at all
+}
+
+TEST(WindingNumber, VariationBoundHoldsAwayFromTheSurface)
+{
+  const PreparedSurface surface("ball", sphere_with_holes(), 0);
+  ASSERT_FALSE(surface.closed());
+  const double radius = 0.02;
+  int checked = 0;
+  for (const Vector3& p : points(3000, 1.2))
+  {
+    if (surface.tree().closest(p).distance < 2 * radius)
+      continue;
+    const double bound = surface.winding_variation(p, radius);
+    const double here = exact_winding(surface.mesh(), p);
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      Vector3 q = p;
+      q[a] += radius;
+      ASSERT_LE(std::abs(exact_winding(surface.mesh(), q) - here), bound + 1e-12);
+    }
+    ++checked;
+    if (checked == 300)
+      break;
+  }
+  EXPECT_EQ(checked, 300);
+}
+
+TEST(WindingNumber, FarQueriesAreFast)
+{
+  const TriangleMesh mesh = sphere_with_holes();
+  const TriangleTree tree(mesh);
+  const std::vector<Vector3> list = points(20000, 1.5);
+  double best = 1e9, sum = 0;
+  for (int attempt = 0; attempt < 3; ++attempt)
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    for (const Vector3& p : list)
+      sum += tree.winding_number({ p[0] + 5, p[1], p[2] });
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    best = std::min(best, elapsed.count() / static_cast<double>(list.size()));
+  }
+  EXPECT_LT(std::abs(sum) / (3.0 * static_cast<double>(list.size())), 0.1);
+  EXPECT_LT(best, 1e-6);
+}
+
+TEST(SurfaceDistance, IsExactWithTheRightSign)
+{
+  TriangleMesh mesh = make_shape(*box_surface("box", { 0, 0, 0 }, { 2, 2, 2 }, 0.3).shape);
+  join_vertices(mesh);
+  const PreparedSurface surface("box", mesh, 0);
+  ASSERT_TRUE(surface.closed());
+  for (const Vector3& p : points(2000, 2))
+  {
+    // distance to a cube of half edge 1
+    const Vector3 q{ std::abs(p[0]) - 1, std::abs(p[1]) - 1, std::abs(p[2]) - 1 };
+    const Vector3 out{ std::max(q[0], 0.0), std::max(q[1], 0.0), std::max(q[2], 0.0) };
+    const double expected = norm(out) + std::min(0.0, std::max({ q[0], q[1], q[2] }));
+    const ClosestPoint closest = surface.tree().closest(p);
+    EXPECT_NEAR(surface.signed_distance(p, closest), expected, 1e-12);
+    EXPECT_EQ(surface.tree().closest(p, 0.999 * std::abs(expected)).triangle, -1);
+  }
+}
+
+}  // namespace
