@@ -1,6 +1,10 @@
 #include "frontalis/error.hpp"
 #include "stepping_solver.hpp"
 
+#if defined(FRONTALIS_WITH_CUDA)
+#include "cuda_backend.hpp"
+#endif
+
 namespace frontalis
 {
 
@@ -27,6 +31,41 @@ std::string name_of(Backend backend)
   }
 }
 
+namespace
+{
+
+// why this build or machine cannot run on a GPU; empty where it can
+std::string missing_gpu()
+{
+#if defined(FRONTALIS_WITH_CUDA)
+  return missing_cuda_device();
+#else
+  return "this build has no CUDA solver";
+#endif
+}
+
+std::unique_ptr<Solver> make_gpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+{
+  const std::string missing = missing_gpu();
+  if (!missing.empty())
+    throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
+#if defined(FRONTALIS_WITH_CUDA)
+  return make_cuda_solver(std::move(model), settings);
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace
+
+std::vector<Backend> available_backends()
+{
+  std::vector<Backend> backends{ Backend::reference, Backend::cpu };
+  if (missing_gpu().empty())
+    backends.push_back(Backend::cuda);
+  return backends;
+}
+
 std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
 {
   switch (settings.backend)
@@ -34,9 +73,12 @@ std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const So
     case Backend::reference:
       return make_reference_solver(std::move(model), settings);
     case Backend::cuda:
-      throw Error("backend cuda: this build has no CUDA solver; allowed are auto, reference, cpu");
-    default:
+      return make_gpu_solver(std::move(model), settings);
+    case Backend::cpu:
       return make_cpu_solver(std::move(model), settings);
+    default:
+      return missing_gpu().empty() ? make_gpu_solver(std::move(model), settings)
+                                   : make_cpu_solver(std::move(model), settings, "no GPU: " + missing_gpu());
   }
 }
 

@@ -20,7 +20,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 class CpuSolver : public SteppingSolver
 {
 public:
-  CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
+  CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark);
 
   void skin(SkinState& out) override { skin_state(*model_, pointers(u_).data(), out); }
   void displacements(Vectors& out) const override { interleave(u_, out); }
@@ -56,6 +56,7 @@ private:
   NodalLoads loads_;
   CpuKernelChoice kernel_;
   ThreadTeam team_;
+  std::string remark_;
   std::vector<std::int32_t> slab_;           // node planes of thread t: slab_[t] .. slab_[t + 1]
   std::vector<std::vector<float>> buffers_;  // one a thread
 };
@@ -68,7 +69,7 @@ std::vector<double> times(const std::vector<double>& a, const std::vector<double
   return product;
 }
 
-CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark)
     : SteppingSolver(std::move(model), settings),
       rows_(*model_, discretisation_.tissue_volume),
       mu_(rows_.blocks(times(discretisation_.mu, discretisation_.tissue_volume))),
@@ -78,7 +79,8 @@ CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& s
       restricted_(*model_),
       loads_(*model_),
       kernel_(choose_cpu_kernel()),
-      team_(settings.threads)
+      team_(settings.threads),
+      remark_(remark)
 {
   for (const double mass : discretisation_.node_mass)
     inverse_mass_.push_back(static_cast<float>(1 / mass));
@@ -257,14 +259,15 @@ double CpuSolver::run(const StepPlan& plan)
 std::string CpuSolver::description() const
 {
   return std::string("cpu (float, ") + kernel_.name + ", " + std::to_string(team_.size()) +
-         (team_.size() == 1 ? " thread)" : " threads)");
+         (team_.size() == 1 ? " thread" : " threads") + (remark_.empty() ? "" : "; " + remark_) + ")";
 }
 
 }  // namespace
 
-std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                        const std::string& remark)
 {
-  return std::make_unique<CpuSolver>(std::move(model), settings);
+  return std::make_unique<CpuSolver>(std::move(model), settings, remark);
 }
 
 }  // namespace frontalis

@@ -66,6 +66,8 @@ private:
 Controls rest_controls(const Model& model);
 
 std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings);
-std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings);
+/// `remark` is added to its description.
+std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                        const std::string& remark = {});
 
 }  // namespace frontalis

@@ -28,6 +28,6 @@ inline std::string backend_name(const testing::TestParamInfo<Backend>& info) { r
 }  // namespace test
 }  // namespace frontalis
 
-#define FRONTALIS_EVERY_BACKEND(suite)                                                                               \
-  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::Values(frontalis::Backend::reference, frontalis::Backend::cpu), \
+#define FRONTALIS_EVERY_BACKEND(suite)                                                          \
+  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::ValuesIn(frontalis::available_backends()), \
                            frontalis::test::backend_name)

@@ -21,6 +21,8 @@ enum class Backend
 /// "auto", "reference", "cpu" or "cuda"; throws Error naming those that exist.
 Backend backend_from_name(const std::string& name);
 std::string name_of(Backend backend);
+/// Those that can run on this machine; cuda only where this build has it and a device is there.
+std::vector<Backend> available_backends();
 
 struct SolverSettings
 {

@@ -1,0 +1,273 @@
+#include "device_model.hpp"
+
+#include "surface_tree.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <unordered_map>
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+using Entry = std::array<float, 8>;
+
+struct HashEntry
+{
+  std::size_t operator()(const Entry& entry) const
+  {
+    std::size_t hash = 1469598103934665603u;
+    for (const float x : entry)
+    {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &x, sizeof bits);
+      hash = (hash ^ bits) * 1099511628211u;
+    }
+    return hash ^ (hash >> 29);
+  }
+};
+
+std::array<double, 3> rest_position(const Model& model, std::int32_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
+
+// the bulk of what a model needs: nodes, strips, fibres
+void expect_room(const Model& model, const VoxelStrips& strips)
+{
+  const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
+  const std::size_t wanted = (model.nodes.size() + 1) * node_bytes + strips.slots.size() * sizeof(StripSlot) +
+                             strips.fibre_words.size() * sizeof(std::uint32_t) +
+                             model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
+  std::size_t free = 0, total = 0;
+  require(cudaMemGetInfo(&free, &total), "asking for free memory");
+  if (wanted > free)
+    throw Error("backend cuda: the model needs " + std::to_string(wanted) + " bytes of device memory, " +
+                std::to_string(free) + " of " + std::to_string(total) + " are free");
+}
+
+}  // namespace
+
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const StripSettings& settings)
+    : DeviceModel(model, discretisation, VoxelStrips(model, settings))
+{
+}
+
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips)
+    : rows_(strips.rows),
+      effects_(!model.fibre_muscle.empty() || !discretisation.assumed_strain[0].empty()),
+      filled_(strips.filled()),
+      device_node_((expect_room(model, strips), std::move(strips.device_node))),
+      loads_(model, device_node_)
+{
+  add_palette(discretisation, strips.slots);
+  add_fibres(model, discretisation, strips);
+  add_tasks(model, strips);
+  strips_ = DeviceArray<Strip>(strips.strips);
+  slots_ = DeviceArray<StripSlot>(strips.slots);
+  fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
+
+  StepArguments& g = constants_;
+  g.strips = strips_.data();
+  static_assert(sizeof(StripSlot) == sizeof(uint2), "a slot is read as two words");
+  g.slots = reinterpret_cast<const uint2*>(slots_.data());
+  g.strip_count = static_cast<std::uint32_t>(strips_.size());
+  g.palette = palette_.data();
+  g.stabilisation = stabilisation_.data();
+  g.fibre_words = fibre_words_.data();
+  g.fibres = fibres_.data();
+  g.fibre_muscle = fibre_muscle_.data();
+  g.tasks = tasks_.data();
+  g.load_parts = loads_.parts();
+  g.load_begin = loads_.begin();
+  g.vertex_force = loads_.vertex_force();
+  g.load_ramp = loads_.ramp();
+  g.sliding = sliding_.data();
+  g.surfaces = surfaces_.data();
+  g.prescribed = prescribed_.data();
+  g.rigid = rigid_.data();
+  g.bones = static_cast<std::int32_t>(model.bones.size());
+  const auto& h = model.spacing;
+  double sum = 0;
+  for (const double x : h)
+    sum += 1 / (x * x);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.scale[axis] = static_cast<float>(0.25 / h[axis]);
+    g.stretch_weight[axis] = static_cast<float>(1 / (h[axis] * h[axis]) / sum);
+    g.hourglass_weight[axis] = static_cast<float>(discretisation.hourglass_weight[axis]);
+  }
+}
+
+StepArguments DeviceModel::arguments() const { return constants_; }
+
+// voxels of equal make share an entry; entry 0 has no stiffness
+void DeviceModel::add_palette(const Discretisation& d, std::vector<StripSlot>& slots)
+{
+  const bool stabilised = !d.assumed_strain[0].empty();
+  std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
+  std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
+  std::vector<std::uint32_t> entry_of(d.mu.size());
+  std::unordered_map<Entry, std::uint32_t, HashEntry> known;
+  Entry latest{};
+  std::uint32_t index = 0;
+  for (std::size_t e = 0; e < d.mu.size(); ++e)
+  {
+    Entry entry{ { static_cast<float>(d.mu[e] * d.tissue_volume[e]),
+                   static_cast<float>(d.kappa[e] * d.tissue_volume[e]), static_cast<float>(d.hourglass[e]),
+                   static_cast<float>(d.frequency_squared[e]) } };
+    if (stabilised)
+      for (int part = 0; part < 4; ++part)
+        entry[4 + part] = static_cast<float>(d.assumed_strain[part][e]);
+    if (index == 0 || entry != latest)
+    {
+      const auto found = known.emplace(entry, static_cast<std::uint32_t>(entries.size()));
+      if (found.second)
+      {
+        entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
+        if (stabilised)
+          more.push_back(float4{ entry[4], entry[5], entry[6], entry[7] });
+      }
+      index = found.first->second;
+      latest = entry;
+    }
+    entry_of[e] = index;
+  }
+  for (auto& slot : slots)
+    slot.voxel = slot.voxel > 0 ? entry_of[slot.voxel - 1] : 0;
+  palette_ = DeviceArray<float4>(entries);
+  stabilisation_ = DeviceArray<float4>(more);
+}
+
+void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips)
+{
+  if (strips.fibre_words.empty())
+    return;
+  std::vector<float4> fibres;
+  std::vector<std::uint32_t> muscles;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+    {
+      const auto index = static_cast<std::uint32_t>(model.fibre_muscle[f]);
+      const Muscle& muscle = model.muscles[index];
+      const auto& a = model.fibre_direction[f];
+      fibres.push_back(
+          { a[0], a[1], a[2],
+            static_cast<float>(muscle.stress_reference * model.fibre_weight[f] * discretisation.tissue_volume[e]) });
+      muscles.push_back(index | (muscle.tension_length ? 0x40000000u : 0) | (muscle.passive ? 0x80000000u : 0));
+    }
+  fibres_ = DeviceArray<float4>(fibres);
+  fibre_muscle_ = DeviceArray<std::uint32_t>(muscles);
+}
+
+void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of)
+{
+  std::vector<SurfaceSearch> surfaces;
+  for (const auto& surface : model.constraint_surfaces)
+  {
+    const SurfaceTree tree(surface.mesh);
+    boxes_.emplace_back(tree.boxes());
+    triangles_.emplace_back(tree.triangles());
+    surfaces.push_back(
+        { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
+  }
+  surfaces_ = DeviceArray<SurfaceSearch>(surfaces);
+  for (const auto& node : model.sliding)
+  {
+    SlidingContact contact{};
+    const auto rest = rest_position(model, node.node);
+    std::copy(rest.begin(), rest.end(), contact.rest);
+    contact.distance = node.distance;
+    contact.surface = node.surface;
+    contact.stale = 1;
+    task_of[node.node].sliding = static_cast<std::int32_t>(contacts_at_rest_.size());
+    contacts_at_rest_.push_back(contact);
+  }
+  sliding_ = DeviceArray<SlidingContact>(contacts_at_rest_);
+}
+
+void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
+{
+  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, -1, -1, -1, -1 });
+  add_sliding(model, task_of);
+  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
+    task_of[loads_.nodes()[l]].load = static_cast<std::int32_t>(l);
+  std::vector<PrescribedMotion> prescribed;
+  for (const auto& node : model.prescribed)
+  {
+    std::int32_t& index = task_of[node.node].prescribed;
+    if (index < 0)
+    {
+      index = static_cast<std::int32_t>(prescribed.size());
+      prescribed.push_back({});
+    }
+    const Load& load = model.loads[node.load];
+    for (int axis = 0; axis < 3; ++axis)
+      if (load.fixed[axis])
+      {
+        prescribed[index].fixed[axis] = true;
+        prescribed[index].value[axis] = load.value[axis];
+        prescribed[index].ramp[axis] = load.ramp;
+      }
+  }
+  std::vector<RigidMotion> rigid;
+  std::vector<char> still(model.nodes.size(), 0);
+  for (const auto& node : model.rigid)
+  {
+    still[node.node] = node.bone < 0;
+    task_of[node.node].rigid = node.bone < 0 ? -1 : static_cast<std::int32_t>(rigid.size());
+    if (node.bone < 0)
+      continue;
+    RigidMotion motion{};
+    const auto rest = rest_position(model, node.node);
+    std::copy(rest.begin(), rest.end(), motion.rest);
+    motion.bone = node.bone;
+    rigid.push_back(motion);
+  }
+
+  // tasks strip by strip; nodes that never move are not stepped at all
+  std::vector<std::uint32_t> count(strips.strips.size() + 1, 0);
+  const auto has_task = [&](std::size_t n)
+  {
+    const NodeTask& t = task_of[n];
+    return still[n] == 0 && (t.load >= 0 || t.sliding >= 0 || t.prescribed >= 0 || t.rigid >= 0);
+  };
+  std::vector<bool> still_device(model.nodes.size() + 1, false);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    if (still[n] != 0)
+    {
+      still_nodes_.push_back(static_cast<std::uint32_t>(n));
+      still_device[device_node_[n]] = true;
+    }
+    if (has_task(n))
+      ++count[strips.strip_of_node[n] + 1];
+  }
+  for (std::size_t s = 0; s < strips.strips.size(); ++s)
+  {
+    count[s + 1] += count[s];
+    strips.strips[s].task_begin = count[s];
+    strips.strips[s].task_end = count[s + 1];
+  }
+  std::vector<NodeTask> tasks(count.back());
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (has_task(n))
+    {
+      task_of[n].node = device_node_[n];
+      tasks[count[strips.strip_of_node[n]]++] = task_of[n];
+    }
+  if (!still_nodes_.empty())
+    for (auto& slot : strips.slots)
+      if (still_device[slot.node & StripSlot::node_mask])
+        slot.node &= ~StripSlot::updated;
+  tasks_ = DeviceArray<NodeTask>(tasks);
+  prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
+  rigid_ = DeviceArray<RigidMotion>(rigid);
+}
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "device_memory.hpp"
+#include "device_surface.hpp"
+#include "discretisation.hpp"
+#include "step_kernel.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
+class DeviceModel
+{
+public:
+  /// Throws Error with the bytes wanted and free where the device has too little memory, before anything is allocated.
+  DeviceModel(const Model& model, const Discretisation& discretisation, const StripSettings& settings);
+
+  /// Arguments of a step with all that is constant filled in.
+  StepArguments arguments() const;
+  /// Contacts as they are at rest.
+  void reset_contacts() { sliding_.upload(contacts_at_rest_.data(), contacts_at_rest_.size()); }
+
+  int rows() const { return rows_; }
+  bool effects() const { return effects_; }
+  std::size_t strips() const { return strips_.size(); }
+  double filled() const { return filled_; }
+  std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
+  const std::vector<std::uint32_t>& device_node() const { return device_node_; }
+  const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
+  DeviceLoads& loads() { return loads_; }
+
+private:
+  DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips);
+  void add_palette(const Discretisation& discretisation, std::vector<StripSlot>& slots);
+  void add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips);
+  void add_tasks(const Model& model, VoxelStrips& strips);
+  void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
+
+  int rows_;
+  bool effects_;
+  double filled_;
+  std::vector<std::uint32_t> device_node_;
+  std::vector<std::uint32_t> still_nodes_;
+  StepArguments constants_{};
+
+  DeviceArray<Strip> strips_;
+  DeviceArray<StripSlot> slots_;
+  DeviceArray<float4> palette_, stabilisation_;
+  DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
+  DeviceArray<float4> fibres_;
+  DeviceArray<NodeTask> tasks_;
+  DeviceArray<SlidingContact> sliding_;
+  std::vector<SlidingContact> contacts_at_rest_;
+  std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
+  std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
+  DeviceArray<SurfaceSearch> surfaces_;
+  DeviceArray<PrescribedMotion> prescribed_;
+  DeviceArray<RigidMotion> rigid_;
+  DeviceLoads loads_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,104 @@
+#pragma once
+
+#include "frontalis/physics/assumed_strain.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/time_step.hpp"
+#include "step_kernel.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// What a voxel's stress needs besides its deformation.
+struct ElementPlace
+{
+  std::uint32_t palette;
+  std::uint32_t fibre_word;
+  float fraction;  ///< of the plan that has passed at the end of the step: where activations are
+};
+
+/// Stress of the fibres of a voxel times its tissue volume: P += S (F a0) (x) a0.
+__device__ __forceinline__ void add_fibres(const StepArguments& g, const ElementPlace& place,
+                                           const physics::Kinematics<float>& k, physics::Matrix3<float>& P)
+{
+  const std::uint32_t first = place.fibre_word >> 4, last = first + (place.fibre_word & 15u);
+  for (std::uint32_t f = first; f < last; ++f)
+  {
+    const float4 fibre = __ldg(g.fibres + f);
+    const std::uint32_t word = __ldg(g.fibre_muscle + f);
+    const std::uint32_t muscle = word & 0x3fffffffu;
+    const float begin = g.activation_begin[muscle];
+    const float activation = begin + place.fraction * (g.activation_end[muscle] - begin);
+    const float a[3] = { fibre.x, fibre.y, fibre.z };
+    float along[3];
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
+    const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
+    const float S = physics::fibre_stress<float>(squared, k.J, fibre.w, activation, (word & 0x40000000u) ? 1.0f : 0.0f,
+                                                 (word & 0x80000000u) ? 1.0f : 0.0f);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+    {
+      const float traction = S * along[i];
+#pragma unroll
+      for (int j = 0; j < 3; ++j)
+        P.a[i][j] += traction * a[j];
+    }
+  }
+}
+
+/// Replaces the transformed displacements of a voxel by the forces conjugate to them; the one place where the GPU
+/// computes stress. Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
+template <bool Effects>
+__device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place, float (&mode)[3][8],
+                                               bool look, std::uint32_t& frequency_bits)
+{
+  const float4 entry = __ldg(g.palette + place.palette);
+  const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
+  const auto isotropic = physics::stress(physics::NeoHookean<float>{ entry.x, entry.y }, k);
+  physics::Matrix3<float> P;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+#pragma unroll
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
+  if (Effects)
+    add_fibres(g, place, k, P);
+  if (look)
+  {
+    const float growth = physics::stiffening(k.cofactor, g.stretch_weight);
+    const float now = entry.w * fmaxf(growth, 1.0f);
+    // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
+    frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
+  }
+  if (Effects && g.stabilisation != nullptr)
+  {
+    const float4 s = __ldg(g.stabilisation + place.palette);
+    const physics::AssumedStrain<float> stiffness{ s.x, s.y, s.z, s.w };
+    physics::hourglass_forces(stiffness, entry.z, g.hourglass_weight, k.F, mode, P);
+  }
+  else
+  {
+#pragma unroll
+    for (int c = 0; c < 3; ++c)
+#pragma unroll
+      for (int m = 0; m < 8; ++m)
+        if (physics::is_hourglass_mode(m))
+          mode[c][m] *= entry.z;
+  }
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    mode[c][0] = 0;
+#pragma unroll
+    for (int j = 0; j < 3; ++j)
+      mode[c][physics::gradient_mode(j)] = P.a[c][j] * g.scale[j];
+  }
+}
+
+}  // namespace cuda
+}  // namespace frontalis

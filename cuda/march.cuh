@@ -1,0 +1,191 @@
+#pragma once
+
+#include "element_stress.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+constexpr unsigned whole_warp = 0xffffffffu;
+
+/// One row of nodes after the x step of the Walsh-Hadamard transform: sum and difference with the neighbour in x.
+struct RowValues
+{
+  float sum[3];
+  float difference[3];
+};
+
+__device__ __forceinline__ RowValues transform_x(const float4& u)
+{
+  const float here[3] = { u.x, u.y, u.z };
+  RowValues row;
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    const float next = __shfl_down_sync(whole_warp, here[c], 1);
+    row.sum[c] = here[c] + next;
+    row.difference[c] = next - here[c];
+  }
+  return row;
+}
+
+/// Forces on a row of nodes before the transposed x step: component, then sum and difference.
+struct RowForces
+{
+  float part[3][2];
+};
+
+__device__ __forceinline__ RowForces no_forces() { return { { { 0, 0 }, { 0, 0 }, { 0, 0 } } }; }
+
+__device__ __forceinline__ void add(RowForces& to, const RowForces& from)
+{
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    to.part[c][0] += from.part[c][0];
+    to.part[c][1] += from.part[c][1];
+  }
+}
+
+/// y and z steps of the transform, the stress, and their transposes: voxel between rows a, b of the planes below,
+/// above.
+template <bool Effects>
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+                                             const RowValues& below_a, const RowValues& below_b,
+                                             const RowValues& above_a, const RowValues& above_b, bool look,
+                                             std::uint32_t& frequency_bits, RowForces force[2][2])
+{
+  float mode[3][8];
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    const float low[4] = { below_a.sum[c] + below_b.sum[c], below_a.difference[c] + below_b.difference[c],
+                           below_b.sum[c] - below_a.sum[c], below_b.difference[c] - below_a.difference[c] };
+    const float high[4] = { above_a.sum[c] + above_b.sum[c], above_a.difference[c] + above_b.difference[c],
+                            above_b.sum[c] - above_a.sum[c], above_b.difference[c] - above_a.difference[c] };
+#pragma unroll
+    for (int q = 0; q < 4; ++q)
+    {
+      mode[c][q] = low[q] + high[q];
+      mode[c][q + 4] = high[q] - low[q];
+    }
+  }
+  element_forces<Effects>(g, place, mode, look, frequency_bits);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+#pragma unroll
+    for (int x = 0; x < 2; ++x)
+    {
+      const float without_y = mode[c][x], with_y = mode[c][x + 2];
+      const float below0 = without_y - mode[c][x + 4], below1 = with_y - mode[c][x + 6];
+      const float above0 = without_y + mode[c][x + 4], above1 = with_y + mode[c][x + 6];
+      force[0][0].part[c][x] = below0 - below1;
+      force[0][1].part[c][x] = below0 + below1;
+      force[1][0].part[c][x] = above0 - above1;
+      force[1][1].part[c][x] = above0 + above1;
+    }
+}
+
+/// The transposed x step, then the update of the node or its force alone.
+__device__ __forceinline__ void step_node(const StepArguments& g, const float4* u, float4* next, std::uint32_t word,
+                                          int left, const RowForces& row)
+{
+  float force[3];
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    // the lane before the first is the last one, which never holds a voxel
+    const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
+    force[c] = row.part[c][0] - row.part[c][1] + from_left;
+  }
+  const std::uint32_t node = word & StripSlot::node_mask;
+  if (g.forces_only)
+  {
+    if (word & StripSlot::owned)
+      next[node] = make_float4(force[0], force[1], force[2], 0);
+  }
+  else if (word & StripSlot::updated)
+  {
+    const float4 own = u[node];
+    const float share = g.gain * own.w;
+    const float x = g.keep * g.v[0][node] - share * force[0] + g.impulse[0];
+    const float y = g.keep * g.v[1][node] - share * force[1] + g.impulse[1];
+    const float z = g.keep * g.v[2][node] - share * force[2] + g.impulse[2];
+    g.v[0][node] = x;
+    g.v[1][node] = y;
+    g.v[2][node] = z;
+    next[node] = make_float4(own.x + g.dt * x, own.y + g.dt * y, own.z + g.dt * z, own.w);
+  }
+}
+
+/// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
+/// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides.
+template <int Rows, bool Effects>
+__device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const float4* u, float4* next,
+                                      float fraction, bool look, std::uint32_t& frequency_bits)
+{
+  constexpr int nodes = Rows + 2;
+  const int lane = threadIdx.x & 31;
+  const int left = (lane + 31) & 31;
+  const uint2* slot = g.slots + strip.slot_begin + lane;
+  RowValues below[nodes];
+  RowForces carried[Rows];
+  uint2 here[nodes];
+#pragma unroll
+  for (int r = 0; r < nodes; ++r)
+    here[r] = __ldg(slot + r * 32);
+#pragma unroll
+  for (int r = 0; r < nodes; ++r)
+    below[r] = transform_x(u[here[r].x & StripSlot::node_mask]);
+#pragma unroll
+  for (int r = 0; r < Rows; ++r)
+    carried[r] = no_forces();
+  ElementPlace place{};
+  place.fraction = fraction;
+  std::uint32_t fibre_word = strip.fibre_begin + lane;
+  for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
+  {
+    slot += nodes * 32;
+    uint2 above_slot[nodes];
+    const bool more = plane + 1 < strip.planes;
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      above_slot[r] = more ? __ldg(slot + r * 32) : make_uint2(0, 0);
+    RowForces pending_below = no_forces(), pending_above = no_forces();
+    RowValues above_a = transform_x(u[above_slot[0].x & StripSlot::node_mask]);
+#pragma unroll
+    for (int r = 0; r <= Rows; ++r)
+    {
+      const RowValues above_b = transform_x(u[above_slot[r + 1].x & StripSlot::node_mask]);
+      RowForces force[2][2] = { { no_forces(), no_forces() }, { no_forces(), no_forces() } };
+      if (__any_sync(whole_warp, here[r].y != 0))
+      {
+        place.palette = here[r].y;
+        place.fibre_word = Effects && strip.fibre_begin != Strip::none ? __ldg(g.fibre_words + fibre_word) : 0;
+        voxel_forces<Effects>(g, place, below[r], below[r + 1], above_a, above_b, look, frequency_bits, force);
+      }
+      fibre_word += 32;
+      if (r > 0)
+      {
+        RowForces sum = carried[r - 1];
+        add(sum, pending_below);
+        add(sum, force[0][0]);
+        step_node(g, u, next, here[r].x, left, sum);
+        carried[r - 1] = pending_above;
+        add(carried[r - 1], force[1][0]);
+      }
+      pending_below = force[0][1];
+      pending_above = force[1][1];
+      below[r] = above_a;
+      above_a = above_b;
+    }
+    below[nodes - 1] = above_a;
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      here[r] = above_slot[r];
+  }
+}
+
+}  // namespace cuda
+}  // namespace frontalis

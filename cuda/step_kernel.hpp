@@ -1,0 +1,116 @@
+#pragma once
+
+#include "surface_search.hpp"
+#include "voxel_strips.hpp"
+
+#include <cuda_runtime_api.h>
+#include <vector_types.h>
+
+namespace frontalis
+{
+
+/// What holds or moves one node besides the forces of its voxels; indices below 0: not there.
+struct NodeTask
+{
+  std::uint32_t node;       ///< device node
+  std::int32_t load;        ///< into StepArguments::load_begin
+  std::int32_t sliding;     ///< into StepArguments::sliding
+  std::int32_t prescribed;  ///< into StepArguments::prescribed
+  std::int32_t rigid;       ///< into StepArguments::rigid
+};
+
+/// Part of a vertex's force that a node takes.
+struct LoadPart
+{
+  std::int32_t vertex;  ///< into StepArguments::vertex_force
+  std::int32_t load;    ///< whose ramp it follows
+  float weight;
+};
+
+struct PrescribedMotion
+{
+  double value[3];  ///< [m]
+  double ramp[3];   ///< [s]
+  bool fixed[3];
+};
+
+struct RigidMotion
+{
+  double rest[3];  ///< [m]
+  std::int32_t bone;
+};
+
+/// A node on a surface, with the tangent plane of the offset surface at its latest exact closest point.
+struct SlidingContact
+{
+  double rest[3];
+  double distance;
+  double reference[3];
+  double foot[3];
+  double normal[3];
+  std::int32_t surface;
+  std::int32_t stale;
+};
+
+/// Steps of equal length, or the internal forces alone. Pointers are to device memory.
+struct StepArguments
+{
+  // what is where
+  const Strip* strips;
+  const uint2* slots;  ///< StripSlot: node and palette entry
+  std::uint32_t strip_count;
+  float4* u[2];  ///< displacement [m] and inverse mass [1/kg]; u[first] holds the present ones
+  float* v[3];   ///< velocity [m/s]
+  std::int32_t first;
+
+  // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], frequency
+  // bound squared at rest [1/s2]; entry 0 is nothing
+  const float4* palette;
+  const float4* stabilisation;  ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
+  const std::uint32_t* fibre_words;
+  const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
+  const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
+  const float* activation_begin;
+  const float* activation_end;
+
+  // restricted and loaded nodes
+  const NodeTask* tasks;
+  const LoadPart* load_parts;
+  const std::int32_t* load_begin;
+  const double* vertex_force;  ///< three a vertex, at full ramp [N]
+  const double* load_ramp;     ///< one a load [s]
+  SlidingContact* sliding;
+  const SurfaceSearch* surfaces;
+  const PrescribedMotion* prescribed;
+  const RigidMotion* rigid;
+  const double* poses;  ///< [step][bone][12]: rotation row by row, translation
+  std::int32_t bones;
+
+  float scale[3];             ///< 1 / (4 h)
+  float stretch_weight[3];    ///< 1/h^2 over the sum of the three
+  float hourglass_weight[3];  ///< 1 / (4 sqrt(3) h)
+  float dt, keep, gain;       ///< v = keep v - gain f / m + impulse
+  float impulse[3];
+  double time, dt_exact;
+  std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
+  std::uint32_t* look;                       ///< bits of the largest frequency bound squared at the plan's last step
+  bool forces_only;                          ///< internal forces into u[1 - first], nothing updated
+  std::uint32_t* barrier;
+  std::uint32_t barrier_base;
+};
+
+/// Threads of a block; a warp walks one strip at a time.
+constexpr int step_block = 128;
+
+/// Rows a strip that kernels exist for.
+constexpr int strip_rows_small = 2;
+constexpr int strip_rows_large = 4;
+
+/// Blocks of the step kernel that a device holds at once.
+int resident_blocks(int rows, bool effects);
+
+/// Launches steps [step_begin, step_end) of the plan. Several of them need all blocks resident at once. `effects`: the
+/// model has fibres or assumed-strain hourglass control.
+cudaError_t launch_steps(const StepArguments& arguments, int rows, bool effects, int blocks, cudaStream_t stream);
+
+}  // namespace frontalis

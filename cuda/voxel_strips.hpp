@@ -1,0 +1,60 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// How the voxels of a model are cut up for warps. A strip is a bundle of 32 node columns, `rows` rows deep in y, that
+/// a warp walks along z: lanes are neighbours in x, each lane holds its rows in registers. The lanes of a strip may
+/// belong to several pieces of the model, so that thin curved shells fill them.
+struct StripSettings
+{
+  int rows = 4;     ///< rows of nodes that a strip owns
+  int planes = 64;  ///< most planes of nodes that it owns
+};
+
+/// One place of a strip: a node, and the voxel whose lower corner it is.
+struct StripSlot
+{
+  static constexpr std::uint32_t owned = 0x80000000u;    ///< this strip sums the node's force
+  static constexpr std::uint32_t updated = 0x40000000u;  ///< and steps it
+  static constexpr std::uint32_t node_mask = 0x3fffffffu;
+
+  std::uint32_t node;   ///< device node, with flags; 0: none
+  std::uint32_t voxel;  ///< 0: none, else 1 + the model's voxel (or what the caller puts in its place)
+};
+
+struct Strip
+{
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  std::uint32_t slot_begin;  ///< slots lie [plane][row 0 .. rows + 1][lane]
+  std::uint32_t planes;
+  std::uint32_t fibre_begin;  ///< of words laid out [plane][row 0 .. rows][lane], none without fibres
+  std::uint32_t task_begin;   ///< restricted or loaded nodes that this strip owns
+  std::uint32_t task_end;
+};
+
+/// The strips of a model. Device nodes are numbered in the order in which strips own them, from 1; node 0 is a place
+/// holder that never moves.
+struct VoxelStrips
+{
+  VoxelStrips(const Model& model, const StripSettings& settings);
+
+  int rows = 0;
+  std::vector<Strip> strips;  ///< long ones first
+  std::vector<StripSlot> slots;
+  std::vector<std::uint32_t> fibre_words;    ///< first fibre entry * 16 + number of entries, of the voxel in the place
+  std::vector<std::uint32_t> device_node;    ///< of each model node
+  std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
+
+  /// Share of the places of voxels that hold one: what a sparse shell loses.
+  double filled() const;
+};
+
+}  // namespace frontalis
