@@ -28,12 +28,21 @@ class ModelSource : public testing::Test
 protected:
   ModelSource()
   {
+    const char* const given = std::getenv("TMPDIR");
+    given_ = given ? given : "";
     std::string pattern = (fs::temp_directory_path() / "model_source_test-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
     fs::create_directory(folder_ / "temporary");
     setenv("TMPDIR", (folder_ / "temporary").c_str(), 1);
   }
-  ~ModelSource() override { fs::remove_all(folder_); }
+  ~ModelSource() override
+  {
+    fs::remove_all(folder_);
+    if (given_.empty())
+      unsetenv("TMPDIR");
+    else
+      setenv("TMPDIR", given_.c_str(), 1);
+  }
 
   std::string program(const std::string& body)
   {
@@ -59,6 +68,7 @@ protected:
 
   bool left_nothing() const { return fs::is_empty(folder_ / "temporary"); }
 
+  std::string given_;  ///< TMPDIR as it was
   fs::path folder_;
   std::vector<std::string> log_;
   std::atomic<bool> cancelled_{ false };

@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""Faces that have nothing to simulate stay alive, answer, and say in /diagnostics what is wrong."""
+
+import unittest
+
+import rospy
+import rostest
+
+from face import Face, wait
+
+ERROR = 2
+
+
+class Fault(unittest.TestCase):
+    def check(self, name, *words):
+        face = Face(name)
+        face.wait_for_service()
+        wait(lambda: face.diagnostics and face.diagnostics[0].level == ERROR, "an error of " + name, 60)
+        for word in words:
+            self.assertIn(word, face.diagnostics[0].message)
+        for answer in (face.list_muscles(), face.reset(), face.pause(True), face.step(0.1)):
+            self.assertFalse(answer.success)
+            self.assertEqual(answer.message, face.diagnostics[0].message)
+        face.command(lift=0.5)
+        wait(lambda: face.state is not None and face.state.failed, "a failed state", 20)
+        self.assertEqual(face.state.message, face.diagnostics[0].message)
+        self.assertFalse(face.list_muscles().success)
+
+    def test_scene_that_is_not_there(self):
+        self.check("/no_file", "nowhere.yaml")
+
+    def test_scene_with_a_fault(self):
+        self.check("/bad_scene", "five_faults.yaml:")
+
+    def test_bad_parameters_are_told_all_at_once(self):
+        self.check("/bad_parameters", "~scene nor ~model", "pace", "'slow'", "lock_step", "threads", "backend")
+
+    def test_program_that_is_not_there(self):
+        self.check("/no_program", "/nowhere/frontalis")
+
+
+if __name__ == "__main__":
+    rospy.init_node("fault_test")
+    rostest.rosrun("frontalis", "fault", Fault)

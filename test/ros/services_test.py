@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""Services, inputs, topics and frames of a face that runs a small scene in lock-step, so that every number is exact."""
+
+import math
+import struct
+import unittest
+
+import rospy
+import rostest
+import tf2_ros
+from sensor_msgs.msg import JointState, PointCloud2
+from shape_msgs.msg import Mesh
+from std_msgs.msg import String
+from visualization_msgs.msg import Marker
+
+from face import Face, wait
+
+
+class Services(unittest.TestCase):
+    def setUp(self):
+        self.face = Face()
+        self.face.wait_until_ready(60)
+        self.assertTrue(self.face.reset().success)
+        wait(lambda: self.face.state.time == 0 and self.face.target() == {"lift": 0}, "the reset", 10)
+
+    def test_list_muscles_names_muscles_and_expressions(self):
+        answer = self.face.list_muscles()
+        self.assertTrue(answer.success)
+        self.assertEqual(answer.name, ["lift"])
+        self.assertEqual(answer.activation, (0,))
+        self.assertEqual(answer.target, (0,))
+        self.assertEqual(sorted(answer.expressions), ["relax", "shorten"])
+
+    def test_step_advances_by_exactly_so_many_seconds(self):
+        first = self.face.step(0.05)
+        self.assertTrue(first.success, first.message)
+        self.assertAlmostEqual(first.time, 0.05, 9)
+        self.assertAlmostEqual(self.face.step(0.1).time, 0.15, 9)
+        wait(lambda: abs(self.face.state.time - 0.15) < 1e-9, "the state at 0.15 s", 10)
+        rospy.sleep(0.5)
+        self.assertAlmostEqual(self.face.state.time, 0.15, 9)
+
+    def test_step_refuses_what_is_no_time(self):
+        for seconds in (0, -1, math.nan, math.inf):
+            answer = self.face.step(seconds)
+            self.assertFalse(answer.success)
+            self.assertIn("seconds", answer.message)
+        self.assertEqual(self.face.state.time, 0)
+
+    def test_muscle_lifts_the_tip_and_reset_brings_it_back(self):
+        rest = self.face.height("tip")
+        self.face.command(lift=0.75)
+        wait(lambda: self.face.target() == {"lift": 0.75}, "the command", 10)
+        self.assertTrue(self.face.step(0.5).success)
+        wait(lambda: self.face.state.time > 0.4, "the state", 10)
+        wait(lambda: self.face.height("tip") - rest > 1e-3, "the tip a millimetre up", 10)
+        self.assertEqual(self.face.state.activation, (0.75,))
+        self.assertEqual(self.face.state.name, ["lift"])
+        self.assertGreater(self.face.state.internal_energy, 0)
+        self.assertTrue(self.face.reset().success)
+        wait(lambda: self.face.state.time == 0, "the reset", 10)
+        wait(lambda: abs(self.face.height("tip") - rest) < 1e-9, "the tip at rest", 10)
+        self.assertEqual(self.face.target(), {"lift": 0})
+
+    def test_joint_states_and_expression_command_too(self):
+        joints = rospy.Publisher("/face/joint_states", JointState, queue_size=1)
+        expression = rospy.Publisher("/face/expression", String, queue_size=1)
+        wait(lambda: joints.get_num_connections() and expression.get_num_connections(), "connections", 30)
+        joints.publish(JointState(name=["lift"], position=[0.25]))
+        wait(lambda: self.face.target() == {"lift": 0.25}, "the joint state", 10)
+        expression.publish("shorten")
+        wait(lambda: self.face.target() == {"lift": 0.5}, "the expression", 10)
+        expression.publish("relax")
+        wait(lambda: self.face.target() == {"lift": 0}, "the relaxation", 10)
+
+    def test_bad_messages_leave_the_state_untouched(self):
+        self.face.command(lift=0.4)
+        wait(lambda: self.face.target() == {"lift": 0.4}, "the command", 10)
+        joints = rospy.Publisher("/face/joint_states", JointState, queue_size=1)
+        expression = rospy.Publisher("/face/expression", String, queue_size=1)
+        wait(lambda: joints.get_num_connections() and expression.get_num_connections(), "connections", 30)
+        for names, values in (
+            (["lift"], []),
+            (["lift"], [0.9, 0.9]),
+            (["lift"], [math.nan]),
+            (["lift"], [1.5]),
+            (["lift"], [-0.1]),
+            (["lift", "nobody"], [0.9, 0.1]),
+            (["lift", "lift"], [0.8, 0.9]),
+        ):
+            self.face.send(names, values)
+        joints.publish(JointState(name=["lift"], velocity=[0.9]))
+        joints.publish(JointState(name=["lift"], position=[math.inf]))
+        expression.publish("astonishment")
+        rospy.sleep(1)
+        self.assertEqual(self.face.target(), {"lift": 0.4})
+        self.assertTrue(self.face.step(0.1).success)
+        wait(lambda: self.face.state.time > 0.05, "the state", 10)
+        self.assertAlmostEqual(self.face.state.activation[0], 0.4, 6)
+        self.assertFalse(self.face.state.failed)
+        # and it still listens
+        self.face.command(lift=0.1)
+        wait(lambda: self.face.target() == {"lift": 0.1}, "a good command after bad ones", 10)
+
+    def test_skin_messages_agree_with_each_other(self):
+        mesh = rospy.wait_for_message("/face/skin_topology", Mesh, 30)
+        marker = rospy.wait_for_message("/face/skin", Marker, 30)
+        cloud = rospy.wait_for_message("/face/skin_points", PointCloud2, 30)
+        self.assertEqual(marker.header.frame_id, "face")
+        self.assertEqual(cloud.header.frame_id, "face")
+        self.assertEqual(cloud.width, len(mesh.vertices))
+        self.assertEqual(cloud.width, self.face.state.skin_vertices)
+        self.assertEqual(len(marker.points), 3 * len(mesh.triangles))
+        self.assertEqual(len(marker.colors), len(marker.points))
+        self.assertEqual([field.name for field in cloud.fields],
+                         ["x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity"])
+        corners = [index for triangle in mesh.triangles for index in triangle.vertex_indices]
+        for point, vertex in zip(marker.points, corners):
+            values = struct.unpack_from("<7f", cloud.data, vertex * cloud.point_step)
+            rest = mesh.vertices[vertex]
+            self.assertAlmostEqual(values[0], point.x, 6)
+            self.assertAlmostEqual(values[2], point.z, 6)
+            self.assertAlmostEqual(values[2], rest.z, 6)
+            self.assertAlmostEqual(math.hypot(*values[3:6]), 1, 5)
+            self.assertAlmostEqual(values[6], 0, 6)
+
+    def test_landmark_is_a_frame_below_the_face(self):
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        found = buffer.lookup_transform("map", "face/tip", rospy.Time(0), rospy.Duration(30))
+        self.assertAlmostEqual(found.transform.translation.z, self.face.height("tip"), 9)
+        listener.unregister()
+
+    def test_diagnostics_are_well(self):
+        wait(lambda: self.face.diagnostics and self.face.diagnostics[0].level == 0, "good diagnostics", 20)
+        self.assertIn("real-time factor", [pair.key for pair in self.face.diagnostics[0].values])
+
+
+if __name__ == "__main__":
+    rospy.init_node("services_test")
+    rostest.rosrun("frontalis", "services", Services)
