@@ -44,7 +44,8 @@ std::string missing_gpu()
 #endif
 }
 
-std::unique_ptr<Solver> make_gpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] std::shared_ptr<const Model> model,
+                                        [[maybe_unused]] const SolverSettings& settings)
 {
   const std::string missing = missing_gpu();
   if (!missing.empty())
