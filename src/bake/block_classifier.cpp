@@ -52,6 +52,7 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
   state.solid.assign(volumes_.solids().size(), Answer::unknown);
   state.depth.resize(volumes_.depths().size());
   state.volume.assign(volumes_.entries().size(), Answer::unknown);
+  state.sight.assign(volumes_.entries().size(), Answer::unknown);
   visit(begin, end, state);
 }
 
@@ -134,26 +135,31 @@ bool BlockClassifier::settle(const Box& box, BlockState& state)
     if (state.volume[v] != Answer::unknown)
       return;
     const Volumes::Entry& entry = volumes_.entries()[v];
-    state.volume[v] = volume_answer(entry, box, state);
+    state.volume[v] = volume_answer(v, box, state);
     const auto solid = [&](int s)
     {
       if (s >= 0 && state.volume[v] == Answer::unknown && state.solid[static_cast<std::size_t>(s)] == Answer::unknown)
       {
         settle_solid(static_cast<std::size_t>(s), box, state);
-        state.volume[v] = volume_answer(entry, box, state);
+        state.volume[v] = volume_answer(v, box, state);
       }
     };
     if (state.volume[v] == Answer::unknown && entry.within >= 0 &&
         !state.depth[static_cast<std::size_t>(entry.within)].known)
     {
       settle_depth(static_cast<std::size_t>(entry.within), box, state);
-      state.volume[v] = volume_answer(entry, box, state);
+      state.volume[v] = volume_answer(v, box, state);
     }
     solid(entry.closed_by);
     for (const int s : entry.inside)
       solid(s);
     for (const int s : entry.outside)
       solid(s);
+    if (entry.asks_sight() && state.volume[v] == Answer::unknown && state.sight[v] == Answer::unknown)
+    {
+      settle_sight(v, box, state);
+      state.volume[v] = volume_answer(v, box, state);
+    }
   };
   bool tissue = false;
   for (std::size_t v = 0; v < state.volume.size(); ++v)
@@ -246,8 +252,48 @@ void BlockClassifier::settle_depth(std::size_t depth, const Box& box, BlockState
   state.depth[depth] = { true, signed_depth };
 }
 
-Answer BlockClassifier::volume_answer(const Volumes::Entry& entry, const Box& box, const BlockState& state) const
+void BlockClassifier::settle_sight(std::size_t volume, const Box& box, BlockState& state) const
 {
+  // a box without a piece of an `outside` surface lies on one side of them
+  const Volumes::Entry& entry = volumes_.entries()[volume];
+  for (const int s : entry.outside)
+  {
+    if (state.solid[static_cast<std::size_t>(s)] == Answer::unknown)
+      return;
+  }
+  const Vector3 centre = box.centre();
+  const double radius = norm(box.upper - centre);
+  const double bound = entry.volume->depth_max + radius;
+  const Volumes::Depth& field = volumes_.depths()[static_cast<std::size_t>(entry.within)];
+  const ClosestPoint closest = field.surface->tree().closest(centre, bound);
+  if (closest.triangle < 0)
+    return;
+  bool clear = true;
+  for (const int s : entry.outside)
+  {
+    const PreparedSurface& surface = *volumes_.solids()[static_cast<std::size_t>(s)].surface;
+    clear = clear && surface.tree().closest(centre, closest.distance + 2 * radius).triangle < 0;
+  }
+  if (clear)
+    state.sight[volume] = Answer::yes;
+  else if (radius < 1.001 * reach_)
+    state.sight[volume] = in_sight(entry, centre, bound) ? Answer::yes : Answer::no;
+}
+
+bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3& p, double bound) const
+{
+  const Volumes::Depth& field = volumes_.depths()[static_cast<std::size_t>(entry.within)];
+  const ClosestPoint closest = field.surface->tree().closest(p, bound);
+  return closest.triangle >= 0 &&
+         std::none_of(
+             entry.outside.begin(), entry.outside.end(),
+             [&](int s)
+             { return volumes_.solids()[static_cast<std::size_t>(s)].surface->tree().crossed_by(p, closest.point); });
+}
+
+Answer BlockClassifier::volume_answer(std::size_t volume, const Box& box, const BlockState& state) const
+{
+  const Volumes::Entry& entry = volumes_.entries()[volume];
   bool unknown = false;
   const auto solid = [&](int s) { return state.solid[static_cast<std::size_t>(s)]; };
   for (std::size_t a = 0; a < 3; ++a)
@@ -289,6 +335,12 @@ Answer BlockClassifier::volume_answer(const Volumes::Entry& entry, const Box& bo
     if (interval.known && (interval.depth < entry.volume->depth_min || interval.depth > entry.volume->depth_max))
       return Answer::no;
     unknown = unknown || !interval.known;
+  }
+  if (entry.asks_sight())
+  {
+    if (state.sight[volume] == Answer::no)
+      return Answer::no;
+    unknown = unknown || state.sight[volume] == Answer::unknown;
   }
   return unknown ? Answer::unknown : Answer::yes;
 }

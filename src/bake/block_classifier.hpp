@@ -26,6 +26,7 @@ struct BlockState
   };
   std::vector<Interval> depth;
   std::vector<Answer> volume;
+  std::vector<Answer> sight;  ///< of each volume that asks for it: no `outside` surface on the way to `within`
 };
 
 /// Finds the composition of boxes of voxels: used by one thread.
@@ -51,13 +52,15 @@ private:
   bool settle(const Box& box, BlockState& state);
   void settle_solid(std::size_t solid, const Box& box, BlockState& state) const;
   void settle_depth(std::size_t depth, const Box& box, BlockState& state) const;
-  Answer volume_answer(const Volumes::Entry& entry, const Box& box, const BlockState& state) const;
+  void settle_sight(std::size_t volume, const Box& box, BlockState& state) const;
+  Answer volume_answer(std::size_t volume, const Box& box, const BlockState& state) const;
   bool layers_known(const BlockState& state) const;
 
   void sample(const Box& box, const BlockState& state);
-  bool sample_volume(const Volumes::Entry& entry, const Vector3& p, const BlockState& state);
+  bool sample_volume(std::size_t volume, const Vector3& p, const BlockState& state);
   bool sample_solid(std::size_t solid, const Vector3& p, const BlockState& state);
   double sample_depth(std::size_t depth, const Vector3& p, const BlockState& state);
+  bool in_sight(const Volumes::Entry& entry, const Vector3& p, double bound) const;
   void count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void emit(const std::array<std::int32_t, 3>& place, double fill);
 

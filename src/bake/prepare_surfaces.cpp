@@ -52,14 +52,11 @@ Loaded load(const Surface& surface)
   const auto found = [&](const std::string& text)
   { loaded.findings.push_back("surface '" + surface.name + "': " + text); };
 
-  const std::size_t vertices = mesh.vertices.size();
   const std::size_t dropped = join_vertices(mesh);
   if (mesh.triangles.empty())
     throw Error("has no triangle whose corners differ; a surface is wanted");
   if (!surface.shape && dropped > 0)
     found(std::to_string(dropped) + " triangles with a corner twice left out");
-  if (!surface.shape && mesh.vertices.size() < vertices)
-    found(std::to_string(vertices - mesh.vertices.size()) + " duplicate vertices joined");
   const std::size_t turned = make_orientation_consistent(mesh);
   if (turned > 0)
     found(std::to_string(turned) + " triangles turned to agree with their neighbours");

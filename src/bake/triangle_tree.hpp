@@ -34,6 +34,8 @@ public:
   ClosestPoint closest(const Vector3& p, double bound = 1e300, std::int32_t hint = -1) const;
 
   bool overlaps(const Box& box) const;
+  /// Whether the segment p -> q passes through a triangle.
+  bool crossed_by(const Vector3& p, const Vector3& q) const;
   /// Appends the triangles that overlap the box, in ascending order.
   void gather(const Box& box, std::vector<std::int32_t>& triangles) const;
 
@@ -72,6 +74,10 @@ private:
   std::vector<Node> nodes_;
   std::vector<Expansion> expansions_;
 };
+
+/// Change of the winding number along the segment p -> q at a triangle: +1 inwards, -1 outwards, 0 no crossing. A
+/// segment that meets an edge of two triangles crosses exactly one of them.
+int crossing(const TriangleMesh& mesh, std::int32_t triangle, const Vector3& p, const Vector3& q);
 
 /// Solid angle of a triangle seen from p over 4 pi, positive where p sees its back.
 double winding_of_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c);

@@ -50,6 +50,9 @@ public:
     int material = -1;
     int muscle = -1;
     std::vector<Band> bands;
+
+    /// Depths are counted on the near side of the `outside` surfaces only.
+    bool asks_sight() const { return within >= 0 && !outside.empty(); }
   };
 
   /// Throws Error naming what a volume, layer or muscle refers to that is not there.

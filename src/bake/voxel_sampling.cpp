@@ -6,40 +6,6 @@
 
 namespace frontalis
 {
-namespace
-{
-
-/// Sign of the volume of the tetrahedron (p, q, a, b); exactly opposite for (b, a), zero counted as a place on one
-/// side, so that a segment that meets a shared edge crosses exactly one of its triangles.
-bool left_of(const Vector3& direction, const Vector3& p, const Vector3& a, const Vector3& b, std::int32_t number_a,
-             std::int32_t number_b)
-{
-  const bool ordered = number_a < number_b;
-  const Vector3 first = (ordered ? a : b) - p, second = (ordered ? b : a) - p;
-  return (dot(direction, cross(first, second)) >= 0) == ordered;
-}
-
-/// Change of the winding number along the segment p -> q at a triangle: +1 inwards, -1 outwards, 0 no crossing.
-int crossing(const TriangleMesh& mesh, std::int32_t triangle, const Vector3& p, const Vector3& q)
-{
-  const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
-  const Vector3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
-  const Vector3& b = mesh.vertices[static_cast<std::size_t>(t[1])];
-  const Vector3& c = mesh.vertices[static_cast<std::size_t>(t[2])];
-  const Vector3 normal = cross(b - a, c - a);
-  const bool p_above = dot(normal, p - a) > 0, q_above = dot(normal, q - a) > 0;
-  if (p_above == q_above)
-    return 0;
-  const Vector3 direction = q - p;
-  const bool ab = left_of(direction, p, a, b, t[0], t[1]);
-  const bool bc = left_of(direction, p, b, c, t[1], t[2]);
-  const bool ca = left_of(direction, p, c, a, t[2], t[0]);
-  if (ab != bc || bc != ca)
-    return 0;
-  return p_above ? 1 : -1;
-}
-
-}  // namespace
 
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
@@ -66,7 +32,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
     {
       if (!volumes_.entries()[v].volume->tissue)
         continue;
-      inside[v] = sample_volume(volumes_.entries()[v], p, state) ? Answer::yes : Answer::no;
+      inside[v] = sample_volume(v, p, state) ? Answer::yes : Answer::no;
       tissue = tissue || inside[v] == Answer::yes;
     }
     if (!tissue)
@@ -78,7 +44,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       {
         inside[v] = state.volume[v];
         if (inside[v] == Answer::unknown)
-          inside[v] = sample_volume(entry, p, state) ? Answer::yes : Answer::no;
+          inside[v] = sample_volume(v, p, state) ? Answer::yes : Answer::no;
       }
       if (inside[v] != Answer::yes)
         continue;
@@ -90,8 +56,9 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
   }
 }
 
-bool BlockClassifier::sample_volume(const Volumes::Entry& entry, const Vector3& p, const BlockState& state)
+bool BlockClassifier::sample_volume(std::size_t volume, const Vector3& p, const BlockState& state)
 {
+  const Volumes::Entry& entry = volumes_.entries()[volume];
   if (!contains(entry.volume->crop, p))
     return false;
   if (entry.closed_by >= 0 && !sample_solid(static_cast<std::size_t>(entry.closed_by), p, state))
@@ -105,8 +72,12 @@ bool BlockClassifier::sample_volume(const Volumes::Entry& entry, const Vector3& 
     if (depth < entry.volume->depth_min || depth > entry.volume->depth_max)
       return false;
   }
-  return std::none_of(entry.outside.begin(), entry.outside.end(),
-                      [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); });
+  if (std::any_of(entry.outside.begin(), entry.outside.end(),
+                  [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); }))
+    return false;
+  if (!entry.asks_sight() || state.sight[volume] != Answer::unknown)
+    return !entry.asks_sight() || state.sight[volume] == Answer::yes;
+  return in_sight(entry, p, entry.volume->depth_max + reach_);
 }
 
 bool BlockClassifier::sample_solid(std::size_t solid, const Vector3& p, const BlockState& state)
