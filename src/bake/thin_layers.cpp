@@ -142,23 +142,27 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     for (const Triangle& t : mesh.triangles)
       areas.add(mesh.vertices[static_cast<std::size_t>(t[0])], mesh.vertices[static_cast<std::size_t>(t[1])],
                 mesh.vertices[static_cast<std::size_t>(t[2])]);
-    std::vector<float> share(model.voxels.size());
-    double volume = 0, capped = 0;
+    // one share for all outer voxels, so that the layer's volume is right and no sliver of a voxel becomes stiffer than
+    // the others and rules the time step
+    double wanted = 0, tissue = 0;
     std::size_t voxels = 0;
-    for (std::size_t e = 0; e < share.size(); ++e)
+    const auto is_outer = [&](std::size_t e) { return areas.area()[e] > 0; };
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
     {
-      const double tissue = static_cast<double>(model.fill[e]) * voxel_volume;
-      const double wanted = areas.area()[e] * layer.thickness;
-      const double given = std::min(wanted, 0.9 * tissue);
-      share[e] = static_cast<float>(given / tissue);
-      volume += given;
-      capped += wanted - given;
-      voxels += given > 0 ? 1 : 0;
+      if (!is_outer(e))
+        continue;
+      wanted += areas.area()[e] * layer.thickness;
+      tissue += static_cast<double>(model.fill[e]) * voxel_volume;
+      ++voxels;
     }
+    const double given = tissue > 0 ? std::min(wanted / tissue, 0.9) : 0;
+    std::vector<float> share(model.voxels.size());
+    for (std::size_t e = 0; e < share.size(); ++e)
+      share[e] = is_outer(e) ? static_cast<float>(given) : 0;
     char text[256];
     std::snprintf(text, sizeof(text), "layer '%s': too thin to sample; combined into %zu outer voxels, %.4g mm3%s",
-                  layer.name.c_str(), voxels, 1e9 * volume,
-                  capped > 0.01 * volume ? " (capped in voxels it would fill)" : "");
+                  layer.name.c_str(), voxels, 1e9 * given * tissue,
+                  given * tissue < 0.99 * wanted ? " (capped: it would fill them)" : "");
     stages.found(text);
     shares.push_back(std::move(share));
   }

@@ -19,7 +19,29 @@ struct CpuKernelBody
   static_assert(Tile::width % lanes == 0, "a tile is a whole number of batches");
 
   static FRONTALIS_LAW Batch load(const float* p) { return Batch::load_unaligned(p); }
-  static FRONTALIS_LAW void add(float* p, const Batch& x) { (load(p) + x).store_unaligned(p); }
+
+  // a batch of one strip's lanes, or of both strips' of a tile
+  static FRONTALIS_LAW Batch load(const float* first, [[maybe_unused]] const float* second)
+  {
+#if defined(__AVX512F__)
+    if constexpr (lanes == Tile::width)
+      return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(first)), _mm256_loadu_ps(second), 1);
+#endif
+    return load(first);
+  }
+  static FRONTALIS_LAW void add(float* first, [[maybe_unused]] float* second, const Batch& x)
+  {
+#if defined(__AVX512F__)
+    if constexpr (lanes == Tile::width)
+    {
+      // one after the other: the strips may share nodes
+      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), _mm512_castps512_ps256(x)));
+      _mm256_storeu_ps(second, _mm256_add_ps(_mm256_loadu_ps(second), _mm512_extractf32x8_ps(x, 1)));
+      return;
+    }
+#endif
+    (load(first) + x).store_unaligned(first);
+  }
 
   // adds the stress of the fibres: P += S (F a0) (x) a0
   static FRONTALIS_LAW void add_fibres(const CpuKernelArguments& g, const Tile& tile, int offset,
@@ -48,17 +70,19 @@ struct CpuKernelBody
   // forces of a tile's voxels [offset, offset + lanes) added to the plane buffers below and above
   template <bool Look, bool AssumedStrain>
   static FRONTALIS_LAW void element(const CpuKernelArguments& g, const Tile& tile, std::size_t block, int offset,
-                                    float* below, float* above, const std::int32_t* row, Batch& frequency_squared)
+                                    float* below, float* above, const std::int32_t* base, Batch& frequency_squared)
   {
     using N = physics::Number<Batch>;
+    const int strip = offset / Tile::strip, within = offset % Tile::strip;
     Batch mode[3][8];
     for (int c = 0; c < 3; ++c)
     {
       for (int r = 0; r < 4; ++r)
       {
-        const float* p = g.u[c] + tile.node[r] + offset;
-        mode[c][2 * r] = load(p);
-        mode[c][2 * r + 1] = load(p + 1);
+        const float* first = g.u[c] + tile.node[strip][r] + within;
+        const float* second = g.u[c] + tile.node[Tile::strips - 1][r];
+        mode[c][2 * r] = load(first, second);
+        mode[c][2 * r + 1] = load(first + 1, second + 1);
       }
       physics::walsh_hadamard(mode[c]);
     }
@@ -98,9 +122,11 @@ struct CpuKernelBody
       physics::walsh_hadamard_transposed(mode[c]);
       for (int r = 0; r < 4; ++r)
       {
-        float* f = (r < 2 ? below : above) + c * g.buffer_stride + row[r] + offset;
-        add(f, mode[c][2 * r]);
-        add(f + 1, mode[c][2 * r + 1]);
+        float* force = (r < 2 ? below : above) + c * g.buffer_stride - base[r / 2];
+        float* first = force + tile.node[strip][r] + within;
+        float* second = force + tile.node[Tile::strips - 1][r];
+        add(first, second, mode[c][2 * r]);
+        add(first + 1, second + 1, mode[c][2 * r + 1]);
       }
     }
   }
@@ -109,14 +135,14 @@ struct CpuKernelBody
   static float plane_forces(const CpuKernelArguments& g, std::int32_t plane, float* below, float* above)
   {
     Batch frequency_squared(0.0f);
+    const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
     {
       const Tile& tile = g.tiles[t];
-      const std::int32_t row[4] = { tile.node[0] - g.plane_nodes[plane], tile.node[1] - g.plane_nodes[plane],
-                                    tile.node[2] - g.plane_nodes[plane + 1], tile.node[3] - g.plane_nodes[plane + 1] };
-      for (int offset = 0; offset < tile.count; offset += lanes)
-        element<Look, AssumedStrain>(g, tile, static_cast<std::size_t>(t) * Tile::width, offset, below, above, row,
-                                     frequency_squared);
+      for (int offset = 0; offset < Tile::width; offset += lanes)
+        if (offset % Tile::strip < tile.count[offset / Tile::strip])
+          element<Look, AssumedStrain>(g, tile, static_cast<std::size_t>(t) * Tile::width, offset, below, above, base,
+                                       frequency_squared);
     }
     float result = 0;
     if (Look)

@@ -16,9 +16,11 @@ void add_fibres(const Model& model, const std::vector<double>& tissue_volume, Ti
     FibreSlot slot{};
     slot.muscle = m;
     bool any = false;
-    for (int lane = 0; lane < tile.count; ++lane)
+    for (int lane = 0; lane < Tile::width; ++lane)
     {
-      const auto e = tile.first_voxel + lane;
+      const auto e = tile.voxel(lane);
+      if (e < 0)
+        continue;
       for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
         if (model.fibre_muscle[f] == m)
         {
@@ -51,20 +53,27 @@ VoxelRows::VoxelRows(const Model& model, const std::vector<double>& tissue_volum
   const auto count = static_cast<std::int32_t>(model.voxels.size());
   for (std::int32_t e = 0; e < count;)
   {
-    const auto& first = model.voxels[e];
+    const std::int32_t plane = model.voxels[e][2];
     Tile tile{};
-    tile.first_voxel = e;
-    for (int row = 0; row < 4; ++row)
-      tile.node[row] = model.voxel_nodes[e][2 * row];
-    while (e < count && tile.count < Tile::width && model.voxels[e][2] == first[2] && model.voxels[e][1] == first[1] &&
-           model.voxels[e][0] == first[0] + tile.count)
+    for (int strip = 0; strip < Tile::strips; ++strip)
     {
-      ++tile.count;
-      ++e;
+      // an empty strip reads and writes zeros where the one before it does
+      const bool any = e < count && model.voxels[e][2] == plane;
+      const auto first = any ? e : tile.first_voxel[strip - 1];
+      tile.first_voxel[strip] = first;
+      for (int row = 0; row < 4; ++row)
+        tile.node[strip][row] = model.voxel_nodes[first][2 * row];
+      while (any && e < count && tile.count[strip] < Tile::strip && model.voxels[e][2] == plane &&
+             model.voxels[e][1] == model.voxels[first][1] &&
+             model.voxels[e][0] == model.voxels[first][0] + tile.count[strip])
+      {
+        ++tile.count[strip];
+        ++e;
+      }
     }
     add_fibres(model, tissue_volume, tile, fibres);
     tiles.push_back(tile);
-    ++plane_tiles[first[2] + 1];
+    ++plane_tiles[plane + 1];
   }
   for (std::int32_t k = 0; k < planes; ++k)
     plane_tiles[k + 1] += plane_tiles[k];
@@ -74,8 +83,9 @@ std::vector<float> VoxelRows::blocks(const std::vector<double>& values) const
 {
   std::vector<float> result(tiles.size() * Tile::width, 0.0f);
   for (std::size_t t = 0; t < tiles.size(); ++t)
-    for (int lane = 0; lane < tiles[t].count; ++lane)
-      result[t * Tile::width + lane] = static_cast<float>(values[tiles[t].first_voxel + lane]);
+    for (int lane = 0; lane < Tile::width; ++lane)
+      if (const auto e = tiles[t].voxel(lane); e >= 0)
+        result[t * Tile::width + lane] = static_cast<float>(values[e]);
   return result;
 }
 

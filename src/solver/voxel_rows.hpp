@@ -7,16 +7,24 @@
 namespace frontalis
 {
 
-/// Voxels that the CPU kernel takes together: up to 16 neighbours along x. Their nodes lie one after the other in each
-/// of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
+/// Voxels that the CPU kernel takes together: two strips of up to eight neighbours along x, in one plane. The nodes of
+/// a strip lie one after the other in each of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
 struct Tile
 {
   static constexpr int width = 16;
-  std::int32_t node[4];      ///< first node of each row
-  std::int32_t count;        ///< voxels, 1..16
-  std::int32_t fibre_begin;  ///< range of FibreSlots
+  static constexpr int strip = 8;
+  static constexpr int strips = width / strip;
+  std::int32_t node[strips][4];      ///< first node of each row
+  std::int32_t count[strips];        ///< voxels, 0..8
+  std::int32_t first_voxel[strips];  ///< in the model's order; the strip's voxels follow it
+  std::int32_t fibre_begin;          ///< range of FibreSlots
   std::int32_t fibre_end;
-  std::int32_t first_voxel;  ///< in the model's order; the tile's voxels follow it
+
+  /// Voxel of a lane, or -1.
+  std::int32_t voxel(int lane) const
+  {
+    return lane % strip < count[lane / strip] ? first_voxel[lane / strip] + lane % strip : -1;
+  }
 };
 
 /// One muscle's fibres in a tile; 0 where a voxel has none.
