@@ -10,10 +10,6 @@ namespace
 
 using Point = SurfaceTree::Point;
 
-// a node that has slid farther than this from its latest exact closest point gets a new one [m]: on an edge of angle t
-// the plane in between errs by at most this times tan(t/2)
-constexpr double slip_until_renewal = 15e-6;
-
 template <class Entry>
 auto range(std::vector<Entry>& entries, std::int32_t first, std::int32_t last)
 {
@@ -92,59 +88,67 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model)
   for (const auto& node : model.sliding)
   {
     const auto rest = rest_position(model, node.node);
-    sliding_.push_back({ node.node, node.surface, node.distance, { rest[0], rest[1], rest[2] }, {}, {}, {}, true });
+    sliding_.push_back({ node.node, node.surface, node.distance, { rest[0], rest[1], rest[2] }, {} });
   }
   sort_by_node(rigid_);
   sort_by_node(prescribed_);
   sort_by_node(sliding_);
+  for (const auto& s : sliding_)
+    planes_.push_back({ s.node, { 0, 0, 0 }, 0, { 0, 0, 0 }, -1 });
 }
 
 template <class Real>
 void RestrictedNodes<Real>::reset()
 {
-  for (auto& s : sliding_)
-    s.stale = true;
+  for (auto& plane : planes_)
+    plane.slip_squared = -1;
 }
 
 template <class Real>
-void RestrictedNodes<Real>::slide(Sliding& s, Real* const u[3], Real* const v[3])
+void RestrictedNodes<Real>::renew(Plane& plane, Sliding& s, const Point& u)
 {
-  const Point p = s.rest + Point{ double(u[0][s.node]), double(u[1][s.node]), double(u[2][s.node]) };
-  const Point moved = p - s.reference;
-  if (s.stale || dot(moved, moved) > slip_until_renewal * slip_until_renewal)
+  const Point p = s.rest + u;
+  // the latest foot is on the surface: nothing farther can be the closest
+  const double reach = plane.slip_squared < 0 ? 1e3 : norm(p - s.foot) * (1 + 1e-9) + 1e-12;
+  const SurfaceTree::Closest c = trees_[s.surface]->closest(p, reach);
+  if (c.triangle < 0)
+    return;
+  const Point away = p - c.point;
+  const double distance = std::sqrt(c.squared_distance);
+  // sign by the pseudonormal, and the pseudonormal itself where the point lies on the surface
+  const Point normal = distance < 1e-7 ? c.normal : (dot(away, c.normal) < 0 ? -1 / distance : 1 / distance) * away;
+  s.foot = c.point;
+  const double part[3] = { normal.x, normal.y, normal.z }, moved[3] = { u.x, u.y, u.z };
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const double reach = s.stale ? 1e3 : norm(p - s.foot) * (1 + 1e-9) + 1e-12;
-    const SurfaceTree::Closest c = trees_[s.surface]->closest(p, reach);
-    if (c.triangle >= 0)
-    {
-      const Point away = p - c.point;
-      const double distance = std::sqrt(c.squared_distance);
-      // sign by the pseudonormal, and the pseudonormal itself where the point lies on the surface
-      s.normal = distance < 1e-7 ? c.normal : (dot(away, c.normal) < 0 ? -1 / distance : 1 / distance) * away;
-      s.foot = c.point;
-      s.reference = p;
-      s.stale = false;
-    }
+    plane.normal[axis] = static_cast<Real>(part[axis]);
+    plane.reference[axis] = static_cast<Real>(moved[axis]);
   }
-  const double error = dot(s.normal, p - s.foot) - s.distance;
-  const Point q = p - error * s.normal - s.rest;
-  const Point velocity{ double(v[0][s.node]), double(v[1][s.node]), double(v[2][s.node]) };
-  const Point along = velocity - dot(velocity, s.normal) * s.normal;
-  u[0][s.node] = static_cast<Real>(q.x);
-  u[1][s.node] = static_cast<Real>(q.y);
-  u[2][s.node] = static_cast<Real>(q.z);
-  v[0][s.node] = static_cast<Real>(along.x);
-  v[1][s.node] = static_cast<Real>(along.y);
-  v[2][s.node] = static_cast<Real>(along.z);
+  plane.offset = static_cast<Real>(s.distance - dot(normal, s.rest - c.point));
+  plane.slip_squared = static_cast<Real>(c.slip * c.slip);
 }
 
 template <class Real>
 void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                                   const Real* const before[3], const Drive& drive)
 {
-  const auto slides = range(sliding_, first, last);
-  for (auto s = slides.first; s != slides.second; ++s)
-    slide(*s, u, v);
+  const auto slides = range(planes_, first, last);
+  for (auto plane = slides.first; plane != slides.second; ++plane)
+  {
+    const auto n = plane->node;
+    const Real x = u[0][n], y = u[1][n], z = u[2][n];
+    const Real dx = x - plane->reference[0], dy = y - plane->reference[1], dz = z - plane->reference[2];
+    if (dx * dx + dy * dy + dz * dz > plane->slip_squared)
+      renew(*plane, sliding_[plane - planes_.begin()], { double(x), double(y), double(z) });
+    const Real* normal = plane->normal;
+    const Real error = normal[0] * x + normal[1] * y + normal[2] * z - plane->offset;
+    const Real speed = normal[0] * v[0][n] + normal[1] * v[1][n] + normal[2] * v[2][n];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      u[axis][n] -= error * normal[axis];
+      v[axis][n] -= speed * normal[axis];
+    }
+  }
 
   const auto prescriptions = range(prescribed_, first, last);
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)

@@ -35,24 +35,30 @@ public:
   bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty(); }
 
 private:
+  // tangent plane of the offset surface near the latest exact closest point: normal . u = offset
+  struct Plane
+  {
+    std::int32_t node;
+    Real normal[3];
+    Real offset;
+    Real reference[3];  // displacement at that search
+    Real slip_squared;  // how far the node may have moved since; < 0: never searched
+  };
   struct Sliding
   {
     std::int32_t node;
     std::int32_t surface;
     double distance;
     SurfaceTree::Point rest;
-    // tangent plane of the offset surface at the latest exact closest point
-    SurfaceTree::Point reference;
     SurfaceTree::Point foot;
-    SurfaceTree::Point normal;
-    bool stale;
   };
 
-  void slide(Sliding& s, Real* const u[3], Real* const v[3]);
+  void renew(Plane& plane, Sliding& s, const SurfaceTree::Point& u);
 
   const Model& model_;
   std::vector<RigidNode> rigid_;  // all lists sorted by node
   std::vector<PrescribedNode> prescribed_;
+  std::vector<Plane> planes_;  // one a sliding node
   std::vector<Sliding> sliding_;
   std::vector<std::unique_ptr<SurfaceTree>> trees_;
 };

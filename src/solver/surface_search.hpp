@@ -26,6 +26,7 @@ struct SurfaceSearch
     Point face_normal;
     Point edge_normal[3];    ///< of edges 01, 12, 20
     Point vertex_normal[3];  ///< angle-weighted
+    double slip;             ///< how far a point may move before the plane through its offset errs too much [m]
     std::int32_t index;      ///< in the mesh
   };
   struct Closest
@@ -33,6 +34,7 @@ struct SurfaceSearch
     Point point;
     Point normal;  ///< unit pseudonormal there
     double squared_distance;
+    double slip;  ///< of that triangle
     std::int32_t triangle;
   };
 
@@ -79,7 +81,7 @@ struct SurfaceSearch
   /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
   FRONTALIS_LAW Closest closest(const Point& p, double within) const
   {
-    Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, -1 };
+    Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, 0, -1 };
     std::int32_t found = -1;
     std::int32_t stack[64];
     int depth = 0;
@@ -115,6 +117,7 @@ struct SurfaceSearch
     if (found >= 0)
     {
       best.triangle = triangles[found].index;
+      best.slip = triangles[found].slip;
       best.normal = pseudonormal(triangles[found], best.point);
     }
     return best;

@@ -63,8 +63,31 @@ SurfaceTree::SurfaceTree(const TriangleMesh& mesh)
       triangles_[t].vertex_normal[c] = unit(vertex_normal[corner[c]]);
       triangles_[t].edge_normal[c] = unit(edges[edge_of(corner[c], corner[(c + 1) % 3])]);
     }
+  allow_slip(mesh);
   if (count > 0)
     build(0, static_cast<std::int32_t>(count));
+}
+
+// the normal of the offset surface turns by no more than the largest angle to a triangle that shares a corner, while
+// the foot stays among those: after a slip s the plane errs by at most s times that angle
+void SurfaceTree::allow_slip(const TriangleMesh& mesh)
+{
+  std::vector<std::vector<std::size_t>> ring(mesh.vertices.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (const auto corner : mesh.triangles[t])
+      ring[corner].push_back(t);
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+  {
+    Triangle& triangle = triangles_[t];
+    double widest = 0, shortest = 1e300;
+    for (int c = 0; c < 3; ++c)
+    {
+      shortest = std::min(shortest, norm(triangle.corner[(c + 1) % 3] - triangle.corner[c]));
+      for (const auto other : ring[mesh.triangles[t][c]])
+        widest = std::max(widest, angle(triangle.face_normal, triangles_[other].face_normal));
+    }
+    triangle.slip = std::min(0.25 * shortest, plane_error / std::max(widest, 1e-9));
+  }
 }
 
 void SurfaceTree::build(std::int32_t first, std::int32_t last)

@@ -17,6 +17,9 @@ public:
   using Point = SurfaceSearch::Point;
   using Closest = SurfaceSearch::Closest;
 
+  /// Largest error of the plane that stands for the offset surface between two searches [m].
+  static constexpr double plane_error = 4e-6;
+
   explicit SurfaceTree(const TriangleMesh& mesh);
 
   /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
@@ -30,6 +33,7 @@ public:
   }
 
 private:
+  void allow_slip(const TriangleMesh& mesh);
   void build(std::int32_t first, std::int32_t last);
 
   std::vector<SurfaceSearch::Box> boxes_;
