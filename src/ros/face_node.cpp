@@ -166,8 +166,12 @@ void FaceNode::on_frame(const Frame& frame)
 
 void FaceNode::on_tick()
 {
-  std::string why;
-  const auto running = runner(&why);
+  const auto running = runner();
+  std::string fault;
+  {
+    const std::lock_guard<std::mutex> lock(runner_mutex_);
+    fault = load_fault_;
+  }
   bool idle = false;
   double time = 0;
   {
@@ -179,8 +183,9 @@ void FaceNode::on_tick()
     // a face that stands still is shown again, for those who came late
     if (idle && running && has_frame_ && frame_finite_)
       publisher_.publish(frame_, ros::Time::now(), paused_);
-    if (idle && !running)
-      publisher_.publish_fault(why, ros::Time::now());
+    // one that is still being baked has not failed
+    if (idle && !fault.empty())
+      publisher_.publish_fault(fault, ros::Time::now());
   }
   if (running && !paused_)
     play_demo(time);
