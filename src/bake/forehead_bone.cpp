@@ -23,7 +23,11 @@ ForeheadMap::ForeheadMap(const ForeheadDimensions& dimensions)
       // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
       depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
 {
-  shift_ = -1 * at(0, 0, 0);
+  // the skin's normals lean: the place of the sellion on the skin is found by iteration
+  double z = 0;
+  for (int i = 0; i < 20; ++i)
+    z -= at(0, z, 0)[2];
+  shift_ = -at(0, z, 0)[0];
 }
 
 Vector3 ForeheadMap::bone(double s, double z) const
@@ -41,13 +45,13 @@ Vector3 ForeheadMap::bone(double s, double z) const
   const double ridge =
       d.ridge * bell(above, 9e-3) * (0.45 + 0.55 * bell(arc - 22e-3, 18e-3)) * (1 - smooth_step((arc - 45e-3) / 25e-3));
   const double glabella = d.glabella * bell(z - 0.75 * d.brow_height, 9e-3) * bell(s, 11e-3);
-  const double root = 6e-3 * smooth_step((0.65 * d.brow_height - z) / (0.9 * d.brow_height)) * bell(s, 16e-3);
+  const double root = 5e-3 * smooth_step((0.7 * d.brow_height - z) / d.brow_height) * bell(s, 20e-3);
   const double temple = d.temple_flattening * smooth_step((arc - 40e-3) / 35e-3);
   const double relief = ridge + glabella - root - temple;
 
   const Vector3 normal = normalised({ std::cos(angle) / depth_axis_, std::sin(angle) / d.half_breadth, 0 });
-  return Vector3{ depth_axis_ * std::cos(angle) - setback, d.half_breadth * std::sin(angle), z } + relief * normal +
-         shift_;
+  return Vector3{ depth_axis_ * std::cos(angle) - setback + shift_, d.half_breadth * std::sin(angle), z } +
+         relief * normal;
 }
 
 double ForeheadMap::thickness(double z) const

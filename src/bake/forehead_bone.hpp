@@ -27,8 +27,8 @@ private:
   Vector3 bone(double s, double z) const;
 
   ForeheadDimensions dimensions_;
-  double depth_axis_;         ///< semi-axis of the horizontal section along x [m]
-  Vector3 shift_{ 0, 0, 0 };  ///< puts the sellion at the origin [m]
+  double depth_axis_;  ///< semi-axis of the horizontal section along x [m]
+  double shift_ = 0;   ///< along x, puts the sellion on the skin at the origin [m]
 };
 
 }  // namespace frontalis

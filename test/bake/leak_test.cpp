@@ -81,4 +81,35 @@ TEST_F(OpenSurfaces, GapsBetweenTwoBonesLetNothingThrough)
   EXPECT_NEAR(tissue_volume(model, "fat") / (4.0 / 3 * pi * (8e-6 - 2.744e-6)), 1, 0.02);
 }
 
+TEST_F(OpenSurfaces, DepthsEndAtTheBone)
+{
+  // a hollow bone: one closed mesh of an outer sheet and an inner one that faces the cavity
+  TriangleMesh shell = make_shape(*sphere_surface("", { 0, 0, 0 }, 15, 0.8).shape);
+  TriangleMesh inner = make_shape(*sphere_surface("", { 0, 0, 0 }, 13, 0.8).shape);
+  flip(inner);
+  const auto base = static_cast<std::int32_t>(shell.vertices.size());
+  shell.vertices.insert(shell.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+  for (const Triangle& t : inner.triangles)
+    shell.triangles.push_back({ base + t[0], base + t[1], base + t[2] });
+  std::ofstream out(folder_ / "bone.obj");
+  for (const Vector3& v : shell.vertices)
+    out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const Triangle& t : shell.triangles)
+    out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  out.close();
+
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),
+                     file_surface("bone", (folder_ / "bone.obj").string(), 1e-3) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.volumes[0].outside = { "bone" };
+  const auto ball = [](double r) { return 4.0 / 3 * pi * r * r * r; };
+  // without a depth everything inside the skin and outside the bone is tissue, the cavity too
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3) + ball(13e-3)), 1, 0.01);
+  // with one, only what the skin sees: the cavity from 10 to 13 mm is as near as 10 mm, but behind the bone
+  scene.volumes[0].within = "skin";
+  scene.volumes[0].depth_max = 10e-3;
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3)), 1, 0.01);
+}
+
 }  // namespace
