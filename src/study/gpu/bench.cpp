@@ -1,0 +1,209 @@
+// Kernel time of the CUDA backend on models made in code, beside a yardstick of the same run.
+#include "device_memory.hpp"
+#include "frontalis/error.hpp"
+#include "frontalis/solver/solver.hpp"
+#include "shell_model.hpp"
+#include "yardstick.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace frontalis;
+
+namespace
+{
+
+/// A dense block of equal voxels, one face held, under gravity along another axis.
+Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z)
+{
+  Model model;
+  model.size = { { x, y, z } };
+  Material tissue;
+  tissue.name = "tissue";
+  tissue.density = 1100;
+  const double young = 34e3, nu = 0.49;
+  tissue.parameters[0] = young / (2 * (1 + nu));
+  tissue.parameters[1] = young / (3 * (1 - 2 * nu));
+  model.materials.push_back(tissue);
+  const std::size_t count = static_cast<std::size_t>(x) * y * z;
+  model.voxels.reserve(count);
+  for (std::int32_t k = 0; k < z; ++k)
+    for (std::int32_t j = 0; j < y; ++j)
+      for (std::int32_t i = 0; i < x; ++i)
+        model.voxels.push_back({ { i, j, k } });
+  model.fill.assign(count, 1);
+  model.mixture_material.assign(count, 0);
+  model.mixture_proportion.assign(count, 1);
+  model.mixture_begin.resize(count + 1);
+  for (std::size_t e = 0; e <= count; ++e)
+    model.mixture_begin[e] = static_cast<std::int32_t>(e);
+  model.fibre_begin.assign(count + 1, 0);
+  build_nodes(model);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][0] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  model.gravity = { { 0, 0, -9.81 } };
+  return model;
+}
+
+double median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Scene
+{
+  std::string name;
+  std::function<Model()> make;
+  int steps;
+};
+
+struct Timer
+{
+  cudaEvent_t begin = nullptr, end = nullptr;
+
+  Timer()
+  {
+    cuda::require(cudaEventCreate(&begin), "making an event");
+    cuda::require(cudaEventCreate(&end), "making an event");
+  }
+  ~Timer()
+  {
+    cudaEventDestroy(begin);
+    cudaEventDestroy(end);
+  }
+  /// Seconds that the device needs for what `work` queues.
+  template <class Work>
+  double operator()(const Work& work) const
+  {
+    cuda::require(cudaEventRecord(begin), "recording an event");
+    work();
+    cuda::require(cudaEventRecord(end), "recording an event");
+    cuda::require(cudaEventSynchronize(end), "stepping");
+    float time = 0;
+    cuda::require(cudaEventElapsedTime(&time, begin, end), "reading a time");
+    return 1e-3 * time;
+  }
+};
+
+// median seconds a step over five runs of at least `steps` steps; with_skin: the skin is fetched 60 times a wall second
+double seconds_a_step(Solver& solver, const Controls& controls, int steps, double frame_wall_time)
+{
+  std::vector<double> times;
+  const Timer timer;
+  for (int run = 0; run < 5; ++run)
+  {
+    const std::int64_t before = solver.profile().steps;
+    const double time = timer(
+        [&]
+        {
+          auto frame = std::chrono::steady_clock::now();
+          SkinState skin;
+          while (solver.profile().steps - before < steps)
+          {
+            solver.advance(32 * solver.time_step(), controls);
+            const auto now = std::chrono::steady_clock::now();
+            if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
+            {
+              solver.skin(skin);
+              frame = now;
+            }
+          }
+        });
+    times.push_back(time / static_cast<double>(solver.profile().steps - before));
+  }
+  return median(times);
+}
+
+void bench(const Scene& scene)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto model = std::make_shared<const Model>(scene.make());
+  std::size_t free_before = 0, free_after = 0, total = 0;
+  cuda::require(cudaMemGetInfo(&free_before, &total), "asking for free memory");
+  const auto solver = make_solver(model, { Backend::cuda, 0, 0 });
+  cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
+  const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Controls controls;
+  controls.activation.assign(model->muscles.size(), 0.75f);
+  solver->advance(256 * solver->time_step(), controls);
+  const double step = seconds_a_step(*solver, controls, scene.steps, 0);
+  const auto voxels = static_cast<double>(model->voxels.size());
+  std::printf(
+      "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
+      scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
+      static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
+  if (!model->skin.vertices.empty())
+  {
+    const double with_skin = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.2 / step)), 1.0 / 60);
+    const double alone = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.2 / step)), 0);
+    std::printf(
+        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
+        model->skin.vertices.size(), 100 * (with_skin / alone - 1), 1e6 * solver->time_step(),
+        step / solver->time_step());
+  }
+  const Monitor monitor = solver->monitor();
+  if (!monitor.finite)
+    throw Error(scene.name + ": the motion is not finite");
+  std::fflush(stdout);
+}
+
+std::vector<Scene> scenes()
+{
+  const auto shell = [](double voxel) { return [voxel] { return shell_model({ voxel }); }; };
+  return { { "block_4k", [] { return dense_block(16, 16, 16); }, 20000 },
+           { "block_2m", [] { return dense_block(126, 126, 126); }, 2000 },
+           { "block_16m", [] { return dense_block(252, 252, 252); }, 1000 },
+           { "shell_4k", shell(2.8e-3), 20000 },
+           { "shell_30k", shell(1.4e-3), 20000 },
+           { "shell_100k", shell(0.93e-3), 10000 },
+           { "shell_1m", shell(0.42e-3), 2000 },
+           { "block_512", [] { return dense_block(512, 512, 512); }, 100 } };
+}
+
+int run(int count, char** arguments)
+{
+  const std::vector<std::string> wanted(arguments + 1, arguments + count);
+  const auto is_wanted = [&](const std::string& name)
+  {
+    // the largest only by name: it takes minutes to build
+    return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  if (is_wanted("yardstick"))
+  {
+    for (const int n : { 126, 252 })
+    {
+      const YardstickResult y = run_yardstick(n, 1000);
+      std::printf("yardstick      %10.0f voxels  %8.2f us a step  %7.2f G updates a second  copy %.2f TB/s\n",
+                  std::pow(n, 3), y.microseconds_a_step, y.updates_a_second * 1e-9, y.copy_bandwidth * 1e-12);
+    }
+    std::fflush(stdout);
+  }
+  for (const Scene& scene : scenes())
+    if (is_wanted(scene.name))
+      bench(scene);
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+  try
+  {
+    return run(count, arguments);
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

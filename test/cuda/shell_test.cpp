@@ -1,0 +1,112 @@
+#include "../../src/study/gpu/shell_model.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace frontalis;
+
+namespace
+{
+
+// backends are compared on a shell with all effects: muscles, tendon, rigid and sliding nodes
+class Shell : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    const auto backends = available_backends();
+    if (std::find(backends.begin(), backends.end(), Backend::cuda) == backends.end())
+      GTEST_SKIP() << "no CUDA device";
+    ShellSettings settings;
+    settings.voxel = 3e-3;
+    settings.tendon = false;
+    model_ = std::make_shared<const Model>(shell_model(settings));
+  }
+
+  SkinState after(Backend backend, double seconds, float activation, int slices = 1)
+  {
+    const auto solver = make_solver(model_, { backend, 0, 0 });
+    for (int i = 0; i < slices; ++i)
+      solver->advance(seconds / slices,
+                      { std::vector<float>(model_->muscles.size(), activation * (i + 1) / slices), {} });
+    SkinState skin;
+    solver->skin(skin);
+    return skin;
+  }
+
+  // root mean square of the distances between two skins [m]
+  static double difference(const SkinState& a, const SkinState& b)
+  {
+    double sum = 0;
+    for (std::size_t v = 0; v < a.vertices.size(); ++v)
+      for (int axis = 0; axis < 3; ++axis)
+        sum += std::pow(double(a.vertices[v][axis]) - b.vertices[v][axis], 2);
+    return std::sqrt(sum / static_cast<double>(a.vertices.size()));
+  }
+
+  std::shared_ptr<const Model> model_;
+};
+
+}  // namespace
+
+TEST_F(Shell, MovesAsTheReferenceDoes)
+{
+  const SkinState reference = after(Backend::reference, 0.15, 1), cpu = after(Backend::cpu, 0.15, 1),
+                  cuda = after(Backend::cuda, 0.15, 1);
+  SkinState rest;
+  make_solver(model_, { Backend::cuda, 0, 0 })->skin(rest);
+  EXPECT_GT(difference(rest, reference), 0.5e-3);
+  EXPECT_LT(difference(cuda, reference), 5e-6);
+  EXPECT_LT(difference(cuda, reference), 2 * difference(cpu, reference) + 1e-8);
+  double normals = 0;
+  for (std::size_t v = 0; v < cuda.normals.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      normals = std::max(normals, std::abs(double(cuda.normals[v][axis]) - reference.normals[v][axis]));
+  EXPECT_LT(normals, 1e-2);
+  for (std::size_t l = 0; l < reference.landmarks.size(); ++l)
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
+}
+
+TEST_F(Shell, GivesTheSameBitsFromRunToRun)
+{
+  const SkinState first = after(Backend::cuda, 0.05, 0.75f, 7), second = after(Backend::cuda, 0.05, 0.75f, 7);
+  EXPECT_EQ(first.vertices, second.vertices);
+  EXPECT_EQ(first.normals, second.normals);
+  EXPECT_EQ(first.landmarks, second.landmarks);
+}
+
+TEST_F(Shell, FetchingTheSkinDoesNotChangeTheMotion)
+{
+  const auto run = [&](bool look)
+  {
+    const auto solver = make_solver(model_, { Backend::cuda, 0, 0 });
+    SkinState skin;
+    for (int i = 0; i < 10; ++i)
+    {
+      solver->advance(5e-3, { std::vector<float>(model_->muscles.size(), 0.08f * (i + 1)), {} });
+      if (look)
+        solver->skin(skin);
+    }
+    solver->skin(skin);
+    return skin;
+  };
+  EXPECT_EQ(run(true).vertices, run(false).vertices);
+}
+
+TEST_F(Shell, StartsAgainAfterReset)
+{
+  const auto solver = make_solver(model_, { Backend::cuda, 0, 0 });
+  const Controls controls{ std::vector<float>(model_->muscles.size(), 0.5f), {} };
+  SkinState first, second;
+  solver->advance(0.02, controls);
+  solver->skin(first);
+  solver->reset();
+  EXPECT_EQ(solver->time(), 0);
+  solver->advance(0.02, controls);
+  solver->skin(second);
+  EXPECT_EQ(first.vertices, second.vertices);
+}
