@@ -126,15 +126,31 @@ public:
         node_.fault("no folder '" + folder_.string() + "'; must be a folder that holds the surface files");
       reported_ = true;
     }
-    else if (!std::filesystem::is_regular_file(path, ignored))
-      file.fault("no file '" + path.string() + "'; must be a mesh file, relative to the mesh directory '" +
-                 folder_.string() + "'");
+    else if (std::filesystem::is_regular_file(path, ignored))
+      any_there_ = true;
+    else
+      missing_.emplace_back(file, path.string());
     return path.string();
+  }
+
+  /// Records what files are missing: one fault each, but one for all where it is the folder that must be wrong.
+  void report(const Node& surfaces) const
+  {
+    const std::string remedy = "; must be relative to the mesh directory '" + folder_.string() +
+                               "', which mesh_dir or the option --mesh-dir sets";
+    if (missing_.size() > 1 && !any_there_)
+      surfaces.fault("none of the " + std::to_string(missing_.size()) + " mesh files is there, the first being '" +
+                     missing_[0].second + "'" + remedy);
+    else
+      for (const auto& [file, path] : missing_)
+        file.fault("no file '" + path + "'" + remedy);
   }
 
 private:
   Node node_;
   std::filesystem::path folder_;
+  std::vector<std::pair<Node, std::string>> missing_;
+  bool any_there_ = false;
   bool reported_ = false;
 };
 
@@ -185,6 +201,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
     }
     scene.surfaces.push_back(surface);
   }
+  folder.report(node);
 }
 
 }  // namespace frontalis
