@@ -143,7 +143,7 @@ public:
                      missing_[0].second + "'" + remedy);
     else
       for (const auto& [file, path] : missing_)
-        file.fault("no file '" + path + "'" + remedy);
+        file.fault(std::string("no file '").append(path).append("'").append(remedy));
   }
 
 private:

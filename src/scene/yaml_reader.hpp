@@ -58,8 +58,8 @@ struct Names
 class Node
 {
 public:
-  Node(YAML::Node yaml, std::string path, int line, ReadingContext& context)
-      : yaml_(std::move(yaml)), path_(std::move(path)), line_(line), context_(&context), given_(true)
+  Node(const YAML::Node& yaml, std::string path, int line, ReadingContext& context)
+      : yaml_(yaml), path_(std::move(path)), line_(line), context_(&context), given_(true)
   {
   }
   /// The lack of a value.
