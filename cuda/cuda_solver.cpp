@@ -186,6 +186,7 @@ void CudaSolver::set_displacements(const Vectors& in)
   rest();
   upload_displacements(&in, present_);
   still_moved_ = true;
+  renew_time_step();
 }
 
 void CudaSolver::set_velocities(const Vectors& in)

@@ -59,7 +59,8 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
-  const auto isotropic = physics::stress(physics::NeoHookean<float>{ entry.x, entry.y }, k);
+  const physics::NeoHookean<float> material{ entry.x, entry.y };
+  const auto isotropic = physics::stress(material, k);
   physics::Matrix3<float> P;
 #pragma unroll
   for (int i = 0; i < 3; ++i)
@@ -70,7 +71,7 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     add_fibres(g, place, k, P);
   if (look)
   {
-    const float growth = physics::stiffening(k.cofactor, g.stretch_weight);
+    const float growth = physics::stiffening(material, k, g.stretch_weight);
     const float now = entry.w * fmaxf(growth, 1.0f);
     // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
     frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);

@@ -114,7 +114,7 @@ void check_mixtures(const Model& model)
   {
     check_finite("materials", m, model.materials[m].parameters);
     check_positive("materials (density)", m, model.materials[m].density);
-    if (model.materials[m].law != Law::neo_hookean)
+    if (model.materials[m].law > Law::holzapfel)
       fail("materials", "entry " + std::to_string(m) + " has law " +
                             std::to_string(static_cast<int>(model.materials[m].law)) + ", which is not known");
   }

@@ -34,9 +34,12 @@ std::string name_of(Backend backend)
 namespace
 {
 
-// why this build or machine cannot run on a GPU; empty where it can
-std::string missing_gpu()
+// why this model cannot run on a GPU here; empty where it can
+std::string missing_gpu(const Model& model)
 {
+  for (const auto& material : model.materials)
+    if (material.law != Law::neo_hookean)
+      return "it has no law but neo-Hookean, and material " + material.name + " has another";
 #if defined(FRONTALIS_WITH_CUDA)
   return missing_cuda_device();
 #else
@@ -47,7 +50,7 @@ std::string missing_gpu()
 std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] std::shared_ptr<const Model> model,
                                         [[maybe_unused]] const SolverSettings& settings)
 {
-  const std::string missing = missing_gpu();
+  const std::string missing = missing_gpu(*model);
   if (!missing.empty())
     throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
 #if defined(FRONTALIS_WITH_CUDA)
@@ -62,7 +65,7 @@ std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] std::shared_ptr<const M
 std::vector<Backend> available_backends()
 {
   std::vector<Backend> backends{ Backend::reference, Backend::cpu };
-  if (missing_gpu().empty())
+  if (missing_gpu({}).empty())
     backends.push_back(Backend::cuda);
   return backends;
 }
@@ -78,8 +81,11 @@ std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const So
     case Backend::cpu:
       return make_cpu_solver(std::move(model), settings);
     default:
-      return missing_gpu().empty() ? make_gpu_solver(std::move(model), settings)
-                                   : make_cpu_solver(std::move(model), settings, "no GPU: " + missing_gpu());
+    {
+      const std::string missing = missing_gpu(*model);
+      return missing.empty() ? make_gpu_solver(std::move(model), settings)
+                             : make_cpu_solver(std::move(model), settings, "no GPU: " + missing);
+    }
   }
 }
 

@@ -24,6 +24,7 @@ struct CpuKernelArguments
   const float* assumed_strain[4];  ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control alone
   const float* frequency_squared;  ///< bound at rest [1/s2]
   const FibreSlot* fibres;
+  const LawSlot* laws;
   const float* activation;     ///< one a muscle
   const float* with_length;    ///< one a muscle: 1 or 0
   const float* with_passive;   ///< one a muscle: 1 or 0

@@ -6,6 +6,7 @@
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "material_laws.hpp"
 #include "simd_number.hpp"
 
 namespace frontalis
@@ -67,6 +68,38 @@ struct CpuKernelBody
     }
   }
 
+  static FRONTALIS_LAW void load_parameters(const LawSlot& slot, int offset, Batch* parameters)
+  {
+    for (int p = 0; p < 11; ++p)
+      parameters[p] = load(slot.parameters[p] + offset);
+  }
+
+  // not inlined: most tiles have neo-Hookean voxels alone
+  static __attribute__((noinline)) void add_laws(const CpuKernelArguments& g, const Tile& tile, int offset,
+                                                 const physics::Kinematics<Batch>& k, physics::Matrix3<Batch>& P)
+  {
+    for (auto s = tile.law_begin; s < tile.law_end; ++s)
+    {
+      Batch parameters[11];
+      load_parameters(g.laws[s], offset, parameters);
+      add_law_stress(g.laws[s].law, parameters, load(g.laws[s].weight + offset), k, P);
+    }
+  }
+
+  // adds to the frequency bound squared what the laws have stiffened since rest
+  static __attribute__((noinline)) void add_law_frequencies(const CpuKernelArguments& g, const Tile& tile, int offset,
+                                                            const physics::Kinematics<Batch>& k, Batch& squared)
+  {
+    using N = physics::Number<Batch>;
+    for (auto s = tile.law_begin; s < tile.law_end; ++s)
+    {
+      Batch parameters[11];
+      load_parameters(g.laws[s], offset, parameters);
+      const Batch more = law_stiffness(g.laws[s].law, parameters, k) - load(g.laws[s].at_rest + offset);
+      squared = squared + load(g.laws[s].inertia + offset) * N::max(more, N::of(0));
+    }
+  }
+
   // forces of a tile's voxels [offset, offset + lanes) added to the plane buffers below and above
   template <bool Look, bool AssumedStrain>
   static FRONTALIS_LAW void element(const CpuKernelArguments& g, const Tile& tile, std::size_t block, int offset,
@@ -95,10 +128,14 @@ struct CpuKernelBody
         P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
     if (tile.fibre_begin < tile.fibre_end)
       add_fibres(g, tile, offset, k, P);
+    if (tile.law_begin < tile.law_end)
+      add_laws(g, tile, offset, k, P);
     if (Look)
     {
-      const Batch growth = physics::stiffening(k.cofactor, g.stretch_weight);
-      const Batch now = load(g.frequency_squared + block + offset) * N::max(growth, N::of(1));
+      const Batch growth = physics::stiffening(material, k, g.stretch_weight);
+      Batch now = load(g.frequency_squared + block + offset) * N::max(growth, N::of(1));
+      if (tile.law_begin < tile.law_end)
+        add_law_frequencies(g, tile, offset, k, now);
       // growth - growth is 0, or NaN for good where motion is not finite
       frequency_squared = N::max(frequency_squared, now) + (growth - growth);
     }

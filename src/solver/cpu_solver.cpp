@@ -71,7 +71,7 @@ std::vector<double> times(const std::vector<double>& a, const std::vector<double
 
 CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark)
     : SteppingSolver(std::move(model), settings),
-      rows_(*model_, discretisation_.tissue_volume),
+      rows_(*model_, discretisation_),
       mu_(rows_.blocks(times(discretisation_.mu, discretisation_.tissue_volume))),
       kappa_(rows_.blocks(times(discretisation_.kappa, discretisation_.tissue_volume))),
       hourglass_(rows_.blocks(discretisation_.hourglass)),
@@ -143,6 +143,7 @@ void CpuSolver::set_displacements(const Vectors& in)
 {
   rest();
   separate(in, u_);
+  renew_time_step();
 }
 
 CpuKernelArguments CpuSolver::arguments(double dt, const float* activation)
@@ -174,6 +175,7 @@ CpuKernelArguments CpuSolver::arguments(double dt, const float* activation)
   g.hourglass = hourglass_.data();
   g.frequency_squared = frequency_squared_.data();
   g.fibres = rows_.fibres.data();
+  g.laws = rows_.laws.data();
   g.activation = activation;
   g.with_length = with_length_.data();
   g.with_passive = with_passive_.data();

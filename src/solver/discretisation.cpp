@@ -4,6 +4,7 @@
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "material_laws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,26 @@ double fibre_stiffness(const Model& model, std::size_t voxel)
     sum += slope * muscle.stress_reference * model.fibre_weight[f];
   }
   return sum;
+}
+
+// adds a material to the part of its law
+void add_law(const Material& material, double proportion, std::vector<Discretisation::LawPart>& parts,
+             std::size_t first)
+{
+  auto part = std::find_if(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.end(),
+                           [&](const auto& p) { return p.law == material.law; });
+  if (part == parts.end())
+    part = parts.insert(parts.end(), { material.law, 0, {}, 0 });
+  const double before = part->weight;
+  part->weight += proportion;
+  for (std::size_t p = 0; p < part->parameters.size(); ++p)
+    part->parameters[p] = (before * part->parameters[p] + proportion * material.parameters[p]) / part->weight;
+}
+
+physics::Kinematics<double> at_rest()
+{
+  const double none[8] = {}, scale[3] = {};
+  return physics::kinematics(none, none, none, scale);
 }
 
 bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
@@ -89,30 +110,41 @@ Discretisation::Discretisation(const Model& model)
     hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
   for (auto* array : { &mu, &kappa, &tissue_volume, &hourglass, &density, &frequency_squared })
     array->assign(count, 0);
+  law_begin.assign(1, 0);
   for (std::size_t e = 0; e < count; ++e)
   {
     for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
     {
       const Material& material = model.materials[model.mixture_material[m]];
       const double proportion = model.mixture_proportion[m];
-      mu[e] += proportion * material.parameters[0];
+      if (material.law == Law::neo_hookean)
+        mu[e] += proportion * material.parameters[0];
+      else if (proportion > 0)
+        add_law(material, proportion, laws, static_cast<std::size_t>(law_begin[e]));
       kappa[e] += proportion * material.parameters[1];
       density[e] += proportion * material.density;
     }
-    if (!(mu[e] > 0 && kappa[e] > 0 && density[e] > 0 && model.fill[e] > 0))
+    law_begin.push_back(static_cast<std::int32_t>(laws.size()));
+    double shear = mu[e];
+    for (auto l = law_begin[e]; l < law_begin[e + 1]; ++l)
+    {
+      laws[l].stiffness_at_rest = law_stiffness(laws[l].law, laws[l].parameters.data(), at_rest());
+      shear += laws[l].weight * laws[l].stiffness_at_rest;
+    }
+    if (!(shear > 0 && kappa[e] > 0 && density[e] > 0 && model.fill[e] > 0))
       throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
     tissue_volume[e] = volume * model.fill[e];
-    hourglass[e] = physics::hourglass_stiffness(physics::young_modulus(mu[e], kappa[e]), tissue_volume[e], longest);
+    hourglass[e] = physics::hourglass_stiffness(physics::young_modulus(shear, kappa[e]), tissue_volume[e], longest);
     if (model.hourglass == HourglassControl::assumed_strain)
     {
-      const auto k = physics::assumed_strain(mu[e], kappa[e], tissue_volume[e]);
+      const auto k = physics::assumed_strain(shear, kappa[e], tissue_volume[e]);
       const double parts[4] = { k.bending, k.coupling, k.torsion, k.warping };
       for (int part = 0; part < 4; ++part)
         assumed_strain[part].push_back(parts[part]);
       hourglass[e] *= physics::assumed_strain_floor;
     }
     frequency_squared[e] =
-        physics::frequency_squared_bound(mu[e], kappa[e], fibre_stiffness(model, e), density[e], h[0], h[1], h[2]);
+        physics::frequency_squared_bound(shear, kappa[e], fibre_stiffness(model, e), density[e], h[0], h[1], h[2]);
   }
   scale_mass(model, *this);
 

@@ -16,8 +16,19 @@ struct Discretisation
 
   double volume = 0;  ///< of a whole voxel [m3]
 
+  /// Share of a voxel that has another law than neo-Hookean: parameters averaged over its materials of that law.
+  struct LawPart
+  {
+    Law law;
+    double weight;  ///< proportion of the voxel's tissue
+    std::array<double, 11> parameters;
+    double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
+  };
+  std::vector<std::int32_t> law_begin;  ///< parts of voxel e: law_begin[e] .. law_begin[e + 1]
+  std::vector<LawPart> laws;
+
   // one a voxel
-  std::vector<double> mu;             ///< mixed by proportion [Pa]
+  std::vector<double> mu;             ///< neo-Hookean shear modulus, mixed by proportion [Pa]
   std::vector<double> kappa;          ///< mixed by proportion [Pa]
   std::vector<double> tissue_volume;  ///< volume times fill [m3]
   std::vector<double> hourglass;      ///< scalar stiffness on the hourglass modes [N/m]

@@ -4,6 +4,7 @@
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "material_laws.hpp"
 #include "nodal_loads.hpp"
 #include "stepping_solver.hpp"
 
@@ -90,6 +91,7 @@ void ReferenceSolver::set_displacements(const Vectors& in)
   for (std::size_t n = 0; n < in.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
       u_[axis][n] = in[n][axis];
+  renew_time_step();
 }
 
 void ReferenceSolver::set_velocities(const Vectors& in)
@@ -126,6 +128,20 @@ void ReferenceSolver::add_element(std::size_t e, const std::vector<float>& activ
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       P[i][j] = isotropic.on_gradient * F[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
+
+  double law_frequency = 0;
+  for (auto l = discretisation_.law_begin[e]; l < discretisation_.law_begin[e + 1]; ++l)
+  {
+    const auto& part = discretisation_.laws[l];
+    physics::Matrix3<double> own{};
+    add_law_stress(part.law, part.parameters.data(), part.weight, k, own);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        P[i][j] += own.a[i][j];
+    const double shortest = *std::min_element(model_->spacing.begin(), model_->spacing.end());
+    const double more = law_stiffness(part.law, part.parameters.data(), k) - part.stiffness_at_rest;
+    law_frequency += 8 * part.weight / (discretisation_.density[e] * shortest * shortest) * std::max(more, 0.0);
+  }
 
   for (auto entry = model_->fibre_begin[e]; entry < model_->fibre_begin[e + 1]; ++entry)
   {
@@ -176,8 +192,10 @@ void ReferenceSolver::add_element(std::size_t e, const std::vector<float>& activ
 
   const double d[3] = { std::pow(model_->spacing[0], -2), std::pow(model_->spacing[1], -2),
                         std::pow(model_->spacing[2], -2) };
-  const double growth = physics::stiffening(k.cofactor, d) / (d[0] + d[1] + d[2]);
-  const double squared = discretisation_.frequency_squared[e] * std::max(growth, 1.0);
+  const double weight[3] = { d[0] / (d[0] + d[1] + d[2]), d[1] / (d[0] + d[1] + d[2]), d[2] / (d[0] + d[1] + d[2]) };
+  const double growth =
+      physics::stiffening(physics::NeoHookean<double>{ discretisation_.mu[e], discretisation_.kappa[e] }, k, weight);
+  const double squared = discretisation_.frequency_squared[e] * std::max(growth, 1.0) + law_frequency;
   if (!(squared <= frequency_squared_))
     frequency_squared_ = std::isfinite(growth) ? squared : growth;
 }

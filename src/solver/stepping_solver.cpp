@@ -86,6 +86,12 @@ double SteppingSolver::keep(double dt) const
 
 double SteppingSolver::gain(double dt) const { return dt / (1 + 0.5 * model_->damping * dt); }
 
+void SteppingSolver::renew_time_step()
+{
+  const double critical = monitor().critical_time_step;
+  frequency_squared_ = std::max(4 / (critical * critical), discretisation_.frequency_squared_max);
+}
+
 void SteppingSolver::reset()
 {
   rest();

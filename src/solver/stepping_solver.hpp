@@ -42,6 +42,9 @@ protected:
   virtual void rest() = 0;  ///< displacements and velocities to zero
   virtual void velocities(std::vector<std::array<double, 3>>& out) const = 0;
 
+  /// Chooses the time step anew after displacements were set from outside.
+  void renew_time_step();
+
   /// Damped central difference: v = keep * v + gain * force / mass.
   double keep(double dt) const;
   double gain(double dt) const;

@@ -38,9 +38,40 @@ void add_fibres(const Model& model, const std::vector<double>& tissue_volume, Ti
   tile.fibre_end = static_cast<std::int32_t>(slots.size());
 }
 
+// the laws of a tile beyond neo-Hookean, one slot a law; unused lanes keep valid parameters and weight 0
+void add_laws(const Model& model, const Discretisation& d, Tile& tile, std::vector<LawSlot>& slots)
+{
+  const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
+  tile.law_begin = static_cast<std::int32_t>(slots.size());
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const auto e = tile.voxel(lane);
+    for (auto l = e < 0 ? 0 : d.law_begin[e]; e >= 0 && l < d.law_begin[e + 1]; ++l)
+    {
+      const auto& part = d.laws[l];
+      auto slot = std::find_if(slots.begin() + tile.law_begin, slots.end(),
+                               [&](const LawSlot& s) { return s.law == part.law; });
+      if (slot == slots.end())
+      {
+        LawSlot empty{};
+        empty.law = part.law;
+        for (std::size_t p = 0; p < part.parameters.size(); ++p)
+          std::fill(empty.parameters[p], empty.parameters[p] + Tile::width, static_cast<float>(part.parameters[p]));
+        slot = slots.insert(slots.end(), empty);
+      }
+      slot->weight[lane] = static_cast<float>(part.weight * d.tissue_volume[e]);
+      slot->inertia[lane] = static_cast<float>(8 * part.weight / (d.density[e] * shortest * shortest));
+      slot->at_rest[lane] = static_cast<float>(part.stiffness_at_rest);
+      for (std::size_t p = 0; p < part.parameters.size(); ++p)
+        slot->parameters[p][lane] = static_cast<float>(part.parameters[p]);
+    }
+  }
+  tile.law_end = static_cast<std::int32_t>(slots.size());
+}
+
 }  // namespace
 
-VoxelRows::VoxelRows(const Model& model, const std::vector<double>& tissue_volume)
+VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
 {
   planes = model.size[2] + 1;
   plane_tiles.assign(planes + 1, 0);
@@ -71,7 +102,8 @@ VoxelRows::VoxelRows(const Model& model, const std::vector<double>& tissue_volum
         ++e;
       }
     }
-    add_fibres(model, tissue_volume, tile, fibres);
+    add_fibres(model, discretisation.tissue_volume, tile, fibres);
+    add_laws(model, discretisation, tile, laws);
     tiles.push_back(tile);
     ++plane_tiles[plane + 1];
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "discretisation.hpp"
 #include "frontalis/model/model.hpp"
 
 #include <vector>
@@ -19,6 +20,8 @@ struct Tile
   std::int32_t first_voxel[strips];  ///< in the model's order; the strip's voxels follow it
   std::int32_t fibre_begin;          ///< range of FibreSlots
   std::int32_t fibre_end;
+  std::int32_t law_begin;  ///< range of LawSlots
+  std::int32_t law_end;
 
   /// Voxel of a lane, or -1.
   std::int32_t voxel(int lane) const
@@ -35,17 +38,28 @@ struct FibreSlot
   std::int32_t muscle;
 };
 
+/// One law beyond neo-Hookean in a tile; weight 0 where a voxel does not have it.
+struct LawSlot
+{
+  Law law;
+  float weight[Tile::width];          ///< proportion times tissue volume [m3]
+  float inertia[Tile::width];         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
+  float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]
+  float parameters[11][Tile::width];  ///< order: Law
+};
+
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tile widths are the same for every
 /// instruction set; a wider or narrower batch takes a tile in one or more goes.
 struct VoxelRows
 {
-  explicit VoxelRows(const Model& model, const std::vector<double>& tissue_volume);
+  VoxelRows(const Model& model, const Discretisation& discretisation);
 
   std::int32_t planes = 0;  ///< of nodes
   std::vector<Tile> tiles;
   std::vector<std::int32_t> plane_tiles;  ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
   std::vector<std::int32_t> plane_nodes;  ///< nodes of plane k, likewise
   std::vector<FibreSlot> fibres;
+  std::vector<LawSlot> laws;
 
   /// One value a voxel as blocks of Tile::width a tile, 0 in unused lanes.
   std::vector<float> blocks(const std::vector<double>& values) const;

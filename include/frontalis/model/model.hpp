@@ -9,17 +9,22 @@
 namespace frontalis
 {
 
-/// Passive law of a material; its parameters and their order stand in the law's header in physics/.
+/// Isochoric law of a material, and the order of its parameters (physics/ has the laws). The second parameter of every law
+/// is the bulk modulus kappa [Pa] of the volumetric part.
 enum class Law : std::uint8_t
 {
-  neo_hookean  ///< parameters: shear modulus mu [Pa], bulk modulus kappa [Pa]
+  neo_hookean,    ///< shear modulus mu [Pa], kappa
+  mooney_rivlin,  ///< c1 [Pa], kappa, c2 [Pa]
+  ogden,          ///< mu1 [Pa], kappa, alpha1, mu2 [Pa], alpha2
+  fung,           ///< mu [Pa], kappa, b
+  holzapfel       ///< mu [Pa], kappa, k1 [Pa], k2, dispersion, two family directions (local axes, length 1)
 };
 
 struct Material
 {
   std::string name;
   Law law = Law::neo_hookean;
-  std::array<double, 8> parameters{};
+  std::array<double, 11> parameters{};
   double density = 0;  ///< [kg/m3]
 };
 

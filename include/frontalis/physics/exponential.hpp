@@ -58,5 +58,15 @@ FRONTALIS_LAW T energy(const FungExponential<T>& material, const Kinematics<T>& 
   return N::of(0.5) * material.mu / material.b * (bounded_exponential(x) - N::of(1));
 }
 
+/// Bound of the tangent shear stiffness [Pa].
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const FungExponential<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const T spread = isochoric_scale(k.J).value * k.I1;
+  return material.mu * bounded_exponential_slope(material.b * (spread - N::of(3))) *
+         (N::of(1) + N::of(2) * material.b * N::max(spread - N::of(3), N::of(0))) * isochoric_scale(k.J).value;
+}
+
 }  // namespace physics
 }  // namespace frontalis

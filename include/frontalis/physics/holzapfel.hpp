@@ -88,5 +88,24 @@ FRONTALIS_LAW T energy(const HolzapfelGasserOgden<T>& material, const Kinematics
   return sum;
 }
 
+/// Bound of the tangent shear stiffness [Pa]: the matrix's, and of the families what they add along themselves.
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const HolzapfelGasserOgden<T>& material, const Kinematics<T>& k, const Vec3<T>* a0)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  T sum = material.mu * g;
+  for (int f = 0; f < 2; ++f)
+  {
+    const FibreFamily<T> family = fibre_family(material, k, g, a0[f]);
+    const T squared = g * dot(family.along, family.along);
+    const T exponent = material.k2 * family.strain * family.strain;
+    // half of d2 psi / d lambda2 along the family: 2 mu stands for the stiffness along one direction
+    sum = sum + material.k1 * bounded_exponential_slope(exponent) *
+                    (family.strain + N::of(2) * squared * (N::of(1) + N::of(2) * exponent));
+  }
+  return sum;
+}
+
 }  // namespace physics
 }  // namespace frontalis

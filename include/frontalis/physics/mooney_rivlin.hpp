@@ -63,5 +63,14 @@ FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
          material.c2 * (g * g * second_invariant(right_cauchy_green(k.F)) - N::of(3));
 }
 
+/// Bound of the tangent shear stiffness [Pa]: second derivatives of the energy along unit changes of F.
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  return N::of(2) * g * (material.c1 + N::of(3) * material.c2 * g * k.I1);
+}
+
 }  // namespace physics
 }  // namespace frontalis

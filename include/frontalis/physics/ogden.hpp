@@ -84,5 +84,28 @@ FRONTALIS_LAW T energy(const Ogden<T>& material, const Kinematics<T>& k)
   return sum;
 }
 
+/// Bound of the tangent shear stiffness [Pa] of the stiffest principal direction.
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const Ogden<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  const SymmetricEigen<T> eigen = symmetric_eigen(right_cauchy_green(k.F));
+  const T shift = eigenvalue_shift(k.J).value;
+  T largest = N::of(0);
+  for (int a = 0; a < 3; ++a)
+  {
+    const T c = N::max(eigen.value[a] + shift, N::of(1e-6));
+    T sum = N::of(0);
+    for (int p = 0; p < 2; ++p)
+    {
+      const T alpha = material.alpha[p];
+      sum = sum + N::of(0.5) * N::max(material.mu[p] * alpha, N::of(0)) * N::exp(N::of(0.5) * alpha * N::log(g * c));
+    }
+    largest = N::max(largest, sum / c);
+  }
+  return largest;
+}
+
 }  // namespace physics
 }  // namespace frontalis
