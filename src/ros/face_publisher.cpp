@@ -1,5 +1,7 @@
 #include "frontalis/ros/face_publisher.hpp"
 
+#include "frontalis/ros/brows.hpp"
+
 #include <boost/make_shared.hpp>
 
 #include <atomic>
@@ -40,7 +42,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   model_ = std::move(model);
   face_frame_ = face_frame;
   backend_ = backend;
-  shading_ = std::make_unique<SkinShading>(model_->skin);
+  shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(*model_));
   rest_ = rest_in_face(*model_);
   topology_.publish(to_mesh(*model_));
   if (!parent_frame.empty())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace frontalis
 {
@@ -23,22 +24,24 @@ Vector unit(const Vector& a)
 float wrapped(float cosine, float w) { return std::max(0.0f, (cosine + w) / (1 + w)); }
 
 // face frame: x out of the face, y to its left, z up
-const Vector key_light = unit({ { 0.62f, 0.48f, 0.62f } });
+const Vector key_light = unit({ { 0.52f, 0.40f, 0.76f } });
 const Vector fill_light = unit({ { 0.55f, -0.80f, 0.05f } });
 const Vector view = { { 1, 0, 0 } };
 const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
 
 const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear
 const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // red light goes farthest
-const Vector key_colour = { { 0.95f, 0.90f, 0.84f } };
+const Vector hair_albedo = { { 0.050f, 0.030f, 0.020f } };
+const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
-constexpr float hollow_depth = 3.0e-3f;  ///< [m] light lost a unit of mean curvature
+constexpr float hollow_depth = 5.0e-3f;  ///< [m] light lost a unit of mean curvature
 
 }  // namespace
 
-SkinShading::SkinShading(const TriangleMesh& mesh)
+SkinShading::SkinShading(const TriangleMesh& mesh, std::vector<float> hair) : hair_(std::move(hair))
 {
+  hair_.resize(mesh.vertices.size(), 0.0f);
   std::vector<std::vector<std::int32_t>> neighbours(mesh.vertices.size());
   for (const auto& triangle : mesh.triangles)
     for (int corner = 0; corner < 3; ++corner)
@@ -84,7 +87,8 @@ void SkinShading::colours(const SkinState& skin, std::vector<std::array<float, 3
     {
       const float light = key_colour[channel] * wrapped(key, wrap[channel]) +
                           fill_colour[channel] * wrapped(fill, wrap[channel]) + sky_colour[channel] * sky;
-      const float linear = openness * (albedo[channel] * light + highlight + rim * sky_colour[channel]);
+      const float colour = albedo[channel] + hair_[vertex] * (hair_albedo[channel] - albedo[channel]);
+      const float linear = openness * (colour * light + highlight * (1 - hair_[vertex]) + rim * sky_colour[channel]);
       out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f);
     }
   }

@@ -16,8 +16,9 @@ namespace frontalis
 class SkinShading
 {
 public:
-  /// Keeps the neighbours of each vertex.
-  explicit SkinShading(const TriangleMesh& mesh);
+  /// Keeps the neighbours of each vertex. `hair` is the proportion of each vertex that hair covers, 0..1 (see
+  /// brow_cover); empty: none.
+  explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
 
   /// Fills `out` with red, green, blue in 0..1 (display values), one a vertex. Vertices and unit normals in the face
   /// frame [m].
@@ -26,6 +27,7 @@ public:
 private:
   std::vector<std::int32_t> neighbour_begin_;
   std::vector<std::int32_t> neighbours_;
+  std::vector<float> hair_;
 };
 
 }  // namespace frontalis

@@ -1,0 +1,105 @@
+#include "frontalis/ros/brows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace frontalis
+{
+
+namespace
+{
+
+using Point = std::array<double, 3>;
+
+constexpr double half_width = 4.0e-3;    // [m] of the band at its inner end
+constexpr double inner_length = 9.0e-3;  // [m] drawn beyond the innermost landmark
+constexpr double outer_length = 11e-3;   // [m] drawn beyond the outermost landmark
+constexpr double density = 0.85;         // of the hair in the middle of the band
+
+Point blend(const Point& a, const Point& b, double share)
+{
+  return { { a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]) } };
+}
+
+double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// Distance from the face's middle plane [m].
+double from_middle(const Model& model, const Point& local)
+{
+  const auto& map = model.to_face;
+  return std::abs(map.rotation[3] * local[0] + map.rotation[4] * local[1] + map.rotation[5] * local[2] +
+                  map.translation[1]);
+}
+
+/// The brow's line on one side, from the inner to the outer end; empty where there are too few landmarks.
+std::vector<Point> line(const Model& model, const std::string& side)
+{
+  std::vector<Point> points;
+  for (std::size_t landmark = 0; landmark < model.landmarks.size(); ++landmark)
+  {
+    const std::string& name = model.landmarks[landmark];
+    if (name.rfind("brow", 0) == 0 && name.size() > side.size() &&
+        name.compare(name.size() - side.size(), side.size(), side) == 0)
+      points.push_back(model.landmark_positions[landmark]);
+  }
+  if (points.size() < 2)
+    return {};
+  std::sort(points.begin(), points.end(),
+            [&](const Point& a, const Point& b) { return from_middle(model, a) < from_middle(model, b); });
+  const double inner = distance(points[0], points[1]);
+  const double outer = distance(points[points.size() - 2], points.back());
+  if (!(inner > 0) || !(outer > 0))
+    return {};
+  points.insert(points.begin(), blend(points[0], points[1], -inner_length / inner));
+  points.push_back(blend(points[points.size() - 2], points.back(), 1 + outer_length / outer));
+  return points;
+}
+
+/// Distance from the line [m] and the share of its length at the closest point.
+std::pair<double, double> closest(const std::vector<Point>& points, const Point& vertex)
+{
+  double length = 0, best = 1e9, at = 0;
+  for (std::size_t end = 1; end < points.size(); ++end)
+  {
+    const Point &a = points[end - 1], &b = points[end];
+    const double edge = distance(a, b);
+    double share = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      share += (vertex[axis] - a[axis]) * (b[axis] - a[axis]) / (edge * edge);
+    share = std::clamp(share, 0.0, 1.0);
+    const double found = distance(vertex, blend(a, b, share));
+    if (found < best)
+    {
+      best = found;
+      at = length + share * edge;
+    }
+    length += edge;
+  }
+  return { best, at / length };
+}
+
+}  // namespace
+
+std::vector<float> brow_cover(const Model& model)
+{
+  std::vector<float> cover(model.skin.vertices.size(), 0.0f);
+  for (const char* const side : { "_left", "_right" })
+  {
+    const auto points = line(model, side);
+    if (points.empty())
+      continue;
+    for (std::size_t vertex = 0; vertex < cover.size(); ++vertex)
+    {
+      // full in the middle, soft at the border, narrower towards the temple
+      const auto [off, along] = closest(points, model.skin.vertices[vertex]);
+      const double width = half_width * (1 - 0.55 * along);
+      const double share = std::clamp((1.5 * width - off) / width, 0.0, 1.0);
+      cover[vertex] = std::max(cover[vertex], static_cast<float>(density * share * share * (3 - 2 * share)));
+    }
+  }
+  return cover;
+}
+
+}  // namespace frontalis
