@@ -1,5 +1,6 @@
 #include "bind_points.hpp"
 
+#include "cut_mesh.hpp"
 #include "frontalis/error.hpp"
 #include "parallel.hpp"
 
@@ -18,25 +19,24 @@ struct BoundMesh
 {
   TriangleMesh mesh;
   Binding binding;
-  std::size_t cropped = 0;  ///< triangles outside the crop
-  std::size_t too_far = 0;  ///< triangles inside it with a vertex too far from every voxel
+  std::size_t triangles = 0;  ///< inside the crop
+  std::size_t too_far = 0;    ///< of those, with a vertex too far from every voxel
 };
 
-BoundMesh bind_mesh(const TriangleMesh& surface, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
                     Stages& stages)
 {
+  const TriangleMesh surface = cut_mesh(whole, crop);
   const std::size_t count = surface.vertices.size();
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
-  std::vector<std::uint8_t> inside(count, 0);
   parallel_ranges(
       count, grain,
       [&](std::size_t begin, std::size_t end)
       {
         for (std::size_t v = begin; v < end; ++v)
         {
-          inside[v] = contains(crop, surface.vertices[v]) ? 1 : 0;
-          if (inside[v] != 0 && !binder.bind(frame.to_local(surface.vertices[v]), voxel[v], coordinates[v]))
+          if (!binder.bind(frame.to_local(surface.vertices[v]), voxel[v], coordinates[v]))
             voxel[v] = -1;
         }
       },
@@ -46,16 +46,13 @@ BoundMesh bind_mesh(const TriangleMesh& surface, const Region& crop, const Local
   std::vector<bool> keep(surface.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t)
   {
-    bool in = true, near = true;
+    bool near = true;
     for (const std::int32_t v : surface.triangles[t])
-    {
-      in = in && inside[static_cast<std::size_t>(v)] != 0;
       near = near && voxel[static_cast<std::size_t>(v)] >= 0;
-    }
-    keep[t] = in && near;
-    bound.cropped += in ? 0 : 1;
-    bound.too_far += in && !near ? 1 : 0;
+    keep[t] = near;
+    bound.too_far += near ? 0 : 1;
   }
+  bound.triangles = surface.triangles.size();
   std::vector<std::int32_t> vertex_of;
   bound.mesh = frame.to_local(keep_triangles(surface, keep, &vertex_of));
   for (const std::int32_t v : vertex_of)
@@ -180,8 +177,7 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
                   "' lies in the crop and within " + millimetres(extrapolation) +
                   " of the tissue; check its crop and the tissue volumes");
     if (bound.too_far > 0)
-      stages.found("skin: " + std::to_string(bound.too_far) + " of " +
-                   std::to_string(skin.mesh().triangles.size() - bound.cropped) +
+      stages.found("skin: " + std::to_string(bound.too_far) + " of " + std::to_string(bound.triangles) +
                    " triangles in the crop left out, farther than " + millimetres(extrapolation) + " from the tissue");
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);

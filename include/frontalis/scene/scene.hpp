@@ -145,7 +145,7 @@ struct SceneLoad
 struct SceneSkin
 {
   std::string surface;
-  Region crop;               ///< triangles with a vertex outside are not published
+  Region crop;               ///< the skin is cut at its sides
   double extrapolation = 0;  ///< farthest that a vertex may lie outside its voxel [m]; 0: two voxels
 };
 

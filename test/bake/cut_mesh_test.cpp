@@ -1,0 +1,76 @@
+#include "../../src/bake/cut_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace frontalis;
+
+namespace
+{
+
+// a square of n x n cells of size 1 in the plane z = 0
+TriangleMesh square(int n)
+{
+  TriangleMesh mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      mesh.vertices.push_back({ { i + 0.0, j + 0.0, 0 } });
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+    {
+      const int a = j * (n + 1) + i;
+      mesh.triangles.push_back({ { a, a + 1, a + n + 2 } });
+      mesh.triangles.push_back({ { a, a + n + 2, a + n + 1 } });
+    }
+  return mesh;
+}
+
+double area(const TriangleMesh& mesh)
+{
+  double sum = 0;
+  for (const auto& t : mesh.triangles)
+  {
+    const Vector3 a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    sum += 0.5 * cross(mesh.vertices[static_cast<std::size_t>(t[1])] - a,
+                       mesh.vertices[static_cast<std::size_t>(t[2])] - a)[2];
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST(CutMesh, KeepsTheAreaAndTheOrientationInsideTheRegion)
+{
+  Region region;
+  region.lower = { 1.25, 0.5, -1 };
+  region.upper = { 3.5, 2.75, 1 };
+  const TriangleMesh part = cut_mesh(square(5), region);
+  EXPECT_NEAR(area(part), 2.25 * 2.25, 1e-12);
+  for (const auto& v : part.vertices)
+    EXPECT_TRUE(contains(region, v));
+}
+
+TEST(CutMesh, NeighboursShareTheNewVertices)
+{
+  Region region;
+  region.upper[0] = 2.3;
+  const TriangleMesh part = cut_mesh(square(4), region);
+  // a rectangle's rim: every other edge belongs to two triangles
+  const auto rim = unbalanced_edges(part);
+  double length = 0;
+  for (const auto& edge : rim)
+    length += norm(part.vertices[static_cast<std::size_t>(edge[1])] - part.vertices[static_cast<std::size_t>(edge[0])]);
+  EXPECT_NEAR(length, 2 * (2.3 + 4), 1e-12);
+}
+
+TEST(CutMesh, LeavesAMeshAloneThatLiesInsideOrOnTheSides)
+{
+  const TriangleMesh whole = square(3);
+  Region region;
+  region.lower = { 0, 0, 0 };
+  region.upper = { 3, 3, 0 };
+  const TriangleMesh part = cut_mesh(whole, region);
+  EXPECT_EQ(part.vertices, whole.vertices);
+  EXPECT_EQ(part.triangles, whole.triangles);
+}
