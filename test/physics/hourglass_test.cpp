@@ -24,8 +24,7 @@ TEST(VoxelElement, LinearFieldsExciteNoHourglassMode)
     a[b] = 0.3 + 0.7 * corner(b, 0) - 1.1 * corner(b, 1) + 0.2 * corner(b, 2);
   walsh_hadamard(a);
   for (int m = 0; m < 8; ++m)
-    if (is_hourglass_mode(m))
-      EXPECT_NEAR(a[m], 0, 1e-14);
+    EXPECT_NEAR(is_hourglass_mode(m) ? a[m] : 0, 0, 1e-14) << m;
   EXPECT_NEAR(a[gradient_mode(0)], 4 * 0.7, 1e-14);
   EXPECT_NEAR(a[gradient_mode(1)], 4 * -1.1, 1e-14);
   EXPECT_NEAR(a[gradient_mode(2)], 4 * 0.2, 1e-14);

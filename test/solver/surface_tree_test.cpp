@@ -67,8 +67,7 @@ TEST(SurfaceTree, FindsWhatASearchOfAllTrianglesFinds)
     // the pseudonormal tells inside from outside
     const bool outside = dot(p - found.point, found.normal) > 0;
     const double radius = norm(p);
-    if (radius > 1 || radius < 0.9)
-      EXPECT_EQ(outside, radius > 1) << radius;
+    EXPECT_TRUE(outside == (radius > 1) || (radius >= 0.9 && radius <= 1)) << radius;
   }
   EXPECT_EQ(tree.closest({ 5, 0, 0 }, 1).triangle, -1);
 }
