@@ -32,19 +32,19 @@ int from_environment(const char* name, int otherwise, int least, int most)
   return text == nullptr ? otherwise : std::clamp(std::atoi(text), least, most);
 }
 
-/// Small models want many short strips, because a step is as long as its longest strip; large ones few long strips,
+/// Small models want many short strips, because a step is as long as its longest strip; large ones fewer long strips,
 /// because what a strip's borders share is computed twice.
-StripSettings choose_strips(const Model& model)
+StripSettings choose_strips(const Model& model, Effects effects)
 {
   constexpr double nodes_a_row = 28;
-  const double warps = 8.0 * processors();
+  const double schedulers = 4.0 * processors();
   const double rows_of_nodes = static_cast<double>(model.nodes.size()) / nodes_a_row;
   StripSettings settings;
-  settings.rows = rows_of_nodes > 8 * warps ? strip_rows_large : strip_rows_small;
-  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / warps, 1.0, 64.0));
+  settings.rows = rows_of_nodes > 64 * schedulers ? 4 : rows_of_nodes > 1.5 * schedulers ? 2 : 1;
+  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / (3 * schedulers), 1.0, 32.0));
   // for measuring
-  settings.rows = from_environment("FRONTALIS_CUDA_ROWS", settings.rows, 1, 4) > strip_rows_small ? strip_rows_large
-                                                                                                  : strip_rows_small;
+  settings.rows = from_environment("FRONTALIS_CUDA_ROWS", settings.rows, 1, 4);
+  settings.rows = effects == Effects::all ? 2 : settings.rows == 3 ? 4 : settings.rows;
   settings.planes = from_environment("FRONTALIS_CUDA_PLANES", settings.planes, 1, 4096);
   return settings;
 }
@@ -86,6 +86,7 @@ private:
   void step(StepArguments& g, int begin, int end);
   void download(const DeviceArray<float4>& field, Vectors& out) const;
   void upload_displacements(const Vectors* in, int buffer);
+  void choose_launch();
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   cuda::DeviceModel device_;
@@ -102,13 +103,13 @@ private:
   std::int64_t plans_ = 0;
   int present_ = 0;           // buffer that holds the displacements now
   bool still_moved_ = false;  // displacements were set from outside, those of still nodes too
-  int blocks_ = 0;
+  StepLaunch launch_{};
   bool resident_ = false;  // all blocks fit the device at once, so that one launch does many steps
 };
 
 CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
     : SteppingSolver(std::move(model), settings),
-      device_(*model_, discretisation_, choose_strips(*model_)),
+      device_(*model_, discretisation_, choose_strips(*model_, cuda::effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {
@@ -135,12 +136,10 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
     slot.seen.data()[0] = 0;
     require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
   }
-  const int wanted = static_cast<int>((device_.strips() + warps_a_block - 1) / warps_a_block);
-  const int resident = resident_blocks(device_.rows(), device_.effects());
-  if (resident == 0)
-    require(cudaGetLastError(), "this build has no code for the device");
-  resident_ = wanted <= 2 * resident && !device_.loads().follow();
-  blocks_ = resident_ ? std::min(wanted, resident) : wanted;
+  if (model_->muscles.size() > most_muscles)
+    throw Error("backend cuda: " + std::to_string(model_->muscles.size()) + " muscles; allowed are " +
+                std::to_string(most_muscles));
+  choose_launch();
   rest();
 }
 
@@ -153,6 +152,26 @@ CudaSolver::~CudaSolver()
       cudaEventDestroy(slot.done);
   if (stream_ != nullptr)
     cudaStreamDestroy(stream_);
+}
+
+void CudaSolver::choose_launch()
+{
+  // shared memory for the slots of a warp, where it has one strip alone
+  constexpr std::size_t most_slot_bytes = 12 * 1024;
+  const int wanted = static_cast<int>((device_.strips() + warps_a_block - 1) / warps_a_block);
+  launch_ = { device_.rows(), device_.effects(), device_.longest_strip() * sizeof(uint2), wanted };
+  int resident = launch_.slot_bytes <= most_slot_bytes ? resident_blocks(launch_) : 0;
+  if (resident < wanted)
+  {
+    launch_.slot_bytes = 0;
+    resident = resident_blocks(launch_);
+  }
+  if (resident == 0)
+    require(cudaGetLastError(), "this build has no code for the device");
+  resident_ = wanted <= from_environment("FRONTALIS_CUDA_WAVES", 1, 0, 1000) * resident && !device_.loads().follow();
+  launch_.blocks = resident_ ? std::min(wanted, resident) : wanted;
+  if (!resident_)
+    launch_.slot_bytes = 0;
 }
 
 void CudaSolver::upload_displacements(const Vectors* in, int buffer)
@@ -295,8 +314,8 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   g.step_end = end;
   g.first = present_;
   g.barrier_base = barrier_base_;
-  require(launch_steps(g, device_.rows(), device_.effects(), blocks_, stream_), "launching steps");
-  barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * blocks_);
+  require(launch_steps(g, launch_, stream_), "launching steps");
+  barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * launch_.blocks);
   present_ = (present_ + end - begin) & 1;
 }
 
@@ -307,6 +326,7 @@ double CudaSolver::run(const StepPlan& plan)
   g.time = plan.time;
   g.steps = plan.steps;
   stage(plan, slot, g);
+  require(launch_renewals(g, stream_), "renewing contacts");
   int done = 0;
   if (still_moved_)
   {

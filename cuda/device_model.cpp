@@ -13,7 +13,7 @@ namespace cuda
 namespace
 {
 
-using Entry = std::array<float, 8>;
+using Entry = std::vector<float>;
 
 struct HashEntry
 {
@@ -52,6 +52,13 @@ void expect_room(const Model& model, const VoxelStrips& strips)
 
 }  // namespace
 
+Effects effects_of(const Model& model, const Discretisation& discretisation)
+{
+  if (!discretisation.assumed_strain[0].empty() || !discretisation.laws.empty())
+    return Effects::all;
+  return model.fibre_muscle.empty() ? Effects::none : Effects::fibres;
+}
+
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const StripSettings& settings)
     : DeviceModel(model, discretisation, VoxelStrips(model, settings))
 {
@@ -59,17 +66,20 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips)
     : rows_(strips.rows),
-      effects_(!model.fibre_muscle.empty() || !discretisation.assumed_strain[0].empty()),
+      effects_(effects_of(model, discretisation)),
       filled_(strips.filled()),
       device_node_((expect_room(model, strips), std::move(strips.device_node))),
       loads_(model, device_node_)
 {
-  add_palette(discretisation, strips.slots);
+  add_palette(model, discretisation, strips.slots);
   add_fibres(model, discretisation, strips);
   add_tasks(model, strips);
   strips_ = DeviceArray<Strip>(strips.strips);
   slots_ = DeviceArray<StripSlot>(strips.slots);
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
+
+  for (const Strip& strip : strips.strips)
+    longest_strip_ = std::max<std::size_t>(longest_strip_, strip.planes * static_cast<std::size_t>(rows_ + 2) * 32);
 
   StepArguments& g = constants_;
   g.strips = strips_.data();
@@ -78,6 +88,9 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.strip_count = static_cast<std::uint32_t>(strips_.size());
   g.palette = palette_.data();
   g.stabilisation = stabilisation_.data();
+  g.law_begin = law_begin_.data();
+  g.laws = laws_.data();
+  g.muscles = static_cast<std::int32_t>(model.muscles.size());
   g.fibre_words = fibre_words_.data();
   g.fibres = fibres_.data();
   g.fibre_muscle = fibre_muscle_.data();
@@ -87,6 +100,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.vertex_force = loads_.vertex_force();
   g.load_ramp = loads_.ramp();
   g.sliding = sliding_.data();
+  g.contact_planes = contact_planes_.data();
+  g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
   g.surfaces = surfaces_.data();
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
@@ -106,31 +121,55 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 StepArguments DeviceModel::arguments() const { return constants_; }
 
 // voxels of equal make share an entry; entry 0 has no stiffness
-void DeviceModel::add_palette(const Discretisation& d, std::vector<StripSlot>& slots)
+void DeviceModel::add_palette(const Model& model, const Discretisation& d, std::vector<StripSlot>& slots)
 {
   const bool stabilised = !d.assumed_strain[0].empty();
+  const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
   std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
+  std::vector<std::uint32_t> law_begin(2, 0);
+  std::vector<LawEntry> laws;
   std::vector<std::uint32_t> entry_of(d.mu.size());
   std::unordered_map<Entry, std::uint32_t, HashEntry> known;
-  Entry latest{};
+  Entry latest, entry;
   std::uint32_t index = 0;
   for (std::size_t e = 0; e < d.mu.size(); ++e)
   {
-    Entry entry{ { static_cast<float>(d.mu[e] * d.tissue_volume[e]),
-                   static_cast<float>(d.kappa[e] * d.tissue_volume[e]), static_cast<float>(d.hourglass[e]),
-                   static_cast<float>(d.frequency_squared[e]) } };
-    if (stabilised)
-      for (int part = 0; part < 4; ++part)
-        entry[4 + part] = static_cast<float>(d.assumed_strain[part][e]);
+    entry.clear();
+    for (const double x :
+         { d.mu[e] * d.tissue_volume[e], d.kappa[e] * d.tissue_volume[e], d.hourglass[e], d.frequency_squared[e] })
+      entry.push_back(static_cast<float>(x));
+    for (int part = 0; stabilised && part < 4; ++part)
+      entry.push_back(static_cast<float>(d.assumed_strain[part][e]));
+    for (auto l = d.law_begin[e]; l < d.law_begin[e + 1]; ++l)
+    {
+      const auto& part = d.laws[l];
+      for (const double x : { static_cast<double>(part.law), part.weight * d.tissue_volume[e],
+                              8 * part.weight / (d.density[e] * shortest * shortest), part.stiffness_at_rest })
+        entry.push_back(static_cast<float>(x));
+      for (const double x : part.parameters)
+        entry.push_back(static_cast<float>(x));
+    }
     if (index == 0 || entry != latest)
     {
       const auto found = known.emplace(entry, static_cast<std::uint32_t>(entries.size()));
       if (found.second)
       {
         entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
+        std::size_t at = 4;
         if (stabilised)
+        {
           more.push_back(float4{ entry[4], entry[5], entry[6], entry[7] });
+          at = 8;
+        }
+        for (; at < entry.size(); at += 15)
+        {
+          LawEntry law{ static_cast<std::int32_t>(entry[at]), entry[at + 1], entry[at + 2], entry[at + 3], {} };
+          std::copy(entry.begin() + static_cast<std::ptrdiff_t>(at) + 4,
+                    entry.begin() + static_cast<std::ptrdiff_t>(at) + 15, law.parameters);
+          laws.push_back(law);
+        }
+        law_begin.push_back(static_cast<std::uint32_t>(laws.size()));
       }
       index = found.first->second;
       latest = entry;
@@ -141,6 +180,10 @@ void DeviceModel::add_palette(const Discretisation& d, std::vector<StripSlot>& s
     slot.voxel = slot.voxel > 0 ? entry_of[slot.voxel - 1] : 0;
   palette_ = DeviceArray<float4>(entries);
   stabilisation_ = DeviceArray<float4>(more);
+  if (laws.empty())
+    return;
+  law_begin_ = DeviceArray<std::uint32_t>(law_begin);
+  laws_ = DeviceArray<LawEntry>(laws);
 }
 
 void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips)
@@ -176,18 +219,31 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
         { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
   }
   surfaces_ = DeviceArray<SurfaceSearch>(surfaces);
-  for (const auto& node : model.sliding)
+  // in the order in which warps meet them
+  std::vector<SlidingNode> nodes = model.sliding;
+  std::sort(nodes.begin(), nodes.end(),
+            [&](const SlidingNode& a, const SlidingNode& b) { return device_node_[a.node] < device_node_[b.node]; });
+  std::vector<SlidingContact> contacts;
+  for (const auto& node : nodes)
   {
     SlidingContact contact{};
     const auto rest = rest_position(model, node.node);
     std::copy(rest.begin(), rest.end(), contact.rest);
     contact.distance = node.distance;
     contact.surface = node.surface;
-    contact.stale = 1;
-    task_of[node.node].sliding = static_cast<std::int32_t>(contacts_at_rest_.size());
-    contacts_at_rest_.push_back(contact);
+    contact.node = device_node_[node.node];
+    task_of[node.node].sliding = static_cast<std::int32_t>(contacts.size());
+    contacts.push_back(contact);
   }
-  sliding_ = DeviceArray<SlidingContact>(contacts_at_rest_);
+  sliding_ = DeviceArray<SlidingContact>(contacts);
+  contact_planes_ = DeviceArray<ContactPlane>(contacts.size());
+  reset_contacts();
+}
+
+void DeviceModel::reset_contacts()
+{
+  const std::vector<ContactPlane> unknown(contact_planes_.size(), ContactPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, 1 } });
+  contact_planes_.upload(unknown.data(), unknown.size());
 }
 
 void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
@@ -260,6 +316,7 @@ void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
       task_of[n].node = device_node_[n];
       tasks[count[strips.strip_of_node[n]]++] = task_of[n];
     }
+  std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });
   if (!still_nodes_.empty())
     for (auto& slot : strips.slots)
       if (still_device[slot.node & StripSlot::node_mask])

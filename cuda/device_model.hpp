@@ -12,6 +12,9 @@ namespace frontalis
 namespace cuda
 {
 
+/// What a model's voxels need of the kernels.
+Effects effects_of(const Model& model, const Discretisation& discretisation);
+
 /// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
 class DeviceModel
 {
@@ -22,11 +25,12 @@ public:
   /// Arguments of a step with all that is constant filled in.
   StepArguments arguments() const;
   /// Contacts as they are at rest.
-  void reset_contacts() { sliding_.upload(contacts_at_rest_.data(), contacts_at_rest_.size()); }
+  void reset_contacts();
 
   int rows() const { return rows_; }
-  bool effects() const { return effects_; }
+  Effects effects() const { return effects_; }
   std::size_t strips() const { return strips_.size(); }
+  std::size_t longest_strip() const { return longest_strip_; }  ///< slots
   double filled() const { return filled_; }
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
@@ -35,14 +39,15 @@ public:
 
 private:
   DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips);
-  void add_palette(const Discretisation& discretisation, std::vector<StripSlot>& slots);
+  void add_palette(const Model& model, const Discretisation& discretisation, std::vector<StripSlot>& slots);
   void add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips);
   void add_tasks(const Model& model, VoxelStrips& strips);
   void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
 
   int rows_;
-  bool effects_;
+  Effects effects_;
   double filled_;
+  std::size_t longest_strip_ = 0;
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
   StepArguments constants_{};
@@ -50,11 +55,13 @@ private:
   DeviceArray<Strip> strips_;
   DeviceArray<StripSlot> slots_;
   DeviceArray<float4> palette_, stabilisation_;
+  DeviceArray<std::uint32_t> law_begin_;
+  DeviceArray<LawEntry> laws_;
   DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;
   DeviceArray<SlidingContact> sliding_;
-  std::vector<SlidingContact> contacts_at_rest_;
+  DeviceArray<ContactPlane> contact_planes_;
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
   DeviceArray<SurfaceSearch> surfaces_;

@@ -5,6 +5,7 @@
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "material_laws.hpp"
 #include "step_kernel.hpp"
 
 namespace frontalis
@@ -17,11 +18,10 @@ struct ElementPlace
 {
   std::uint32_t palette;
   std::uint32_t fibre_word;
-  float fraction;  ///< of the plan that has passed at the end of the step: where activations are
 };
 
 /// Stress of the fibres of a voxel times its tissue volume: P += S (F a0) (x) a0.
-__device__ __forceinline__ void add_fibres(const StepArguments& g, const ElementPlace& place,
+__device__ __forceinline__ void add_fibres(const StepArguments& g, const ElementPlace& place, const float* activation,
                                            const physics::Kinematics<float>& k, physics::Matrix3<float>& P)
 {
   const std::uint32_t first = place.fibre_word >> 4, last = first + (place.fibre_word & 15u);
@@ -30,16 +30,15 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, const Element
     const float4 fibre = __ldg(g.fibres + f);
     const std::uint32_t word = __ldg(g.fibre_muscle + f);
     const std::uint32_t muscle = word & 0x3fffffffu;
-    const float begin = g.activation_begin[muscle];
-    const float activation = begin + place.fraction * (g.activation_end[muscle] - begin);
     const float a[3] = { fibre.x, fibre.y, fibre.z };
     float along[3];
 #pragma unroll
     for (int i = 0; i < 3; ++i)
       along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
     const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
-    const float S = physics::fibre_stress<float>(squared, k.J, fibre.w, activation, (word & 0x40000000u) ? 1.0f : 0.0f,
-                                                 (word & 0x80000000u) ? 1.0f : 0.0f);
+    const float S =
+        physics::fibre_stress<float>(squared, k.J, fibre.w, activation[muscle], (word & 0x40000000u) ? 1.0f : 0.0f,
+                                     (word & 0x80000000u) ? 1.0f : 0.0f);
 #pragma unroll
     for (int i = 0; i < 3; ++i)
     {
@@ -51,11 +50,29 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, const Element
   }
 }
 
-/// Replaces the transformed displacements of a voxel by the forces conjugate to them; the one place where the GPU
-/// computes stress. Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
-template <bool Effects>
-__device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place, float (&mode)[3][8],
-                                               bool look, std::uint32_t& frequency_bits)
+/// Stress of the laws beyond neo-Hookean times the tissue volume that they have; not inlined, because few voxels have
+/// them. Adds to the frequency bound squared what they have stiffened since rest.
+__device__ __noinline__ void add_laws(const StepArguments& g, std::uint32_t palette,
+                                      const physics::Kinematics<float>& k, physics::Matrix3<float>& P,
+                                      float& frequency_squared)
+{
+  const std::uint32_t last = __ldg(g.law_begin + palette + 1);
+  for (std::uint32_t l = __ldg(g.law_begin + palette); l < last; ++l)
+  {
+    const LawEntry entry = g.laws[l];
+    add_law_stress(static_cast<Law>(entry.law), entry.parameters, entry.weight, k, P);
+    const float more = law_stiffness(static_cast<Law>(entry.law), entry.parameters, k) - entry.at_rest;
+    frequency_squared += entry.inertia * fmaxf(more, 0.0f);
+  }
+}
+
+/// `activation`: one a muscle, in shared memory. Replaces the transformed displacements of a voxel by the forces
+/// conjugate to them; the one place where the GPU computes stress. Palette entry 0 has no stiffness, so that places
+/// without a voxel give exact zeros.
+template <Effects With>
+__device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
+                                               const float* activation, float (&mode)[3][8], bool look,
+                                               std::uint32_t& frequency_bits)
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
@@ -67,16 +84,19 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
 #pragma unroll
     for (int j = 0; j < 3; ++j)
       P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
-  if (Effects)
-    add_fibres(g, place, k, P);
-  if (look)
+  float stiffened = 0;
+  if (With != Effects::none)
+    add_fibres(g, place, activation, k, P);
+  if (With == Effects::all && g.law_begin != nullptr)
+    add_laws(g, place.palette, k, P, stiffened);
+  if (look && place.palette != 0)
   {
     const float growth = physics::stiffening(material, k, g.stretch_weight);
-    const float now = entry.w * fmaxf(growth, 1.0f);
+    const float now = entry.w * fmaxf(growth, 1.0f) + stiffened;
     // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
     frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
   }
-  if (Effects && g.stabilisation != nullptr)
+  if (With == Effects::all && g.stabilisation != nullptr)
   {
     const float4 s = __ldg(g.stabilisation + place.palette);
     const physics::AssumedStrain<float> stiffness{ s.x, s.y, s.z, s.w };

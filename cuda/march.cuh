@@ -50,8 +50,8 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
 
 /// y and z steps of the transform, the stress, and their transposes: voxel between rows a, b of the planes below,
 /// above.
-template <bool Effects>
-__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+template <Effects With>
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place, const float* activation,
                                              const RowValues& below_a, const RowValues& below_b,
                                              const RowValues& above_a, const RowValues& above_b, bool look,
                                              std::uint32_t& frequency_bits, RowForces force[2][2])
@@ -71,7 +71,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<Effects>(g, place, mode, look, frequency_bits);
+  element_forces<With>(g, place, activation, mode, look, frequency_bits);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -87,9 +87,30 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
 }
 
+/// What the update of a node needs, fetched before the stress is computed.
+struct NodeFetch
+{
+  float4 own;
+  float v[3];
+};
+
+__device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
+{
+  NodeFetch fetch{};
+  if (word & StripSlot::updated)
+  {
+    const std::uint32_t node = word & StripSlot::node_mask;
+    fetch.own = u[node];
+#pragma unroll
+    for (int c = 0; c < 3; ++c)
+      fetch.v[c] = g.v[c][node];
+  }
+  return fetch;
+}
+
 /// The transposed x step, then the update of the node or its force alone.
-__device__ __forceinline__ void step_node(const StepArguments& g, const float4* u, float4* next, std::uint32_t word,
-                                          int left, const RowForces& row)
+__device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
+                                          const NodeFetch& fetch, const RowForces& row)
 {
   float force[3];
 #pragma unroll
@@ -107,63 +128,84 @@ __device__ __forceinline__ void step_node(const StepArguments& g, const float4* 
   }
   else if (word & StripSlot::updated)
   {
-    const float4 own = u[node];
-    const float share = g.gain * own.w;
-    const float x = g.keep * g.v[0][node] - share * force[0] + g.impulse[0];
-    const float y = g.keep * g.v[1][node] - share * force[1] + g.impulse[1];
-    const float z = g.keep * g.v[2][node] - share * force[2] + g.impulse[2];
+    const float share = g.gain * fetch.own.w;
+    const float x = g.keep * fetch.v[0] - share * force[0] + g.impulse[0];
+    const float y = g.keep * fetch.v[1] - share * force[1] + g.impulse[1];
+    const float z = g.keep * fetch.v[2] - share * force[2] + g.impulse[2];
     g.v[0][node] = x;
     g.v[1][node] = y;
     g.v[2][node] = z;
-    next[node] = make_float4(own.x + g.dt * x, own.y + g.dt * y, own.z + g.dt * z, own.w);
+    next[node] = make_float4(fetch.own.x + g.dt * x, fetch.own.y + g.dt * y, fetch.own.z + g.dt * z, fetch.own.w);
   }
 }
 
 /// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
-/// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides.
-template <int Rows, bool Effects>
-__device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const float4* u, float4* next,
-                                      float fraction, bool look, std::uint32_t& frequency_bits)
+/// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
+/// are fetched a plane ahead, displacements a row ahead. `slot`: the strip's, at this lane.
+template <int Rows, Effects With>
+__device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot, const float4* u,
+                                      float4* next, const float* activation, bool look, std::uint32_t& frequency_bits)
 {
   constexpr int nodes = Rows + 2;
   const int lane = threadIdx.x & 31;
   const int left = (lane + 31) & 31;
-  const uint2* slot = g.slots + strip.slot_begin + lane;
+  const auto displacement = [&](const uint2& place) { return u[place.x & StripSlot::node_mask]; };
   RowValues below[nodes];
   RowForces carried[Rows];
-  uint2 here[nodes];
+  uint2 here[nodes], above_slot[nodes];
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
-    here[r] = __ldg(slot + r * 32);
+    here[r] = slot[r * 32];
+  slot += nodes * 32;
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
-    below[r] = transform_x(u[here[r].x & StripSlot::node_mask]);
+    above_slot[r] = strip.planes > 1 ? slot[r * 32] : make_uint2(0, 0);
+  {
+    float4 raw[nodes];
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      raw[r] = displacement(here[r]);
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      below[r] = transform_x(raw[r]);
+  }
 #pragma unroll
   for (int r = 0; r < Rows; ++r)
     carried[r] = no_forces();
   ElementPlace place{};
-  place.fraction = fraction;
   std::uint32_t fibre_word = strip.fibre_begin + lane;
+  float4 raw_a = displacement(above_slot[0]), raw_b = displacement(above_slot[1]);
   for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
   {
     slot += nodes * 32;
-    uint2 above_slot[nodes];
-    const bool more = plane + 1 < strip.planes;
+    uint2 further[nodes];
+    const bool more = plane + 2 < strip.planes;
 #pragma unroll
     for (int r = 0; r < nodes; ++r)
-      above_slot[r] = more ? __ldg(slot + r * 32) : make_uint2(0, 0);
+      further[r] = more ? slot[r * 32] : make_uint2(0, 0);
     RowForces pending_below = no_forces(), pending_above = no_forces();
-    RowValues above_a = transform_x(u[above_slot[0].x & StripSlot::node_mask]);
+    RowValues above_a = transform_x(raw_a);
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
     {
-      const RowValues above_b = transform_x(u[above_slot[r + 1].x & StripSlot::node_mask]);
+      const RowValues above_b = transform_x(raw_b);
+      if (r + 2 < nodes)
+        raw_b = displacement(above_slot[r + 2]);
+      else
+      {
+        raw_a = displacement(further[0]);
+        raw_b = displacement(further[1]);
+      }
+      NodeFetch fetch{};
+      if (r > 0)
+        fetch = fetch_node(g, u, here[r].x);
       RowForces force[2][2] = { { no_forces(), no_forces() }, { no_forces(), no_forces() } };
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        place.fibre_word = Effects && strip.fibre_begin != Strip::none ? __ldg(g.fibre_words + fibre_word) : 0;
-        voxel_forces<Effects>(g, place, below[r], below[r + 1], above_a, above_b, look, frequency_bits, force);
+        place.fibre_word =
+            With != Effects::none && strip.fibre_begin != Strip::none ? __ldg(g.fibre_words + fibre_word) : 0;
+        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, frequency_bits, force);
       }
       fibre_word += 32;
       if (r > 0)
@@ -171,7 +213,7 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
         RowForces sum = carried[r - 1];
         add(sum, pending_below);
         add(sum, force[0][0]);
-        step_node(g, u, next, here[r].x, left, sum);
+        step_node(g, next, here[r].x, left, fetch, sum);
         carried[r - 1] = pending_above;
         add(carried[r - 1], force[1][0]);
       }
@@ -183,7 +225,10 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
     below[nodes - 1] = above_a;
 #pragma unroll
     for (int r = 0; r < nodes; ++r)
+    {
       here[r] = above_slot[r];
+      above_slot[r] = further[r];
+    }
   }
 }
 

@@ -23,34 +23,72 @@ __device__ __forceinline__ void grid_barrier(std::uint32_t* counter, std::uint32
   __syncthreads();
 }
 
-template <int Rows, bool Effects>
-__global__ void __launch_bounds__(step_block) step_kernel(const __grid_constant__ StepArguments g)
+extern __shared__ uint2 cached_slots[];
+
+// activations at the end of a step of the plan
+__device__ __forceinline__ void set_activations(const StepArguments& g, std::int32_t step, float* activation)
+{
+  const auto fraction = static_cast<float>((step + 1.0) / g.steps);
+  for (std::int32_t m = threadIdx.x; m < g.muscles; m += step_block)
+  {
+    const float begin = g.activation_begin[m];
+    activation[m] = begin + fraction * (g.activation_end[m] - begin);
+  }
+}
+
+template <int Rows, Effects With>
+__global__ void __launch_bounds__(step_block, 3)
+    step_kernel(const __grid_constant__ StepArguments g, std::uint32_t slots_a_warp)
 {
   constexpr std::uint32_t warps_a_block = step_block / 32;
+  __shared__ float activation[With != Effects::none ? most_muscles : 1];
+  const std::uint32_t lane = threadIdx.x & 31;
   const std::uint32_t warp = blockIdx.x * warps_a_block + threadIdx.x / 32;
+  // a warp that has one strip for all steps keeps its slots at hand
+  uint2* const cache = slots_a_warp > 0 ? cached_slots + threadIdx.x / 32 * slots_a_warp : nullptr;
+  Strip strip{};
+  if (warp < g.strip_count)
+    strip = g.strips[warp];
+  if (cache != nullptr && warp < g.strip_count)
+    for (std::uint32_t i = lane; i < strip.planes * (Rows + 2) * 32; i += 32)
+      cache[i] = g.slots[strip.slot_begin + i];
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
   {
     const int present = (g.first + step - g.step_begin) & 1;
     const float4* const u = g.u[present];
     float4* const next = g.u[1 - present];
     const bool look = g.look != nullptr && step + 1 == g.steps;
-    const auto fraction = static_cast<float>((step + 1.0) / g.steps);
+    if (With != Effects::none)
+    {
+      // the barrier between steps keeps the slower warps of a block from reading these too late
+      set_activations(g, step, activation);
+      __syncthreads();
+    }
     std::uint32_t frequency_bits = 0;
     for (std::uint32_t s = warp; s < g.strip_count; s += gridDim.x * warps_a_block)
     {
-      const Strip strip = g.strips[s];
-      march<Rows, Effects>(g, strip, u, next, fraction, look, frequency_bits);
-      if (strip.task_begin == strip.task_end || g.forces_only)
+      if (s != warp || s + gridDim.x * warps_a_block < g.strip_count)
+        strip = g.strips[s];
+      const bool tasks = strip.task_begin < strip.task_end && !g.forces_only;
+      const std::uint32_t first_task = strip.task_begin + lane;
+      NodeTask task{};
+      if (tasks && first_task < strip.task_end)
+        task = g.tasks[first_task];
+      march<Rows, With>(g, strip, cache != nullptr ? cache + lane : g.slots + strip.slot_begin + lane, u, next,
+                        activation, look, frequency_bits);
+      if (!tasks)
         continue;
       __syncwarp();
-      for (std::uint32_t t = strip.task_begin + (threadIdx.x & 31); t < strip.task_end; t += 32)
+      if (first_task < strip.task_end)
+        run_task(g, task, u, next, step);
+      for (std::uint32_t t = first_task + 32; t < strip.task_end; t += 32)
         run_task(g, g.tasks[t], u, next, step);
       __syncwarp();
     }
     if (look)
     {
       const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
-      if ((threadIdx.x & 31) == 0)
+      if (lane == 0)
         atomicMax(g.look, largest);
     }
     if (step + 1 < g.step_end)
@@ -58,38 +96,75 @@ __global__ void __launch_bounds__(step_block) step_kernel(const __grid_constant_
   }
 }
 
+// nodes that have slid half as far as a step allows get their closest points here, beside each other
+__global__ void renew_contacts(const __grid_constant__ StepArguments g)
+{
+  const std::uint32_t index = blockIdx.x * 64 + threadIdx.x;
+  if (index >= g.sliding_count)
+    return;
+  const float4 now = g.u[g.first][g.sliding[index].node];
+  const float u[3] = { now.x, now.y, now.z };
+  const float4 reference = g.contact_planes[index].reference;
+  constexpr auto half = static_cast<float>(0.5 * slip_until_renewal);
+  if (reference.w != 0 || slip_squared(reference, u) > half * half)
+    renew_contact(g, static_cast<std::int32_t>(index), u, reference.w != 0);
+}
+
 namespace
 {
 
-const void* kernel(int rows, bool effects)
+template <int Rows>
+const void* kernel(Effects effects)
 {
-  if (rows == strip_rows_small)
-    return effects ? reinterpret_cast<const void*>(step_kernel<strip_rows_small, true>)
-                   : reinterpret_cast<const void*>(step_kernel<strip_rows_small, false>);
-  return effects ? reinterpret_cast<const void*>(step_kernel<strip_rows_large, true>)
-                 : reinterpret_cast<const void*>(step_kernel<strip_rows_large, false>);
+  return effects == Effects::none ? reinterpret_cast<const void*>(step_kernel<Rows, Effects::none>)
+                                  : reinterpret_cast<const void*>(step_kernel<Rows, Effects::fibres>);
 }
+
+const void* kernel(const StepLaunch& launch)
+{
+  if (launch.effects == Effects::all)
+    return reinterpret_cast<const void*>(step_kernel<2, Effects::all>);
+  return launch.rows == 1   ? kernel<1>(launch.effects)
+         : launch.rows == 2 ? kernel<2>(launch.effects)
+                            : kernel<4>(launch.effects);
+}
+
+std::size_t shared_bytes(const StepLaunch& launch) { return launch.slot_bytes * (step_block / 32); }
 
 }  // namespace
 }  // namespace cuda
 
-int resident_blocks(int rows, bool effects)
+int resident_blocks(const StepLaunch& launch)
 {
   int device = 0, processors = 0, blocks = 0;
+  const void* const kernel = cuda::kernel(launch);
+  const std::size_t shared = cuda::shared_bytes(launch);
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, cuda::kernel(rows, effects), step_block, 0) != cudaSuccess)
+      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)) !=
+          cudaSuccess ||
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, step_block, shared) != cudaSuccess)
     return 0;
   return processors * blocks;
 }
 
-cudaError_t launch_steps(const StepArguments& arguments, int rows, bool effects, int blocks, cudaStream_t stream)
+cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
 {
-  void* parameters[] = { const_cast<StepArguments*>(&arguments) };
-  const void* const kernel = cuda::kernel(rows, effects);
+  auto slots = static_cast<std::uint32_t>(launch.slot_bytes / sizeof(uint2));
+  void* parameters[] = { const_cast<StepArguments*>(&arguments), &slots };
+  const void* const kernel = cuda::kernel(launch);
+  const dim3 grid(launch.blocks), block(step_block);
+  const std::size_t shared = cuda::shared_bytes(launch);
   if (arguments.step_end - arguments.step_begin > 1)
-    return cudaLaunchCooperativeKernel(kernel, dim3(blocks), dim3(step_block), parameters, 0, stream);
-  return cudaLaunchKernel(kernel, dim3(blocks), dim3(step_block), parameters, 0, stream);
+    return cudaLaunchCooperativeKernel(kernel, grid, block, parameters, shared, stream);
+  return cudaLaunchKernel(kernel, grid, block, parameters, shared, stream);
+}
+
+cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
+{
+  if (arguments.sliding_count > 0)
+    cuda::renew_contacts<<<(arguments.sliding_count + 63) / 64, 64, 0, stream>>>(arguments);
+  return cudaGetLastError();
 }
 
 }  // namespace frontalis

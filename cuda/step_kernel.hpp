@@ -40,16 +40,32 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// A node on a surface, with the tangent plane of the offset surface at its latest exact closest point.
+/// A node on a surface: what an exact closest point needs.
 struct SlidingContact
 {
-  double rest[3];
-  double distance;
-  double reference[3];
-  double foot[3];
-  double normal[3];
+  double rest[3];   ///< [m]
+  double distance;  ///< [m]
+  double foot[3];   ///< the latest exact closest point [m]
+  std::uint32_t node;
   std::int32_t surface;
-  std::int32_t stale;
+};
+
+/// What a step needs of it: the tangent plane of the offset surface at the latest exact closest point. A displacement u
+/// keeps its distance where normal . u + offset = 0.
+struct ContactPlane
+{
+  float4 normal_offset;
+  float4 reference;  ///< displacement there; w: 1 where there is no closest point yet
+};
+
+/// A law beyond neo-Hookean that a voxel has in part.
+struct LawEntry
+{
+  std::int32_t law;
+  float weight;          ///< proportion times tissue volume [m3]
+  float inertia;         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
+  float at_rest;         ///< tangent stiffness at rest [Pa]
+  float parameters[11];  ///< order: Law
 };
 
 /// Steps of equal length, or the internal forces alone. Pointers are to device memory.
@@ -66,10 +82,13 @@ struct StepArguments
   // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], frequency
   // bound squared at rest [1/s2]; entry 0 is nothing
   const float4* palette;
-  const float4* stabilisation;  ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
+  const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
+  const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
+  const LawEntry* laws;
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
+  std::int32_t muscles;
   const float* activation_begin;
   const float* activation_end;
 
@@ -80,6 +99,8 @@ struct StepArguments
   const double* vertex_force;  ///< three a vertex, at full ramp [N]
   const double* load_ramp;     ///< one a load [s]
   SlidingContact* sliding;
+  ContactPlane* contact_planes;
+  std::uint32_t sliding_count;
   const SurfaceSearch* surfaces;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
@@ -102,15 +123,33 @@ struct StepArguments
 /// Threads of a block; a warp walks one strip at a time.
 constexpr int step_block = 128;
 
-/// Rows a strip that kernels exist for.
-constexpr int strip_rows_small = 2;
-constexpr int strip_rows_large = 4;
+/// Most muscles that a model may have on the GPU: their activations lie in shared memory.
+constexpr int most_muscles = 512;
 
-/// Blocks of the step kernel that a device holds at once.
-int resident_blocks(int rows, bool effects);
+/// Kernels by what voxels need, so that those of a plain model hold no registers for more.
+enum class Effects : std::uint8_t
+{
+  none,    ///< neo-Hookean with scalar hourglass control
+  fibres,  ///< muscles too
+  all      ///< laws beyond neo-Hookean and assumed-strain hourglass control too; strips of two rows only
+};
 
-/// Launches steps [step_begin, step_end) of the plan. Several of them need all blocks resident at once. `effects`: the
-/// model has fibres or assumed-strain hourglass control.
-cudaError_t launch_steps(const StepArguments& arguments, int rows, bool effects, int blocks, cudaStream_t stream);
+/// How the step kernel is launched for a model.
+struct StepLaunch
+{
+  int rows;  ///< of a strip: 1, 2 or 4
+  Effects effects;
+  std::size_t slot_bytes;  ///< shared memory for a warp's slots; 0: they are read from device memory at each step
+  int blocks;
+};
+
+/// Blocks of the step kernel that a device holds at once; 0 where it has no code for the device.
+int resident_blocks(const StepLaunch& launch);
+
+/// Launches steps [step_begin, step_end) of the plan. Several of them need all blocks resident at once.
+cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
+
+/// Exact closest points for the sliding nodes that have moved half-way to where a step would have to find them itself.
+cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -12,11 +12,11 @@ namespace cuda
 {
 
 constexpr int tile_x = 32, tile_y = 16;  // threads; nodes on the rim are read but not stepped
-constexpr int planes_a_block = 64;
 
 struct Block
 {
-  int nodes;  // an edge
+  int nodes;           // an edge
+  int planes_a_block;  // that it steps
   const float* u[3];
   float* next[3];
   float* v[3];
@@ -54,7 +54,7 @@ __global__ void __launch_bounds__(tile_x* tile_y) bare_step(const Block b)
   __shared__ float given[3][3][threads];  // to the right, behind, right behind
   const int t = threadIdx.x, tx = t % tile_x, ty = t / tile_x;
   const int i = blockIdx.x * (tile_x - 2) + tx - 1, j = blockIdx.y * (tile_y - 2) + ty - 1;
-  const int n = b.nodes, first = blockIdx.z * planes_a_block, last = min(first + planes_a_block, n);
+  const int n = b.nodes, first = blockIdx.z * b.planes_a_block, last = min(first + b.planes_a_block, n);
   const bool inside = i >= 0 && j >= 0 && i < n && j < n;
   const bool voxel = i >= 0 && j >= 0 && i < n - 1 && j < n - 1 && tx < tile_x - 1 && ty < tile_y - 1;
   const bool own = inside && tx > 0 && ty > 0 && tx < tile_x - 1 && ty < tile_y - 1;
@@ -169,6 +169,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
   const double mu = young / (2 * (1 + nu)), kappa = young / (3 * (1 - 2 * nu)), volume = h * h * h;
   Block block{};
   block.nodes = n + 1;
+  block.planes_a_block = n < 200 ? 16 : 64;
   for (int c = 0; c < 3; ++c)
     block.v[c] = fields[6 + c].data();
   block.mu = static_cast<float>(mu * volume);
@@ -179,7 +180,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
   block.dt = static_cast<float>(dt);
   block.share = static_cast<float>(dt / (density * volume));
   const dim3 grid((n + tile_x - 2) / (tile_x - 2), (n + tile_y - 2) / (tile_y - 2),
-                  (n + planes_a_block) / planes_a_block);
+                  (n + block.planes_a_block) / block.planes_a_block);
   int present = 0;
   const double time = median_time(
       [&]
