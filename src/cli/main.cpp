@@ -27,6 +27,7 @@ int main(int argc, char** argv)
   frontalis::Action action;
   frontalis::add_bake_command(app, action);
   frontalis::add_run_command(app, action);
+  frontalis::add_bench_command(app, action);
 
   try
   {

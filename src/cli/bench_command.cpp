@@ -1,0 +1,116 @@
+#include "command.hpp"
+#include "model_source.hpp"
+
+#include "frontalis/solver/solver.hpp"
+#include "frontalis/study/dense_block.hpp"
+#include "frontalis/study/yardstick.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace frontalis
+{
+namespace
+{
+
+struct BenchOptions
+{
+  ModelSource source;
+  std::string backend = "cpu";
+  int threads = 0;
+  bool quick = false;
+};
+
+// resident memory of this process [bytes]; 0 where the system does not tell
+double resident_bytes()
+{
+  std::ifstream file("/proc/self/statm");
+  double size = 0, resident = 0;
+  file >> size >> resident;
+  return resident * 4096;
+}
+
+struct Timing
+{
+  double step = 0;    ///< median [s]
+  double spread = 0;  ///< (largest - smallest) over the median
+};
+
+Timing time_steps(Solver& solver, const Controls& controls, double seconds)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto elapsed = [](Clock::time_point start)
+  { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const double dt = solver.time_step();
+  solver.advance(8 * dt, controls);
+  auto start = Clock::now();
+  solver.advance(32 * dt, controls);
+  const double guess = elapsed(start) / 32;
+  std::vector<double> steps;
+  for (int repetition = 0; repetition < 5; ++repetition)
+  {
+    const auto before = solver.profile().steps;
+    start = Clock::now();
+    solver.advance(std::max(16.0, seconds / 5 / guess) * dt, controls);
+    steps.push_back(elapsed(start) / static_cast<double>(solver.profile().steps - before));
+  }
+  std::sort(steps.begin(), steps.end());
+  return { steps[2], (steps[4] - steps[0]) / steps[2] };
+}
+
+void bench_model(const std::string& name, const std::shared_ptr<const Model>& model, const BenchOptions& options,
+                 double yardstick)
+{
+  const double before = resident_bytes();
+  const auto solver = make_solver(model, { backend_from_name(options.backend), options.threads, 0 });
+  Controls controls = solver->controls();
+  std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
+  const Timing timing = time_steps(*solver, controls, options.quick ? 1.5 : 5.0);
+  const auto voxels = static_cast<double>(model->voxels.size());
+  std::printf("%-12s %10.0f  %9.1f  %9.2f  %6.2f  %6.0f  %5.0f %%  %s\n", name.c_str(), voxels, 1e6 * timing.step,
+              1e-6 * voxels / timing.step, voxels / timing.step / yardstick, (resident_bytes() - before) / voxels,
+              100 * timing.spread, solver->description().c_str());
+  std::fflush(stdout);
+}
+
+void bench(const BenchOptions& options)
+{
+  const int threads =
+      options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const double bandwidth = copy_bandwidth(threads);
+  const double loop = bare_loop(64, threads, options.quick ? 1.5 : 5.0);
+  std::printf("yardsticks   %d threads: copy %.1f GB/s, bare loop of 64^3 voxels %.1f million updates a second\n",
+              threads, 1e-9 * bandwidth, 1e-6 * loop);
+  std::printf("%-12s %10s  %9s  %9s  %6s  %6s  %7s  %s\n", "scene", "voxels", "us/step", "million/s", "of bar", "B/vox",
+              "spread", "backend");
+  for (const std::int32_t edge :
+       options.quick ? std::vector<std::int32_t>{ 64 } : std::vector<std::int32_t>{ 32, 64, 128 })
+    bench_model("block " + std::to_string(edge), std::make_shared<const Model>(dense_block(edge, edge, edge)), options,
+                loop);
+  if (!options.source.path.empty())
+    bench_model("model", std::make_shared<const Model>(obtain_model(options.source)), options, loop);
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, Action& action)
+{
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand("bench", "time the solver beside what the machine does by itself");
+  command->add_option("SCENE_OR_MODEL", options->source.path, "timed too, every muscle at activation 0.75");
+  add_scene_options(*command, options->source);
+  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (cpu)")
+      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  command->add_option("--threads", options->threads, "CPU threads; 0: one a core")->check(CLI::Range(0, 1024));
+  command->add_flag("--quick", options->quick, "the block of 64^3 voxels alone, a few seconds");
+  command->callback([options, &action] { action = [options] { bench(*options); }; });
+}
+
+}  // namespace frontalis
