@@ -2,6 +2,7 @@
 #include "frontalis/scene/content_hash.hpp"
 #include "local_frame.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace frontalis
@@ -9,11 +10,9 @@ namespace frontalis
 namespace
 {
 
-Material material_of(const Scene& scene, const SceneMaterial& material)
+Material material_of(const Scene& scene, const SceneMaterial& material, const LocalFrame& frame)
 {
   const std::string place = scene.file + ":" + std::to_string(material.line) + ": material '" + material.name + "'";
-  if (material.law != "neo_hookean")
-    throw Error(place + ": law '" + material.law + "' is not known; there is neo_hookean");
   const auto parameter = [&](const std::string& name)
   {
     const auto found = material.parameters.find(name);
@@ -21,19 +20,58 @@ Material material_of(const Scene& scene, const SceneMaterial& material)
       throw Error(place + ": has no '" + name + "'");
     return found->second;
   };
-  const double young = parameter("young"), poisson = parameter("poisson");
-  if (!(young > 0) || !(poisson > -1) || !(poisson < 0.5))
-    throw Error(place + ": young is " + std::to_string(young) + " Pa and poisson " + std::to_string(poisson) +
-                "; young above 0 and poisson in -1..0.5, without the ends, are meant");
-  if (!(material.density > 0))
-    throw Error(place + ": density is " + std::to_string(material.density) + " kg/m3; it must be above 0");
   Material out;
   out.name = material.name;
-  out.law = Law::neo_hookean;
-  // linear elasticity: shear modulus and bulk modulus
-  out.parameters[0] = young / (2 * (1 + poisson));
-  out.parameters[1] = young / (3 * (1 - 2 * poisson));
   out.density = material.density;
+  auto& p = out.parameters;
+  double shear = 0;  // at rest
+  if (material.law == "neo_hookean")
+    p[0] = shear = parameter("young") / (2 * (1 + parameter("poisson")));
+  else if (material.law == "mooney_rivlin")
+  {
+    out.law = Law::mooney_rivlin;
+    p[0] = parameter("c1");
+    p[2] = parameter("c2");
+    shear = 2 * (p[0] + p[2]);
+  }
+  else if (material.law == "ogden")
+  {
+    out.law = Law::ogden;
+    p[0] = parameter("mu1");
+    p[2] = parameter("alpha1");
+    p[3] = parameter("mu2");
+    p[4] = parameter("alpha2");
+    shear = 0.5 * (p[0] * p[2] + p[3] * p[4]);
+  }
+  else if (material.law == "fung")
+  {
+    out.law = Law::fung;
+    p[0] = shear = parameter("shear");
+    p[2] = parameter("b");
+  }
+  else if (material.law == "holzapfel")
+  {
+    out.law = Law::holzapfel;
+    p[0] = shear = parameter("shear");
+    p[2] = parameter("k1");
+    p[3] = parameter("k2");
+    p[4] = parameter("dispersion");
+    for (std::size_t family = 0; family < 2; ++family)
+    {
+      const Vector3 direction = frame.turn(material.families[family]);
+      std::copy(direction.begin(), direction.end(), p.begin() + 5 + 3 * static_cast<std::ptrdiff_t>(family));
+    }
+  }
+  else
+    throw Error(place + ": law '" + material.law + "' is not known");
+  const double poisson = parameter("poisson");
+  if (!(shear > 0) || !(poisson > -1) || !(poisson < 0.5))
+    throw Error(place + ": its shear modulus at rest is " + std::to_string(shear) + " Pa and poisson " +
+                std::to_string(poisson) + "; a modulus above 0 and poisson in -1..0.5, without the ends, are meant");
+  if (!(material.density > 0))
+    throw Error(place + ": density is " + std::to_string(material.density) + " kg/m3; it must be above 0");
+  // linear elasticity
+  p[1] = 2 * shear * (1 + poisson) / (3 * (1 - 2 * poisson));
   return out;
 }
 
@@ -132,7 +170,9 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.frame_rate = scene.time.frame_rate;
   model.time_step_share = scene.accuracy.time_step_share;
   for (const SceneMaterial& material : scene.materials)
-    model.materials.push_back(material_of(scene, material));
+    model.materials.push_back(material_of(scene, material, frame));
+  if (scene.accuracy.assumed_strain)
+    model.hourglass = HourglassControl::assumed_strain;
   copy_mass_scaling(scene, model);
   copy_presets(scene, model);
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);

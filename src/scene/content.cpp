@@ -97,7 +97,13 @@ void add_anatomy(const Scene& scene, std::string& content)
     line.add(volume.material).add(volume.priority).add(volume.tissue);
   }
   for (const SceneMaterial& material : scene.materials)
-    Line(content, "material").add(material.name).add(material.law).add(material.density).add(material.parameters);
+    Line(content, "material")
+        .add(material.name)
+        .add(material.law)
+        .add(material.density)
+        .add(material.parameters)
+        .add(material.families[0])
+        .add(material.families[1]);
   for (const Layer& layer : scene.layers)
     Line(content, "layer")
         .add(layer.name)
@@ -158,6 +164,7 @@ void add_numerics(const Scene& scene, std::string& content)
       .add(profile.time_step_share)
       .add(static_cast<double>(profile.mass_scaling.kind))
       .add(profile.mass_scaling.factor)
+      .add(profile.assumed_strain ? 1 : 0)
       .add(profile.mass_scaling.materials);
 }
 

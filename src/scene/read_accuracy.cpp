@@ -62,6 +62,8 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   profile.time_step_share = mapping.optional("time_step_share")
                                 .number(Dimension::number, Bound{ 0, 1, false, true }, profile.time_step_share);
   read_mass_scaling(mapping.optional("mass_scaling"), profile.mass_scaling, names);
+  if (const Node hourglass = mapping.optional("hourglass"); hourglass.given())
+    profile.assumed_strain = hourglass.choice({ "scalar", "assumed_strain" }) == "assumed_strain";
   return profile;
 }
 

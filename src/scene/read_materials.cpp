@@ -5,16 +5,62 @@ namespace frontalis
 namespace
 {
 
+const std::vector<std::string> laws{ "neo_hookean", "mooney_rivlin", "ogden", "fung", "holzapfel" };
+
+// two directions of the fibre families
+void read_families(const Node& node, std::array<Vector3, 2>& families)
+{
+  const std::vector<Node> entries = node.entries();
+  if (node.is_list() && entries.size() != families.size())
+    node.fault("found " + std::to_string(entries.size()) + " directions; must be two");
+  for (std::size_t f = 0; f < entries.size() && f < families.size(); ++f)
+    families[f] = entries[f].direction({ 1, 0, 0 });
+}
+
 // the law's parameters, in SI units; a law more is a branch more
 void read_parameters(const std::string& law, Mapping& mapping, SceneMaterial& material)
 {
+  const auto read = [&](const std::string& key, const std::string& what, Dimension dimension, const Bound& bound)
+  { material.parameters[key] = mapping.required(key, what).number(dimension, bound, 0); };
+  const auto pressure = [&](const std::string& key, const std::string& what, const Bound& bound = positive)
+  { read(key, what, Dimension::pressure, bound); };
+  const auto number = [&](const std::string& key, const std::string& what, const Bound& bound)
+  { read(key, what, Dimension::number, bound); };
   if (law == "neo_hookean")
+    pressure("young", "Young's modulus, greater than 0");
+  else if (law == "mooney_rivlin")
   {
-    material.parameters["young"] =
-        mapping.required("young", "Young's modulus, greater than 0").number(Dimension::pressure, positive, 0);
-    material.parameters["poisson"] = mapping.required("poisson", "Poisson's ratio, greater than -1 and less than 0.5")
-                                         .number(Dimension::number, Bound{ -1, 0.5, false, false }, 0);
+    pressure("c1", "a pressure greater than 0");
+    pressure("c2", "a pressure of at least 0", not_negative);
   }
+  else if (law == "ogden")
+  {
+    for (const std::string term : { "1", "2" })
+    {
+      pressure("mu" + term, "a pressure", any_number);
+      number("alpha" + term, "an exponent", any_number);
+      if (material.parameters["alpha" + term] == 0 && mapping.has("alpha" + term))
+        mapping.optional("alpha" + term).fault("found '0'; must not be 0");
+    }
+    const auto& p = material.parameters;
+    if (mapping.has("mu1") && !(p.at("mu1") * p.at("alpha1") + p.at("mu2") * p.at("alpha2") > 0))
+      mapping.optional("mu1").fault(
+          "mu1 alpha1 + mu2 alpha2 is not greater than 0; must be, it is twice the shear modulus at rest");
+  }
+  else if (law == "fung")
+  {
+    pressure("shear", "shear modulus at rest, greater than 0");
+    number("b", "a number greater than 0", positive);
+  }
+  else if (law == "holzapfel")
+  {
+    pressure("shear", "shear modulus of the matrix, greater than 0");
+    pressure("k1", "a pressure of at least 0", not_negative);
+    number("k2", "a number greater than 0", positive);
+    number("dispersion", "a number from 0 to 1/3", Bound{ 0, 1.0 / 3, true, true });
+    read_families(mapping.required("families", "two directions"), material.families);
+  }
+  number("poisson", "Poisson's ratio, greater than -1 and less than 0.5", Bound{ -1, 0.5, false, false });
 }
 
 }  // namespace
@@ -32,7 +78,7 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names)
       Mapping mapping(entry);
       const Node law = mapping.optional("law");
       if (law.given())
-        material.law = law.choice({ "neo_hookean" });
+        material.law = law.choice(laws);
       if (material.law.empty())
         mapping.ignore_rest();
       else

@@ -104,6 +104,21 @@ TEST(EveryKey, surfaces)
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("width"), 0.12, 1e-15);
 }
 
+TEST(EveryLaw, has_its_parameters)
+{
+  const Scene scene = read_scene(source + "/test/scene/every_law.yaml");
+  ASSERT_EQ(scene.materials.size(), 4U);
+  using Parameters = std::map<std::string, double>;
+  EXPECT_EQ(scene.materials[0].parameters, (Parameters{ { "c1", 4e3 }, { "c2", 1e3 }, { "poisson", 0.49 } }));
+  EXPECT_EQ(scene.materials[1].parameters,
+            (Parameters{ { "mu1", 6e3 }, { "alpha1", 2.5 }, { "mu2", -2e3 }, { "alpha2", -2 }, { "poisson", 0.49 } }));
+  EXPECT_EQ(scene.materials[2].parameters, (Parameters{ { "shear", 8e3 }, { "b", 1.5 }, { "poisson", 0.49 } }));
+  EXPECT_EQ(scene.materials[3].parameters,
+            (Parameters{ { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 }, { "poisson", 0.49 } }));
+  expect_vector(scene.materials[3].families[0], { 0.8, 0.6, 0 });
+  expect_vector(scene.materials[3].families[1], { 0.8, -0.6, 0 });
+}
+
 TEST(EveryKey, volumes_materials_and_layers)
 {
   const Scene& scene = every_key();
@@ -216,6 +231,8 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.accuracy.time_step_share, 0.5);
   EXPECT_EQ(scene.accuracy.mass_scaling.kind, MassScaling::Kind::uniform);
   EXPECT_EQ(scene.accuracy.mass_scaling.factor, 12);
+  EXPECT_TRUE(scene.accuracy.assumed_strain);
+  EXPECT_FALSE(scene.profiles[0].assumed_strain);
 
   // what a profile leaves out comes from the defaults, not from another profile
   expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });

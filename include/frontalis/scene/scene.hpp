@@ -79,8 +79,11 @@ struct SceneMaterial
 {
   std::string name;
   std::string law = "neo_hookean";
-  double density = 0;                        ///< [kg/m3]
-  std::map<std::string, double> parameters;  ///< neo_hookean: young [Pa], poisson [-]
+  double density = 0;  ///< [kg/m3]
+  /// SI units, by name as in doc/scene.md: poisson, and by law young | c1, c2 | mu1, alpha1, mu2, alpha2 | shear, b |
+  /// shear, k1, k2, dispersion.
+  std::map<std::string, double> parameters;
+  std::array<Vector3, 2> families{};  ///< holzapfel: directions of the two fibre families, scene axes, length 1
   int line = 0;
 };
 
@@ -187,6 +190,7 @@ struct AccuracyProfile
   double fill_min = 0.2;              ///< a voxel with less tissue than this proportion is dropped
   double time_step_share = 0.9;       ///< share of the critical time step that is used
   MassScaling mass_scaling;
+  bool assumed_strain = false;  ///< hourglass control: assumed strain instead of one stiffness a voxel
 };
 
 /// Time settings.

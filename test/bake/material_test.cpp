@@ -1,0 +1,83 @@
+#include "scene_pieces.hpp"
+
+#include "frontalis/bake/bake.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace frontalis;
+
+namespace
+{
+
+// a block of one material
+Model bake_material(const SceneMaterial& material)
+{
+  Scene scene;
+  Surface block;
+  block.name = "block";
+  block.shape = Shape{};
+  block.shape->size = { 8e-3, 6e-3, 4e-3 };
+  scene.surfaces.push_back(block);
+  Volume tissue;
+  tissue.name = "tissue";
+  tissue.inside = { "block" };
+  tissue.material = material.name;
+  tissue.tissue = true;
+  scene.volumes.push_back(tissue);
+  scene.materials.push_back(material);
+  scene.skin.surface = "block";
+  scene.accuracy.voxel = { 1e-3, 1e-3, 1e-3 };
+  scene.accuracy.assumed_strain = true;
+  return bake(scene);
+}
+
+SceneMaterial of_law(const std::string& law, const std::map<std::string, double>& parameters)
+{
+  SceneMaterial material;
+  material.name = "stuff";
+  material.law = law;
+  material.density = 1000;
+  material.parameters = parameters;
+  material.parameters["poisson"] = 0.45;
+  return material;
+}
+
+// bulk modulus of a shear modulus at a Poisson ratio of 0.45
+double bulk(double shear) { return shear * 2 * 1.45 / (3 * 0.1); }
+
+}  // namespace
+
+TEST(Materials, EveryLawArrivesWithItsBulkModulus)
+{
+  const Model rubber = bake_material(of_law("mooney_rivlin", { { "c1", 4e3 }, { "c2", 1e3 } }));
+  EXPECT_EQ(rubber.materials[0].law, Law::mooney_rivlin);
+  EXPECT_NEAR(rubber.materials[0].parameters[1], bulk(10e3), 1e-6);
+  EXPECT_EQ(rubber.materials[0].parameters[2], 1e3);
+  EXPECT_EQ(rubber.hourglass, HourglassControl::assumed_strain);
+
+  const Model ogden =
+      bake_material(of_law("ogden", { { "mu1", 6e3 }, { "alpha1", 2.5 }, { "mu2", -2e3 }, { "alpha2", -2 } }));
+  EXPECT_EQ(ogden.materials[0].law, Law::ogden);
+  EXPECT_NEAR(ogden.materials[0].parameters[1], bulk(0.5 * (15e3 + 4e3)), 1e-6);
+  EXPECT_EQ(ogden.materials[0].parameters[4], -2);
+
+  const Model fung = bake_material(of_law("fung", { { "shear", 8e3 }, { "b", 1.5 } }));
+  EXPECT_EQ(fung.materials[0].law, Law::fung);
+  EXPECT_NEAR(fung.materials[0].parameters[1], bulk(8e3), 1e-6);
+}
+
+TEST(Materials, FibreFamiliesTurnIntoLocalAxes)
+{
+  SceneMaterial skin = of_law("holzapfel", { { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 } });
+  skin.families = { { { 0.8, 0.6, 0 }, { 0, 0, 1 } } };
+  const Model model = bake_material(skin);
+  // back to the scene's axes
+  for (std::size_t family = 0; family < 2; ++family)
+    for (std::size_t row = 0; row < 3; ++row)
+    {
+      double x = 0;
+      for (std::size_t column = 0; column < 3; ++column)
+        x += model.to_scene.rotation[3 * row + column] * model.materials[0].parameters[5 + 3 * family + column];
+      EXPECT_NEAR(x, skin.families[family][row], 1e-12);
+    }
+}
