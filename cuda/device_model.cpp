@@ -75,11 +75,13 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   add_fibres(model, discretisation, strips);
   add_tasks(model, strips);
   strips_ = DeviceArray<Strip>(strips.strips);
+  strips.slots.resize(strips.slots.size() + planes_ahead * static_cast<std::size_t>(rows_ + 2) * 32, StripSlot{ 0, 0 });
   slots_ = DeviceArray<StripSlot>(strips.slots);
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
 
   for (const Strip& strip : strips.strips)
-    longest_strip_ = std::max<std::size_t>(longest_strip_, strip.planes * static_cast<std::size_t>(rows_ + 2) * 32);
+    longest_strip_ =
+        std::max<std::size_t>(longest_strip_, (strip.planes + planes_ahead) * static_cast<std::size_t>(rows_ + 2) * 32);
 
   StepArguments& g = constants_;
   g.strips = strips_.data();

@@ -16,9 +16,23 @@ struct RowValues
   float difference[3];
 };
 
-__device__ __forceinline__ RowValues transform_x(const float4& u)
+/// The displacement of a node. The fourth word is not fetched: a register that a load in flight writes and nobody reads
+/// would be taken for something else at once, and that would wait for the load.
+struct Displacement
 {
-  const float here[3] = { u.x, u.y, u.z };
+  float2 xy;
+  float z;
+};
+
+__device__ __forceinline__ Displacement displacement(const float4* u, const uint2& place)
+{
+  const float* const at = reinterpret_cast<const float*>(u + (place.x & StripSlot::node_mask));
+  return { *reinterpret_cast<const float2*>(at), at[2] };
+}
+
+__device__ __forceinline__ RowValues transform_x(const Displacement& u)
+{
+  const float here[3] = { u.xy.x, u.xy.y, u.z };
   RowValues row;
 #pragma unroll
   for (int c = 0; c < 3; ++c)
@@ -96,16 +110,9 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  NodeFetch fetch{};
-  if (word & StripSlot::updated)
-  {
-    const std::uint32_t node = word & StripSlot::node_mask;
-    fetch.own = u[node];
-#pragma unroll
-    for (int c = 0; c < 3; ++c)
-      fetch.v[c] = g.v[c][node];
-  }
-  return fetch;
+  // without a condition, for the same reason; nodes that are not stepped here are there to be read too
+  const std::uint32_t node = word & StripSlot::node_mask;
+  return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }
 
 /// The transposed x step, then the update of the node or its force alone.
@@ -141,7 +148,8 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 
 /// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
 /// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
-/// are fetched a plane ahead, displacements a row ahead. `slot`: the strip's, at this lane.
+/// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements a row ahead.
+/// `slot`: the strip's, at this lane.
 template <int Rows, Effects With>
 __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot, const float4* u,
                                       float4* next, const float* activation, bool look, std::uint32_t& frequency_bits)
@@ -149,7 +157,6 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
   constexpr int nodes = Rows + 2;
   const int lane = threadIdx.x & 31;
   const int left = (lane + 31) & 31;
-  const auto displacement = [&](const uint2& place) { return u[place.x & StripSlot::node_mask]; };
   RowValues below[nodes];
   RowForces carried[Rows];
   uint2 here[nodes], above_slot[nodes];
@@ -159,12 +166,12 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
   slot += nodes * 32;
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
-    above_slot[r] = strip.planes > 1 ? slot[r * 32] : make_uint2(0, 0);
+    above_slot[r] = slot[r * 32];
   {
-    float4 raw[nodes];
+    Displacement raw[nodes];
 #pragma unroll
     for (int r = 0; r < nodes; ++r)
-      raw[r] = displacement(here[r]);
+      raw[r] = displacement(u, here[r]);
 #pragma unroll
     for (int r = 0; r < nodes; ++r)
       below[r] = transform_x(raw[r]);
@@ -174,15 +181,14 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
     carried[r] = no_forces();
   ElementPlace place{};
   std::uint32_t fibre_word = strip.fibre_begin + lane;
-  float4 raw_a = displacement(above_slot[0]), raw_b = displacement(above_slot[1]);
+  Displacement raw_a = displacement(u, above_slot[0]), raw_b = displacement(u, above_slot[1]);
   for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
   {
     slot += nodes * 32;
     uint2 further[nodes];
-    const bool more = plane + 2 < strip.planes;
 #pragma unroll
     for (int r = 0; r < nodes; ++r)
-      further[r] = more ? slot[r * 32] : make_uint2(0, 0);
+      further[r] = slot[r * 32];
     RowForces pending_below = no_forces(), pending_above = no_forces();
     RowValues above_a = transform_x(raw_a);
 #pragma unroll
@@ -190,11 +196,11 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
     {
       const RowValues above_b = transform_x(raw_b);
       if (r + 2 < nodes)
-        raw_b = displacement(above_slot[r + 2]);
+        raw_b = displacement(u, above_slot[r + 2]);
       else
       {
-        raw_a = displacement(further[0]);
-        raw_b = displacement(further[1]);
+        raw_a = displacement(u, further[0]);
+        raw_b = displacement(u, further[1]);
       }
       NodeFetch fetch{};
       if (r > 0)

@@ -50,7 +50,7 @@ __global__ void __launch_bounds__(step_block, 3)
   if (warp < g.strip_count)
     strip = g.strips[warp];
   if (cache != nullptr && warp < g.strip_count)
-    for (std::uint32_t i = lane; i < strip.planes * (Rows + 2) * 32; i += 32)
+    for (std::uint32_t i = lane; i < (strip.planes + planes_ahead) * (Rows + 2) * 32; i += 32)
       cache[i] = g.slots[strip.slot_begin + i];
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
   {

@@ -123,6 +123,9 @@ struct StepArguments
 /// Threads of a block; a warp walks one strip at a time.
 constexpr int step_block = 128;
 
+/// Planes of slots that a warp fetches past the end of its strip.
+constexpr std::uint32_t planes_ahead = 2;
+
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;
 
