@@ -1,5 +1,7 @@
 #include "bound_points.hpp"
 #include "cpu_kernel.hpp"
+#include "flush_denormals.hpp"
+#include "flush_denormals.hpp"
 #include "nodal_loads.hpp"
 #include "stepping_solver.hpp"
 #include "thread_team.hpp"
@@ -222,6 +224,7 @@ double CpuSolver::run(const StepPlan& plan)
   team_.run(
       [&](int t)
       {
+        const FlushDenormals flush;
         CpuKernelArguments g = first;
         const std::int32_t begin = rows_.plane_nodes[slab_[t]], end = rows_.plane_nodes[slab_[t + 1]];
         for (int step = 0; step < plan.steps; ++step)

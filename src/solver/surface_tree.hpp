@@ -18,7 +18,7 @@ public:
   using Closest = SurfaceSearch::Closest;
 
   /// Largest error of the plane that stands for the offset surface between two searches [m].
-  static constexpr double plane_error = 4e-6;
+  static constexpr double plane_error = 8e-6;
 
   explicit SurfaceTree(const TriangleMesh& mesh);
 

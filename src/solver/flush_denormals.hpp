@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace frontalis
+{
+
+/// While it lives, this thread's arithmetic takes numbers too small for full precision as zero: motion that dies away would
+/// otherwise slow every operation down many times over.
+class FlushDenormals
+{
+public:
+#if defined(__x86_64__)
+  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~FlushDenormals() { _mm_setcsr(before_); }
+#elif defined(__aarch64__)
+  FlushDenormals()
+  {
+    asm volatile("mrs %0, fpcr" : "=r"(before_));
+    asm volatile("msr fpcr, %0" : : "r"(before_ | (std::uint64_t(1) << 24)));
+  }
+  ~FlushDenormals() { asm volatile("msr fpcr, %0" : : "r"(before_)); }
+#else
+  FlushDenormals() = default;
+#endif
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+private:
+#if defined(__x86_64__)
+  std::uint32_t before_;
+#elif defined(__aarch64__)
+  std::uint64_t before_;
+#endif
+};
+
+}  // namespace frontalis
