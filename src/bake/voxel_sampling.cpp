@@ -138,4 +138,62 @@ double BlockClassifier::sample_depth(std::size_t depth, const Vector3& p, const 
   return here = -field.surface->signed_distance(p, closest);
 }
 
+void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
+{
+  // the highest priority among those that bring a material; equals share
+  int highest = std::numeric_limits<int>::min();
+  int sharers = 0;
+  for (std::size_t v = 0; v < inside.size(); ++v)
+  {
+    const Volumes::Entry& entry = volumes_.entries()[v];
+    if (inside[v] != Answer::yes)
+      continue;
+    if (entry.muscle >= 0)
+      muscle_share_[static_cast<std::size_t>(entry.muscle)] += share;
+    if (entry.material < 0 || entry.volume->priority < highest)
+      continue;
+    sharers = entry.volume->priority > highest ? 1 : sharers + 1;
+    highest = entry.volume->priority;
+  }
+  for (std::size_t v = 0; v < inside.size(); ++v)
+  {
+    const Volumes::Entry& entry = volumes_.entries()[v];
+    if (inside[v] != Answer::yes || entry.material < 0 || entry.volume->priority != highest)
+      continue;
+    int material = entry.material;
+    for (const Volumes::Band& band : entry.bands)
+    {
+      const double d = depth[static_cast<std::size_t>(band.depth)];
+      if (d >= band.from && d < band.to)
+      {
+        material = band.material;
+        break;
+      }
+    }
+    material_share_[static_cast<std::size_t>(material)] += share / sharers;
+  }
+}
+
+void BlockClassifier::emit(const std::array<std::int32_t, 3>& place, double fill)
+{
+  voxels_.place.push_back(place);
+  voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
+  for (std::size_t m = 0; m < material_share_.size(); ++m)
+  {
+    if (material_share_[m] <= 0)
+      continue;
+    voxels_.material.push_back(static_cast<std::int16_t>(m));
+    voxels_.proportion.push_back(static_cast<float>(material_share_[m] / fill));
+  }
+  voxels_.mixture_begin.push_back(static_cast<std::uint32_t>(voxels_.material.size()));
+  for (std::size_t m = 0; m < muscle_share_.size(); ++m)
+  {
+    if (muscle_share_[m] <= 0)
+      continue;
+    voxels_.muscle.push_back(static_cast<std::int16_t>(m));
+    voxels_.weight.push_back(static_cast<float>(std::min(1.0, muscle_share_[m] / fill)));
+  }
+  voxels_.muscle_begin.push_back(static_cast<std::uint32_t>(voxels_.muscle.size()));
+}
+
 }  // namespace frontalis

@@ -44,6 +44,7 @@ public:
     if constexpr (std::is_same_v<T, std::string>)
     {
       std::vector<std::string> values;
+      values.reserve(entries.size());
       for (const S& entry : entries)
         values.push_back(entry.*field);
       strings(path, values);

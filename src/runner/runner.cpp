@@ -256,12 +256,12 @@ void Runner::Implementation::loop()
 Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& settings, OnFrame on_frame)
     : self_(std::make_unique<Implementation>())
 {
-  self_->model = model;
+  self_->model = std::move(model);
   self_->settings = settings;
   if (!(self_->settings.frame_rate > 0))
-    self_->settings.frame_rate = model->frame_rate;
+    self_->settings.frame_rate = self_->model->frame_rate;
   self_->on_frame = std::move(on_frame);
-  self_->solver = make_solver(model, settings.solver);
+  self_->solver = make_solver(self_->model, settings.solver);
   self_->target = self_->solver->controls();
   self_->thread = std::thread([this] { self_->loop(); });
 }

@@ -47,14 +47,14 @@ std::string missing_gpu(const Model& model)
 #endif
 }
 
-std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] std::shared_ptr<const Model> model,
+std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] const std::shared_ptr<const Model>& model,
                                         [[maybe_unused]] const SolverSettings& settings)
 {
   const std::string missing = missing_gpu(*model);
   if (!missing.empty())
     throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
 #if defined(FRONTALIS_WITH_CUDA)
-  return make_cuda_solver(std::move(model), settings);
+  return make_cuda_solver(model, settings);
 #else
   return nullptr;
 #endif
@@ -77,13 +77,13 @@ std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const So
     case Backend::reference:
       return make_reference_solver(std::move(model), settings);
     case Backend::cuda:
-      return make_gpu_solver(std::move(model), settings);
+      return make_gpu_solver(model, settings);
     case Backend::cpu:
       return make_cpu_solver(std::move(model), settings);
     default:
     {
       const std::string missing = missing_gpu(*model);
-      return missing.empty() ? make_gpu_solver(std::move(model), settings)
+      return missing.empty() ? make_gpu_solver(model, settings)
                              : make_cpu_solver(std::move(model), settings, "no GPU: " + missing);
     }
   }

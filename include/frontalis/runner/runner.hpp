@@ -22,9 +22,9 @@ struct Frame
   std::uint64_t sequence = 0;
   SkinState skin;
   std::vector<float> activation;
-  Monitor monitor;              ///< renewed about once a second
-  bool failed = false;          ///< the motion could not be trusted; the skin is the last good one
-  std::string failure;          ///< why, in one sentence
+  Monitor monitor;      ///< renewed about once a second
+  bool failed = false;  ///< the motion could not be trusted; the skin is the last good one
+  std::string failure;  ///< why, in one sentence
 };
 
 enum class Pace
@@ -53,8 +53,8 @@ public:
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// Activations by muscle name, 0..1; muscles not named keep theirs. Throws Error naming each unknown muscle or bad value
-  /// (not finite, out of range); nothing is changed then.
+  /// Activations by muscle name, 0..1; muscles not named keep theirs. Throws Error naming each unknown muscle or bad
+  /// value (not finite, out of range); nothing is changed then.
   void set_activation(const std::map<std::string, double>& activation);
   /// A named preset of the model; muscles that it does not name go to 0. Throws Error listing those that exist.
   void set_expression(const std::string& name);

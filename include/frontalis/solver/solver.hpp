@@ -52,9 +52,9 @@ struct Monitor
   double kinetic = 0;
   double internal = 0;  ///< elastic, fibres included, hourglass not
   double hourglass = 0;
-  double worst_jacobian = 1;       ///< smallest J = det F of a voxel
+  double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
-  double critical_time_step = 0;   ///< [s] now, element bound
+  double critical_time_step = 0;  ///< [s] now, element bound
   bool finite = true;
 };
 
@@ -81,8 +81,8 @@ public:
   /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length.
   virtual void advance(double seconds, const Controls& target) = 0;
 
-  virtual double time() const = 0;             ///< [s] since reset
-  virtual double time_step() const = 0;        ///< [s] of the latest step, or the one that would be taken
+  virtual double time() const = 0;       ///< [s] since reset
+  virtual double time_step() const = 0;  ///< [s] of the latest step, or the one that would be taken
   virtual const Controls& controls() const = 0;
 
   virtual void skin(SkinState& out) = 0;

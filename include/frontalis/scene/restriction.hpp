@@ -1,0 +1,48 @@
+#pragma once
+
+#include "frontalis/scene/geometry.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+struct SceneConstraint
+{
+  enum class Kind
+  {
+    rigid,
+    sliding
+  };
+  std::string name;
+  Kind kind = Kind::rigid;
+  std::vector<std::string> surfaces;
+  double within = -1;  ///< tissue nodes no farther out of the surface than this are restricted [m]; < 0: 0.75 voxel
+  Region crop;
+  std::string bone;  ///< rigid nodes follow this bone's pose; empty: still
+  int line = 0;
+};
+
+/// Load or prescribed motion on a named surface; all ramp linearly from 0 over `ramp` seconds.
+struct SceneLoad
+{
+  enum class Kind
+  {
+    traction,     ///< value: force an area of the rest surface [Pa], dead
+    pressure,     ///< value[0]: pressure [Pa] against the current outward normal (follower)
+    displacement  ///< value: displacement [m] of the nodes near the surface; components not in `fixed` stay free
+  };
+  std::string name;
+  Kind kind = Kind::traction;
+  std::string surface;
+  Vector3 value{ 0, 0, 0 };
+  std::array<bool, 3> fixed{ true, true, true };
+  double within = -1;  ///< displacement only, as for constraints
+  double ramp = 0;     ///< [s]
+  Region crop;
+  int line = 0;
+};
+
+}  // namespace frontalis

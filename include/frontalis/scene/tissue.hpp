@@ -1,0 +1,47 @@
+#pragma once
+
+#include "frontalis/scene/geometry.hpp"
+
+#include <array>
+#include <map>
+#include <string>
+
+namespace frontalis
+{
+
+/// Passive material. Which parameters count depends on the law (physics/).
+struct SceneMaterial
+{
+  std::string name;
+  std::string law = "neo_hookean";
+  double density = 0;  ///< [kg/m3]
+  /// SI units, by name as in doc/scene.md: poisson, and by law young | c1, c2 | mu1, alpha1, mu2, alpha2 | shear, b |
+  /// shear, k1, k2, dispersion.
+  std::map<std::string, double> parameters;
+  std::array<Vector3, 2> families{};  ///< holzapfel: directions of the two fibre families, scene axes, length 1
+  int line = 0;
+};
+
+/// Skin layer of constant thickness, measured from a surface inwards; layers of one surface follow each other in order.
+struct Layer
+{
+  std::string name;
+  std::string surface;
+  std::string volume;  ///< the tissue volume that it lies in
+  std::string material;
+  double thickness = 0;  ///< [m]
+  int line = 0;
+};
+
+struct SceneMuscle
+{
+  std::string name;
+  std::string volume;
+  Vector3 fibre{ 0, 0, 1 };         ///< direction in scene coordinates; normalised
+  double stress_reference = 0.3e6;  ///< sigma_max [Pa]
+  bool passive = false;             ///< passive fibre stress of Blemker et al. 2005 too
+  bool tension_length = true;       ///< active tension-length curve; without it f = 1
+  int line = 0;
+};
+
+}  // namespace frontalis
