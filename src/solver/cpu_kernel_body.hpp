@@ -30,18 +30,35 @@ struct CpuKernelBody
 #endif
     return load(first);
   }
-  static FRONTALIS_LAW void add(float* first, [[maybe_unused]] float* second, const Batch& x)
+  // adds forces to the nodes of a row: `low` to the voxels' lower nodes, `high` to the nodes next to them. Neighbours
+  // share nodes, so the two are added up in registers first: storing one and loading the other across it would stall
+  static FRONTALIS_LAW void add(float* first, [[maybe_unused]] float* second, const Batch& low, const Batch& high)
   {
 #if defined(__AVX512F__)
     if constexpr (lanes == Tile::width)
     {
-      // one after the other: the strips may share nodes
-      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), _mm512_castps512_ps256(x)));
-      _mm256_storeu_ps(second, _mm256_add_ps(_mm256_loadu_ps(second), _mm512_extractf32x8_ps(x, 1)));
+      alignas(64) float last[Tile::width];
+      _mm512_store_ps(last, high);
+      if (second == first + Tile::strip)
+      {
+        const __m512i next = _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0, 0);
+        const __m512 sum = _mm512_add_ps(low, _mm512_maskz_permutexvar_ps(0xfffe, next, high));
+        _mm512_storeu_ps(first, _mm512_add_ps(_mm512_loadu_ps(first), sum));
+        first[Tile::width] += last[Tile::width - 1];
+        return;
+      }
+      const __m512i next = _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 8, 6, 5, 4, 3, 2, 1, 0, 0);
+      const __m512 sum = _mm512_add_ps(low, _mm512_maskz_permutexvar_ps(0xfefe, next, high));
+      // one strip after the other: they may share nodes
+      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), _mm512_castps512_ps256(sum)));
+      first[Tile::strip] += last[Tile::strip - 1];
+      _mm256_storeu_ps(second, _mm256_add_ps(_mm256_loadu_ps(second), _mm512_extractf32x8_ps(sum, 1)));
+      second[Tile::strip] += last[Tile::width - 1];
       return;
     }
 #endif
-    (load(first) + x).store_unaligned(first);
+    (load(first) + low).store_unaligned(first);
+    (load(first + 1) + high).store_unaligned(first + 1);
   }
 
   // adds the stress of the fibres: P += S (F a0) (x) a0
@@ -162,8 +179,7 @@ struct CpuKernelBody
         float* force = (r < 2 ? below : above) + c * g.buffer_stride - base[r / 2];
         float* first = force + tile.node[strip][r] + within;
         float* second = force + tile.node[Tile::strips - 1][r];
-        add(first, second, mode[c][2 * r]);
-        add(first + 1, second + 1, mode[c][2 * r + 1]);
+        add(first, second, mode[c][2 * r], mode[c][2 * r + 1]);
       }
     }
   }
