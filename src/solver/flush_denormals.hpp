@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// While it lives, this thread's arithmetic takes numbers too small for full precision as zero: motion that dies away would
-/// otherwise slow every operation down many times over.
+/// While it lives, this thread's arithmetic takes numbers too small for full precision as zero: motion that dies away
+/// would otherwise slow every operation down many times over.
 class FlushDenormals
 {
 public:
