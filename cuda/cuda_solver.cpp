@@ -40,8 +40,10 @@ StripSettings choose_strips(const Model& model, Effects effects)
   const double schedulers = 4.0 * processors();
   const double rows_of_nodes = static_cast<double>(model.nodes.size()) / nodes_a_row;
   StripSettings settings;
-  settings.rows = rows_of_nodes > 64 * schedulers ? 4 : rows_of_nodes > 1.5 * schedulers ? 2 : 1;
-  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / (3 * schedulers), 1.0, 32.0));
+  // four rows with fibres too do not fit the registers
+  const int most_rows = effects == Effects::none ? 4 : 2;
+  settings.rows = std::min(rows_of_nodes > 32 * schedulers ? 4 : rows_of_nodes > 12 * schedulers ? 2 : 1, most_rows);
+  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / (3.1 * schedulers), 1.0, 32.0));
   // for measuring
   settings.rows = from_environment("FRONTALIS_CUDA_ROWS", settings.rows, 1, 4);
   settings.rows = effects == Effects::all ? 2 : settings.rows == 3 ? 4 : settings.rows;
@@ -75,6 +77,7 @@ public:
 
 protected:
   double run(const StepPlan& plan) override;
+  int steps_a_plan() const override;
   void rest() override;
   void velocities(Vectors& out) const override;
 
@@ -157,9 +160,9 @@ CudaSolver::~CudaSolver()
 void CudaSolver::choose_launch()
 {
   // shared memory for the slots of a warp, where it has one strip alone
-  constexpr std::size_t most_slot_bytes = 12 * 1024;
+  constexpr std::size_t most_slot_bytes = 16 * 1024;
   const int wanted = static_cast<int>((device_.strips() + warps_a_block - 1) / warps_a_block);
-  launch_ = { device_.rows(), device_.effects(), device_.longest_strip() * sizeof(uint2), wanted };
+  launch_ = { device_.rows(), device_.effects(), device_.slot_bytes(), wanted };
   int resident = launch_.slot_bytes <= most_slot_bytes ? resident_blocks(launch_) : 0;
   if (resident < wanted)
   {
@@ -317,6 +320,13 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   require(launch_steps(g, launch_, stream_), "launching steps");
   barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * launch_.blocks);
   present_ = (present_ + end - begin) & 1;
+}
+
+// long plans hide what stands between them, but the time step must follow what stiffens (half a millisecond is short
+// enough), and contacts are renewed between plans
+int CudaSolver::steps_a_plan() const
+{
+  return model_->sliding.empty() ? static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, 128.0)) : 32;
 }
 
 double CudaSolver::run(const StepPlan& plan)

@@ -80,8 +80,9 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
 
   for (const Strip& strip : strips.strips)
-    longest_strip_ =
-        std::max<std::size_t>(longest_strip_, (strip.planes + planes_ahead) * static_cast<std::size_t>(rows_ + 2) * 32);
+    slot_bytes_ = std::max<std::size_t>(
+        slot_bytes_, 32 * ((strip.planes + planes_ahead) * static_cast<std::size_t>(rows_ + 2) * sizeof(StripSlot) +
+                           strip.planes * static_cast<std::size_t>(rows_ + 1) * sizeof(std::uint32_t)));
 
   StepArguments& g = constants_;
   g.strips = strips_.data();

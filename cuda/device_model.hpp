@@ -30,7 +30,7 @@ public:
   int rows() const { return rows_; }
   Effects effects() const { return effects_; }
   std::size_t strips() const { return strips_.size(); }
-  std::size_t longest_strip() const { return longest_strip_; }  ///< slots
+  std::size_t slot_bytes() const { return slot_bytes_; }  ///< of the longest strip, fibre words with them
   double filled() const { return filled_; }
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
@@ -47,7 +47,7 @@ private:
   int rows_;
   Effects effects_;
   double filled_;
-  std::size_t longest_strip_ = 0;
+  std::size_t slot_bytes_ = 0;
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
   StepArguments constants_{};

@@ -13,23 +13,31 @@ namespace frontalis
 namespace cuda
 {
 
-/// What a voxel's stress needs besides its deformation.
+/// What a voxel's stress needs besides its deformation; the first of its fibres is fetched early.
 struct ElementPlace
 {
   std::uint32_t palette;
   std::uint32_t fibre_word;
+  float4 fibre;
+  std::uint32_t muscle_word;
 };
 
+/// Without a condition on the voxel: places without fibres fetch the first entry.
+__device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_t word, ElementPlace& place)
+{
+  place.fibre_word = word;
+  place.fibre = __ldg(g.fibres + (word >> 4));
+  place.muscle_word = __ldg(g.fibre_muscle + (word >> 4));
+}
+
 /// Stress of the fibres of a voxel times its tissue volume: P += S (F a0) (x) a0.
-__device__ __forceinline__ void add_fibres(const StepArguments& g, const ElementPlace& place, const float* activation,
+__device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace place, const float* activation,
                                            const physics::Kinematics<float>& k, physics::Matrix3<float>& P)
 {
-  const std::uint32_t first = place.fibre_word >> 4, last = first + (place.fibre_word & 15u);
-  for (std::uint32_t f = first; f < last; ++f)
+  for (std::uint32_t left = place.fibre_word & 15u; left > 0; --left)
   {
-    const float4 fibre = __ldg(g.fibres + f);
-    const std::uint32_t word = __ldg(g.fibre_muscle + f);
-    const std::uint32_t muscle = word & 0x3fffffffu;
+    const float4 fibre = place.fibre;
+    const std::uint32_t word = place.muscle_word;
     const float a[3] = { fibre.x, fibre.y, fibre.z };
     float along[3];
 #pragma unroll
@@ -37,8 +45,8 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, const Element
       along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
     const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
     const float S =
-        physics::fibre_stress<float>(squared, k.J, fibre.w, activation[muscle], (word & 0x40000000u) ? 1.0f : 0.0f,
-                                     (word & 0x80000000u) ? 1.0f : 0.0f);
+        physics::fibre_stress<float>(squared, k.J, fibre.w, activation[word & 0x3fffffffu],
+                                     (word & 0x40000000u) ? 1.0f : 0.0f, (word & 0x80000000u) ? 1.0f : 0.0f);
 #pragma unroll
     for (int i = 0; i < 3; ++i)
     {
@@ -47,6 +55,8 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, const Element
       for (int j = 0; j < 3; ++j)
         P.a[i][j] += traction * a[j];
     }
+    if (left > 1)
+      fetch_fibre(g, place.fibre_word + 16, place);
   }
 }
 

@@ -149,10 +149,11 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 /// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
 /// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
 /// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements a row ahead.
-/// `slot`: the strip's, at this lane.
+/// `slot`, `fibre_word`: the strip's, at this lane; the latter null where it has no fibres.
 template <int Rows, Effects With>
-__device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot, const float4* u,
-                                      float4* next, const float* activation, bool look, std::uint32_t& frequency_bits)
+__device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot,
+                                      const std::uint32_t* fibre_word, const float4* u, float4* next,
+                                      const float* activation, bool look, std::uint32_t& frequency_bits)
 {
   constexpr int nodes = Rows + 2;
   const int lane = threadIdx.x & 31;
@@ -180,7 +181,6 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
   for (int r = 0; r < Rows; ++r)
     carried[r] = no_forces();
   ElementPlace place{};
-  std::uint32_t fibre_word = strip.fibre_begin + lane;
   Displacement raw_a = displacement(u, above_slot[0]), raw_b = displacement(u, above_slot[1]);
   for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
   {
@@ -202,6 +202,11 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
         raw_a = displacement(u, further[0]);
         raw_b = displacement(u, further[1]);
       }
+      if (With != Effects::none && fibre_word != nullptr)
+      {
+        fetch_fibre(g, *fibre_word, place);
+        fibre_word += 32;
+      }
       NodeFetch fetch{};
       if (r > 0)
         fetch = fetch_node(g, u, here[r].x);
@@ -209,11 +214,8 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        place.fibre_word =
-            With != Effects::none && strip.fibre_begin != Strip::none ? __ldg(g.fibre_words + fibre_word) : 0;
         voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, frequency_bits, force);
       }
-      fibre_word += 32;
       if (r > 0)
       {
         RowForces sum = carried[r - 1];

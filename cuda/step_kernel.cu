@@ -52,6 +52,10 @@ __global__ void __launch_bounds__(step_block, 3)
   if (cache != nullptr && warp < g.strip_count)
     for (std::uint32_t i = lane; i < (strip.planes + planes_ahead) * (Rows + 2) * 32; i += 32)
       cache[i] = g.slots[strip.slot_begin + i];
+  auto* const cached_words = reinterpret_cast<std::uint32_t*>(cache + (strip.planes + planes_ahead) * (Rows + 2) * 32);
+  if (With != Effects::none && cache != nullptr && warp < g.strip_count && strip.fibre_begin != Strip::none)
+    for (std::uint32_t i = lane; i < strip.planes * (Rows + 1) * 32; i += 32)
+      cached_words[i] = g.fibre_words[strip.fibre_begin + i];
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
   {
     const int present = (g.first + step - g.step_begin) & 1;
@@ -74,8 +78,11 @@ __global__ void __launch_bounds__(step_block, 3)
       NodeTask task{};
       if (tasks && first_task < strip.task_end)
         task = g.tasks[first_task];
-      march<Rows, With>(g, strip, cache != nullptr ? cache + lane : g.slots + strip.slot_begin + lane, u, next,
-                        activation, look, frequency_bits);
+      const uint2* const slots = cache != nullptr ? cache + lane : g.slots + strip.slot_begin + lane;
+      const std::uint32_t* words = nullptr;
+      if (With != Effects::none && strip.fibre_begin != Strip::none)
+        words = cache != nullptr ? cached_words + lane : g.fibre_words + strip.fibre_begin + lane;
+      march<Rows, With>(g, strip, slots, words, u, next, activation, look, frequency_bits);
       if (!tasks)
         continue;
       __syncwarp();
@@ -96,17 +103,21 @@ __global__ void __launch_bounds__(step_block, 3)
   }
 }
 
-// nodes that have slid half as far as a step allows get their closest points here, beside each other
+// nodes that would slide too far in the plan's steps at their present velocity get their closest points here, beside
+// each other
 __global__ void renew_contacts(const __grid_constant__ StepArguments g)
 {
   const std::uint32_t index = blockIdx.x * 64 + threadIdx.x;
   if (index >= g.sliding_count)
     return;
-  const float4 now = g.u[g.first][g.sliding[index].node];
+  const std::uint32_t node = g.sliding[index].node;
+  const float4 now = g.u[g.first][node];
   const float u[3] = { now.x, now.y, now.z };
+  const float v[3] = { g.v[0][node], g.v[1][node], g.v[2][node] };
   const float4 reference = g.contact_planes[index].reference;
-  constexpr auto half = static_cast<float>(0.5 * slip_until_renewal);
-  if (reference.w != 0 || slip_squared(reference, u) > half * half)
+  const float ahead = g.steps * g.dt * sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  constexpr auto allowed = static_cast<float>(0.8 * slip_until_renewal);
+  if (reference.w != 0 || sqrtf(slip_squared(reference, u)) + ahead > allowed)
     renew_contact(g, static_cast<std::int32_t>(index), u, reference.w != 0);
 }
 

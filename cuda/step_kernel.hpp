@@ -152,7 +152,7 @@ int resident_blocks(const StepLaunch& launch);
 /// Launches steps [step_begin, step_end) of the plan. Several of them need all blocks resident at once.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Exact closest points for the sliding nodes that have moved half-way to where a step would have to find them itself.
+/// Exact closest points for the sliding nodes for which a step of the plan would else have to find them itself.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -268,7 +268,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
             if (count > 15)
               throw Error("backend cuda: voxel " + std::to_string(place.voxel - 1) + " has " + std::to_string(count) +
                           " muscles; allowed are 15");
-            word = static_cast<std::uint32_t>(first) * 16 + static_cast<std::uint32_t>(count);
+            word = count > 0 ? static_cast<std::uint32_t>(first) * 16 + static_cast<std::uint32_t>(count) : 0;
           }
           fibre_words.push_back(word);
         }

@@ -49,7 +49,8 @@ struct VoxelStrips
   int rows = 0;
   std::vector<Strip> strips;  ///< long ones first
   std::vector<StripSlot> slots;
-  std::vector<std::uint32_t> fibre_words;    ///< first fibre entry * 16 + number of entries, of the voxel in the place
+  std::vector<std::uint32_t>
+      fibre_words;  ///< first fibre entry * 16 + number of entries, of the voxel in the place; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
   std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
 

@@ -12,9 +12,6 @@ namespace frontalis
 namespace
 {
 
-// steps between two looks at how far the voxels have stiffened
-constexpr int steps_a_look = 32;
-
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -144,10 +141,10 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     const double remaining = end - time_;
     const double steps_left = std::ceil(remaining / safe_time_step() * (1 - 1e-9));
     StepPlan plan;
-    plan.steps = static_cast<int>(std::min<double>(steps_left, steps_a_look));
+    plan.steps = static_cast<int>(std::min<double>(steps_left, steps_a_plan()));
     plan.dt = remaining / steps_left;
     plan.time = time_;
-    const bool last = steps_left <= steps_a_look;
+    const bool last = steps_left <= steps_a_plan();
     const double reached = last ? end : time_ + plan.steps * plan.dt;
     plan.begin = controls_;
     plan.end = last ? target : at((reached - begin) / seconds);

@@ -39,6 +39,8 @@ public:
 protected:
   /// Runs the plan's steps; returns the largest frequency bound squared [1/s2] at its last step, NaN included.
   virtual double run(const StepPlan& plan) = 0;
+  /// Most steps between two looks at how far the voxels have stiffened.
+  virtual int steps_a_plan() const { return 32; }
   virtual void rest() = 0;  ///< displacements and velocities to zero
   virtual void velocities(std::vector<std::array<double, 3>>& out) const = 0;
 

@@ -118,7 +118,7 @@ double seconds_a_step(Solver& solver, const Controls& controls, int steps, doubl
           SkinState skin;
           while (solver.profile().steps - before < steps)
           {
-            const double slice = 32 * solver.time_step();
+            const double slice = 128 * solver.time_step();
             solver.advance(slice, ramped(controls, solver.time() + slice));
             const auto now = std::chrono::steady_clock::now();
             if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
@@ -154,8 +154,8 @@ void bench(const Scene& scene)
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
   if (!model->skin.vertices.empty())
   {
-    const double with_skin = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.2 / step)), 1.0 / 60);
-    const double alone = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.2 / step)), 0);
+    const double with_skin = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 1.0 / 60);
+    const double alone = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 0);
     std::printf(
         "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
         model->skin.vertices.size(), 100 * (with_skin / alone - 1), 1e6 * solver->time_step(),
