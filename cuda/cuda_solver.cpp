@@ -1,10 +1,10 @@
 #include "cuda_backend.hpp"
 #include "device_model.hpp"
+#include "launch_choice.hpp"
 #include "stepping_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 namespace frontalis
@@ -16,40 +16,6 @@ using cuda::DeviceArray;
 using cuda::PinnedArray;
 using cuda::require;
 using Vectors = std::vector<std::array<double, 3>>;
-
-constexpr int warps_a_block = step_block / 32;
-
-int processors()
-{
-  int count = 0;
-  require(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, 0), "asking for multiprocessors");
-  return count;
-}
-
-int from_environment(const char* name, int otherwise, int least, int most)
-{
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::clamp(std::atoi(text), least, most);
-}
-
-/// Small models want many short strips, because a step is as long as its longest strip; large ones fewer long strips,
-/// because what a strip's borders share is computed twice.
-StripSettings choose_strips(const Model& model, Effects effects)
-{
-  constexpr double nodes_a_row = 28;
-  const double schedulers = 4.0 * processors();
-  const double rows_of_nodes = static_cast<double>(model.nodes.size()) / nodes_a_row;
-  StripSettings settings;
-  // four rows with fibres too do not fit the registers
-  const int most_rows = effects == Effects::none ? 4 : 2;
-  settings.rows = std::min(rows_of_nodes > 32 * schedulers ? 4 : rows_of_nodes > 12 * schedulers ? 2 : 1, most_rows);
-  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / (3.1 * schedulers), 1.0, 32.0));
-  // for measuring
-  settings.rows = from_environment("FRONTALIS_CUDA_ROWS", settings.rows, 1, 4);
-  settings.rows = effects == Effects::all ? 2 : settings.rows == 3 ? 4 : settings.rows;
-  settings.planes = from_environment("FRONTALIS_CUDA_PLANES", settings.planes, 1, 4096);
-  return settings;
-}
 
 /// One plan's worth of controls on its way to the device, and what is seen at its end.
 struct PlanSlot
@@ -89,7 +55,6 @@ private:
   void step(StepArguments& g, int begin, int end);
   void download(const DeviceArray<float4>& field, Vectors& out) const;
   void upload_displacements(const Vectors* in, int buffer);
-  void choose_launch();
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   cuda::DeviceModel device_;
@@ -112,7 +77,7 @@ private:
 
 CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
     : SteppingSolver(std::move(model), settings),
-      device_(*model_, discretisation_, choose_strips(*model_, cuda::effects_of(*model_, discretisation_))),
+      device_(*model_, discretisation_, cuda::choose_strips(*model_, cuda::effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {
@@ -142,7 +107,9 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
   if (model_->muscles.size() > most_muscles)
     throw Error("backend cuda: " + std::to_string(model_->muscles.size()) + " muscles; allowed are " +
                 std::to_string(most_muscles));
-  choose_launch();
+  const cuda::LaunchChoice choice = cuda::choose_launch(device_);
+  launch_ = choice.launch;
+  resident_ = choice.resident;
   rest();
 }
 
@@ -155,26 +122,6 @@ CudaSolver::~CudaSolver()
       cudaEventDestroy(slot.done);
   if (stream_ != nullptr)
     cudaStreamDestroy(stream_);
-}
-
-void CudaSolver::choose_launch()
-{
-  // shared memory for the slots of a warp, where it has one strip alone
-  constexpr std::size_t most_slot_bytes = 16 * 1024;
-  const int wanted = static_cast<int>((device_.strips() + warps_a_block - 1) / warps_a_block);
-  launch_ = { device_.rows(), device_.effects(), device_.slot_bytes(), wanted };
-  int resident = launch_.slot_bytes <= most_slot_bytes ? resident_blocks(launch_) : 0;
-  if (resident < wanted)
-  {
-    launch_.slot_bytes = 0;
-    resident = resident_blocks(launch_);
-  }
-  if (resident == 0)
-    require(cudaGetLastError(), "this build has no code for the device");
-  resident_ = wanted <= from_environment("FRONTALIS_CUDA_WAVES", 1, 0, 1000) * resident && !device_.loads().follow();
-  launch_.blocks = resident_ ? std::min(wanted, resident) : wanted;
-  if (!resident_)
-    launch_.slot_bytes = 0;
 }
 
 void CudaSolver::upload_displacements(const Vectors* in, int buffer)

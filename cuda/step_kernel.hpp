@@ -6,6 +6,8 @@
 #include <cuda_runtime_api.h>
 #include <vector_types.h>
 
+#include <cstddef>
+
 namespace frontalis
 {
 
@@ -125,6 +127,9 @@ constexpr int step_block = 128;
 
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
+
+/// Most shared memory for a warp's slots [bytes].
+constexpr std::size_t most_slot_bytes = 12 * 1024;
 
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;

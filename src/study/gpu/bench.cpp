@@ -143,6 +143,11 @@ void bench(const Scene& scene)
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
   const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Controls controls;
+  controls.activation.assign(model->muscles.size(), 0);
+  // at rest no contact is renewed: the difference is what sliding far costs
+  solver->advance(256 * solver->time_step(), controls);
+  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps, 0);
+  solver->reset();
   controls.activation.assign(model->muscles.size(), 0.75f);
   const double warm_up = 256 * solver->time_step();
   solver->advance(warm_up, ramped(controls, warm_up));
@@ -154,6 +159,7 @@ void bench(const Scene& scene)
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
   if (!model->skin.vertices.empty())
   {
+    std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
     const double with_skin = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 1.0 / 60);
     const double alone = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 0);
     std::printf(
