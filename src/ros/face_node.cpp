@@ -57,6 +57,8 @@ FaceNode::~FaceNode()
   diagnostics_.stop();
   for (auto& subscriber : subscribers_)
     subscriber.shutdown();
+  if (const auto running = runner())
+    running->cancel_step();
   for (auto& service : services_)
     service.shutdown();
   loader_.join();
@@ -117,12 +119,13 @@ void FaceNode::load()
     }
 
     // the runner's first frame may come before its constructor returns: frames wait until the publisher has the model
+    // (declared after the runner: on an exception frames flow again before the runner's thread is joined)
+    std::shared_ptr<Runner> made;
     std::unique_lock<std::mutex> frames(frame_mutex_);
-    const auto made =
-        std::make_shared<Runner>(model, parameters.runner, [this](const Frame& frame) { on_frame(frame); });
+    made = std::make_shared<Runner>(model, parameters.runner, [this](const Frame& frame) { on_frame(frame); });
     const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
     publisher_.start(model, frame_name, parameters.parent_frame, made->description());
-    published_ = ros::WallTime::now();
+    published_ = shown_ = ros::WallTime::now();
     frames.unlock();
 
     paused_ = made->paused();
@@ -155,7 +158,7 @@ void FaceNode::on_frame(const Frame& frame)
   const std::lock_guard<std::mutex> lock(frame_mutex_);
   frame_ = frame;
   has_frame_ = true;
-  published_ = ros::WallTime::now();
+  published_ = shown_ = ros::WallTime::now();
   frame_finite_ = publisher_.publish(frame_, ros::Time::now(), paused_);
   if (!frame_finite_)
   {
@@ -176,10 +179,10 @@ void FaceNode::on_tick()
   double time = 0;
   {
     const std::lock_guard<std::mutex> lock(frame_mutex_);
-    idle = (ros::WallTime::now() - published_).toSec() > idle_period;
+    idle = (ros::WallTime::now() - shown_).toSec() > idle_period;
     time = frame_.time;
     if (idle)
-      published_ = ros::WallTime::now();
+      shown_ = ros::WallTime::now();
     // a face that stands still is shown again, for those who came late
     if (idle && running && has_frame_ && frame_finite_)
       publisher_.publish(frame_, ros::Time::now(), paused_);
@@ -187,7 +190,8 @@ void FaceNode::on_tick()
     if (idle && !fault.empty())
       publisher_.publish_fault(fault, ros::Time::now());
   }
-  if (running && !paused_)
+  // in lock-step the demo's target is set by the step alone
+  if (running && !paused_ && parameters_.runner.pace != Pace::lock_step)
     play_demo(time);
 }
 

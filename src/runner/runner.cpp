@@ -1,5 +1,6 @@
 #include "frontalis/runner/runner.hpp"
 
+#include "face_points.hpp"
 #include "frame_clock.hpp"
 #include "frontalis/error.hpp"
 
@@ -17,27 +18,8 @@ namespace
 {
 
 using Clock = std::chrono::steady_clock;
-using Points = std::vector<std::array<float, 3>>;
-
 // time steps between two looks at the wall clock
 constexpr int steps_a_slice = 32;
-
-void transform(const RigidTransform& map, bool with_translation, Points& points)
-{
-  for (auto& p : points)
-  {
-    const std::array<float, 3> q = p;
-    for (int i = 0; i < 3; ++i)
-      p[i] = static_cast<float>(map.rotation[3 * i] * q[0] + map.rotation[3 * i + 1] * q[1] +
-                                map.rotation[3 * i + 2] * q[2] + (with_translation ? map.translation[i] : 0));
-  }
-}
-
-bool finite(const Points& points)
-{
-  return std::all_of(points.begin(), points.end(),
-                     [](const auto& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); });
-}
 
 }  // namespace
 
@@ -55,6 +37,8 @@ struct Runner::Implementation
   bool stop = false;
   bool paused = false;
   bool reset_wanted = false;
+  bool cancel_wanted = false;
+  std::uint64_t resets_done = 0;
   struct StepRequest
   {
     double seconds = 0;
@@ -68,6 +52,7 @@ struct Runner::Implementation
   // the runner's thread alone
   Frame frame;
   FrameClock clock;
+  Clock::time_point deadline{};  ///< of the frame under way; frames keep to a schedule, late or not
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
   std::thread thread;
@@ -82,6 +67,7 @@ struct Runner::Implementation
   void run_frame();
   void serve_step(StepRequest& request);
   void loop();
+  void guarded_loop();
 };
 
 // advances on the activations' clock; a motion that cannot be trusted stops the face until reset
@@ -117,7 +103,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
       frame.failed = true;
       frame.failure = "the skin is no longer finite";
     }
-    if (renew_monitor || now - last_monitor > std::chrono::seconds(1))
+    if (!frame.failed && (renew_monitor || now - last_monitor > std::chrono::seconds(1)))
     {
       frame.monitor = solver->monitor();
       last_monitor = now;
@@ -142,8 +128,10 @@ void Runner::Implementation::publish(bool renew_monitor)
 // one frame's worth of stepping: until the simulated time that is due is reached or the frame's wall time is over
 void Runner::Implementation::run_frame()
 {
-  const auto deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
+  const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
+  // the next one on the schedule; a frame that is lost altogether is not caught up
+  deadline = std::max(deadline + length, Clock::now() + length / 4);
+  deadline = std::min(deadline, Clock::now() + length);
   const double end =
       settings.pace == Pace::fastest ? time() + 1e9 : time() + clock.due(time(), 2 * period()) + period();
   while (!frame.failed && time() < end && Clock::now() < deadline)
@@ -182,6 +170,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
   if (frame.failed)
     request.error = frame.failure + "; reset first";
   const Controls from = solver->controls();
+  clock.restart(time());
   for (double done = 0; done < request.seconds && request.error.empty();)
   {
     // in slices, so that a long step can be stopped
@@ -194,8 +183,8 @@ void Runner::Implementation::serve_step(StepRequest& request)
     advance(slice, on_the_way);
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (stop)
-      request.error = "the runner is being stopped";
+    if (stop || reset_wanted || cancel_wanted)
+      request.error = "the step was ended early";
   }
   publish(true);
   request.frame = frame;
@@ -234,6 +223,8 @@ void Runner::Implementation::loop()
       frame.failure.clear();
       clock.restart(0);
       publish(true);
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++resets_done;
     }
     else if (request != nullptr)
     {
@@ -241,6 +232,7 @@ void Runner::Implementation::loop()
       const std::lock_guard<std::mutex> lock(mutex);
       request->done = true;
       step_request = nullptr;
+      cancel_wanted = false;
     }
     else
     {
@@ -253,6 +245,32 @@ void Runner::Implementation::loop()
   }
 }
 
+// whatever a backend or a listener throws ends the motion, not the process
+void Runner::Implementation::guarded_loop()
+{
+  for (;;)
+    try
+    {
+      loop();
+      return;
+    }
+    catch (const std::exception& error)
+    {
+      frame.failed = true;
+      frame.failure = error.what();
+      std::unique_lock<std::mutex> lock(mutex);
+      if (step_request != nullptr)
+      {
+        step_request->error = frame.failure;
+        step_request->done = true;
+        step_request = nullptr;
+      }
+      ++resets_done;  // a reset that failed must not keep its caller waiting
+      wake.notify_all();
+      wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
+    }
+}
+
 Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& settings, OnFrame on_frame)
     : self_(std::make_unique<Implementation>())
 {
@@ -260,10 +278,12 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
   self_->settings = settings;
   if (!(self_->settings.frame_rate > 0))
     self_->settings.frame_rate = self_->model->frame_rate;
+  if (!(self_->settings.frame_rate >= 0.1 && self_->settings.frame_rate <= 1000))
+    throw Error("frame rate " + std::to_string(self_->settings.frame_rate) + " Hz: allowed is 0.1 to 1000");
   self_->on_frame = std::move(on_frame);
   self_->solver = make_solver(self_->model, settings.solver);
   self_->target = self_->solver->controls();
-  self_->thread = std::thread([this] { self_->loop(); });
+  self_->thread = std::thread([this] { self_->guarded_loop(); });
 }
 
 Runner::~Runner()
@@ -347,6 +367,14 @@ void Runner::reset()
   std::fill(self_->target.activation.begin(), self_->target.activation.end(), 0.0f);
   self_->reset_wanted = true;
   self_->wake.notify_all();
+  const auto before = self_->resets_done;
+  self_->wake.wait(lock, [&] { return self_->resets_done != before || self_->stop; });
+}
+
+void Runner::cancel_step()
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  self_->cancel_wanted = self_->step_request != nullptr;
 }
 
 Frame Runner::step(double seconds)

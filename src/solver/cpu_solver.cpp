@@ -1,7 +1,6 @@
 #include "bound_points.hpp"
 #include "cpu_kernel.hpp"
 #include "flush_denormals.hpp"
-#include "flush_denormals.hpp"
 #include "nodal_loads.hpp"
 #include "stepping_solver.hpp"
 #include "thread_team.hpp"

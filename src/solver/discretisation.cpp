@@ -29,13 +29,17 @@ double fibre_stiffness(const Model& model, std::size_t voxel)
 }
 
 // adds a material to the part of its law
-void add_law(const Material& material, double proportion, std::vector<Discretisation::LawPart>& parts,
+void add_law(const Model& model, std::int32_t index, double proportion, std::vector<Discretisation::LawPart>& parts,
              std::size_t first)
 {
+  const Material& material = model.materials[static_cast<std::size_t>(index)];
+  // exponents and directions have no mean
+  const bool averaged = material.law == Law::mooney_rivlin || material.law == Law::fung;
+  const std::int32_t key = averaged ? -1 : index;
   auto part = std::find_if(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.end(),
-                           [&](const auto& p) { return p.law == material.law; });
+                           [&](const auto& p) { return p.law == material.law && p.material == key; });
   if (part == parts.end())
-    part = parts.insert(parts.end(), { material.law, 0, {}, 0 });
+    part = parts.insert(parts.end(), { material.law, 0, {}, 0, key });
   const double before = part->weight;
   part->weight += proportion;
   for (std::size_t p = 0; p < part->parameters.size(); ++p)
@@ -120,7 +124,7 @@ Discretisation::Discretisation(const Model& model)
       if (material.law == Law::neo_hookean)
         mu[e] += proportion * material.parameters[0];
       else if (proportion > 0)
-        add_law(material, proportion, laws, static_cast<std::size_t>(law_begin[e]));
+        add_law(model, model.mixture_material[m], proportion, laws, static_cast<std::size_t>(law_begin[e]));
       kappa[e] += proportion * material.parameters[1];
       density[e] += proportion * material.density;
     }

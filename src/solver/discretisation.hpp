@@ -16,13 +16,15 @@ struct Discretisation
 
   double volume = 0;  ///< of a whole voxel [m3]
 
-  /// Share of a voxel that has another law than neo-Hookean: parameters averaged over its materials of that law.
+  /// Share of a voxel that has another law than neo-Hookean: one a material, but materials of laws whose parameters are
+  /// moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
   struct LawPart
   {
     Law law;
     double weight;  ///< proportion of the voxel's tissue
     std::array<double, 11> parameters;
     double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
+    std::int32_t material;     ///< -1: averaged
   };
   std::vector<std::int32_t> law_begin;  ///< parts of voxel e: law_begin[e] .. law_begin[e + 1]
   std::vector<LawPart> laws;

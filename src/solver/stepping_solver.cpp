@@ -67,7 +67,6 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
          << critical << " s";
     throw Error(text.str());
   }
-  time_step_ = safe_time_step();
 }
 
 double SteppingSolver::safe_time_step() const
@@ -95,7 +94,6 @@ void SteppingSolver::reset()
   time_ = 0;
   failed_ = false;
   frequency_squared_ = discretisation_.frequency_squared_max;
-  time_step_ = safe_time_step();
   controls_ = rest_controls(*model_);
   profile_ = {};
 }
@@ -149,7 +147,6 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     plan.begin = controls_;
     plan.end = last ? target : at((reached - begin) / seconds);
     const double squared = run(plan);
-    time_step_ = plan.dt;
     time_ = reached;
     controls_ = plan.end;
     profile_.steps += plan.steps;

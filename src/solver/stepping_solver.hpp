@@ -31,7 +31,7 @@ public:
   void reset() override;
   void advance(double seconds, const Controls& target) override;
   double time() const override { return time_; }
-  double time_step() const override { return time_step_; }
+  double time_step() const override { return safe_time_step(); }
   const Controls& controls() const override { return controls_; }
   Monitor monitor() override;
   Profile profile() const override { return profile_; }
@@ -61,7 +61,6 @@ private:
 
   double forced_time_step_ = 0;
   double time_ = 0;
-  double time_step_ = 0;
   double frequency_squared_ = 0;
   bool failed_ = false;
   Controls controls_;

@@ -1,6 +1,9 @@
 #include "thread_team.hpp"
 
+#include "frontalis/error.hpp"
+
 #include <algorithm>
+#include <system_error>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -11,6 +14,7 @@ namespace
 {
 
 constexpr int spins_before_yield = 4000;
+constexpr int most_threads = 1024;
 
 void relax()
 {
@@ -24,11 +28,23 @@ void relax()
 ThreadTeam::ThreadTeam(int threads)
 {
   const int count = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  for (int t = 1; t < count; ++t)
-    workers_.emplace_back([this, t] { work(t); });
+  if (count > most_threads)
+    throw Error(std::to_string(count) + " threads: allowed are 0 (one a core) to " + std::to_string(most_threads));
+  try
+  {
+    for (int t = 1; t < count; ++t)
+      workers_.emplace_back([this, t] { work(t); });
+  }
+  catch (const std::system_error& error)
+  {
+    stop();
+    throw Error("could not start " + std::to_string(count) + " threads: " + error.what());
+  }
 }
 
-ThreadTeam::~ThreadTeam()
+ThreadTeam::~ThreadTeam() { stop(); }
+
+void ThreadTeam::stop()
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -14,7 +14,7 @@ namespace frontalis
 class ThreadTeam
 {
 public:
-  /// threads: 0 takes one a core.
+  /// threads: 0 takes one a core. Throws Error where they cannot be had.
   explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
@@ -28,6 +28,7 @@ public:
 
 private:
   void work(int thread);
+  void stop();
 
   std::vector<std::thread> workers_;
   std::mutex mutex_;

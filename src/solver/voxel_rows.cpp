@@ -50,11 +50,12 @@ void add_laws(const Model& model, const Discretisation& d, Tile& tile, std::vect
     {
       const auto& part = d.laws[l];
       auto slot = std::find_if(slots.begin() + tile.law_begin, slots.end(),
-                               [&](const LawSlot& s) { return s.law == part.law; });
+                               [&](const LawSlot& s) { return s.law == part.law && s.material == part.material; });
       if (slot == slots.end())
       {
         LawSlot empty{};
         empty.law = part.law;
+        empty.material = part.material;
         for (std::size_t p = 0; p < part.parameters.size(); ++p)
           std::fill(empty.parameters[p], empty.parameters[p] + Tile::width, static_cast<float>(part.parameters[p]));
         slot = slots.insert(slots.end(), empty);

@@ -42,6 +42,7 @@ struct FibreSlot
 struct LawSlot
 {
   Law law;
+  std::int32_t material;              ///< as in Discretisation::LawPart
   float weight[Tile::width];          ///< proportion times tissue volume [m3]
   float inertia[Tile::width];         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
   float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]

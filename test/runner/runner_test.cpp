@@ -103,6 +103,7 @@ TEST(Runner, RealTimeKeepsPaceWithTheClock)
   EXPECT_LT(frames.back().time, 1.1);
   EXPECT_GT(frames.back().time, 0.5);
   EXPECT_LE(frames.back().real_time_factor, 1.1);
+  EXPECT_GT(frames.back().real_time_factor, 0.5);
   for (std::size_t f = 1; f < frames.size(); ++f)
     EXPECT_GE(frames[f].time, frames[f - 1].time);
 }
@@ -155,11 +156,64 @@ TEST(Runner, BadInputIsRefusedWhole)
   }
 }
 
+TEST(Runner, AStepUnderWayCanBeEnded)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  std::string told;
+  std::thread caller(
+      [&]
+      {
+        try
+        {
+          runner.step(1e6);
+        }
+        catch (const Error& error)
+        {
+          told = error.what();
+        }
+      });
+  std::this_thread::sleep_for(100ms);
+  runner.reset();
+  caller.join();
+  EXPECT_NE(told.find("ended early"), std::string::npos) << told;
+  EXPECT_NEAR(runner.step(0.01).time, 0.01, 1e-12);
+}
+
+TEST(Runner, WhatAListenerThrowsEndsTheMotionOnly)
+{
+  std::atomic<bool> broken{ false };
+  std::atomic<bool> failed{ false };
+  Runner runner(bar(), settings(Pace::real_time),
+                [&](const Frame& frame)
+                {
+                  failed = frame.failed;
+                  if (broken.exchange(false))
+                    throw std::runtime_error("listener is broken");
+                });
+  broken = true;
+  std::this_thread::sleep_for(400ms);
+  EXPECT_TRUE(failed);
+  runner.reset();
+  std::this_thread::sleep_for(100ms);
+  EXPECT_FALSE(failed);
+}
+
+TEST(Runner, FrameRatesThatMakeNoSenseAreRefused)
+{
+  for (const double rate : { 1e-3, 1e9 })
+    EXPECT_THROW(Runner(bar(), settings(Pace::real_time, rate), {}), Error);
+}
+
 TEST(Runner, TimeScalingPlaysTheSameClock)
 {
   auto model = std::make_shared<Model>(*bar());
   model->time_scaling = 4;
   Runner runner(model, settings(Pace::lock_step), {});
   runner.set_activation({ { "puller", 1.0 } });
-  EXPECT_NEAR(runner.step(0.04).time, 0.04, 1e-12);
+  const Frame scaled = runner.step(0.04);
+  EXPECT_NEAR(scaled.time, 0.04, 1e-12);
+  // a quarter of the steps
+  Runner plain(bar(), settings(Pace::lock_step), {});
+  plain.set_activation({ { "puller", 1.0 } });
+  EXPECT_NEAR(static_cast<double>(scaled.steps), static_cast<double>(plain.step(0.04).steps) / 4, 0.1 * scaled.steps);
 }

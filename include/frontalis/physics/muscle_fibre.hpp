@@ -57,11 +57,11 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   return stress_reference * fade * (active + passive);
 }
 
-/// Largest slope of the Cauchy stress over the stress reference against stretch, full activation: what a time step has
-/// to allow for. d/dl [f(l) l] of the active curve is 2.52 at l = 0.6; the passive curve's end is p1 p2 e^(0.4 p2) (1
-/// + 1.4).
-constexpr double active_slope_bound = 2.52;
-constexpr double passive_slope_bound = 11.1;
+/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation: what a time
+/// step has to allow for. The nominal stress is S times stretch, J f(l) at these constants: the active curve is
+/// steepest at l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)).
+constexpr double active_slope_bound = 3.6;
+constexpr double passive_slope_bound = 4.63;
 
 }  // namespace physics
 }  // namespace frontalis

@@ -84,7 +84,8 @@ private:
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
-  ros::WallTime published_;
+  ros::WallTime published_;  ///< latest frame of the runner
+  ros::WallTime shown_;      ///< latest frame or repetition
 
   std::mutex target_mutex_;  ///< guards target_; held while the runner's controls are set, so that both agree
   std::map<std::string, double> target_;

@@ -38,7 +38,7 @@ struct RunnerSettings
 {
   SolverSettings solver;
   Pace pace = Pace::real_time;
-  double frame_rate = 0;  ///< frames a wall second; 0: the model's
+  double frame_rate = 0;  ///< frames a wall second, 0.1 to 1000; 0: the model's
 };
 
 /// A live face: owns the solver and a thread that steps it, takes controls from any thread, hands out frames.
@@ -61,8 +61,10 @@ public:
 
   void pause(bool paused);
   bool paused() const;
-  /// Back to rest and zero activation; clears a failure.
+  /// Back to rest and zero activation; clears a failure, ends a step under way. Returns when it is done.
   void reset();
+  /// Ends a step under way: its caller gets an Error.
+  void cancel_step();
   /// Advances by exactly `seconds` (on the activations' clock), activations going linearly to what was set last, and
   /// returns the frame there; pauses the runner's own stepping first. Throws Error.
   Frame step(double seconds);

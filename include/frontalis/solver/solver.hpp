@@ -50,7 +50,7 @@ struct SkinState
 struct Monitor
 {
   double kinetic = 0;
-  double internal = 0;  ///< elastic, fibres included, hourglass not
+  double internal = 0;  ///< elastic strain energy of the materials; fibres and hourglass not
   double hourglass = 0;
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
@@ -82,7 +82,7 @@ public:
   virtual void advance(double seconds, const Controls& target) = 0;
 
   virtual double time() const = 0;       ///< [s] since reset
-  virtual double time_step() const = 0;  ///< [s] of the latest step, or the one that would be taken
+  virtual double time_step() const = 0;  ///< [s] the largest step that would be taken now
   virtual const Controls& controls() const = 0;
 
   virtual void skin(SkinState& out) = 0;
