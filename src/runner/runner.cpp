@@ -9,7 +9,6 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
-#include <optional>
 #include <thread>
 
 namespace frontalis
@@ -18,6 +17,7 @@ namespace
 {
 
 using Clock = std::chrono::steady_clock;
+
 // time steps between two looks at the wall clock
 constexpr int steps_a_slice = 32;
 
@@ -395,7 +395,6 @@ Frame Runner::step(double seconds)
 }
 
 const Model& Runner::model() const { return *self_->model; }
-
 std::string Runner::description() const { return self_->solver->description(); }
 
 }  // namespace frontalis
