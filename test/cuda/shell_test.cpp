@@ -54,13 +54,11 @@ protected:
 
 TEST_F(Shell, MovesAsTheReferenceDoes)
 {
-  const SkinState reference = after(Backend::reference, 0.15, 1), cpu = after(Backend::cpu, 0.15, 1),
-                  cuda = after(Backend::cuda, 0.15, 1);
+  const SkinState reference = after(Backend::reference, 0.15, 1), cuda = after(Backend::cuda, 0.15, 1);
   SkinState rest;
   make_solver(model_, { Backend::cuda, 0, 0 })->skin(rest);
   EXPECT_GT(difference(rest, reference), 0.5e-3);
   EXPECT_LT(difference(cuda, reference), 5e-6);
-  EXPECT_LT(difference(cuda, reference), 2 * difference(cpu, reference) + 1e-8);
   double normals = 0;
   for (std::size_t v = 0; v < cuda.normals.size(); ++v)
     for (int axis = 0; axis < 3; ++axis)
@@ -69,6 +67,21 @@ TEST_F(Shell, MovesAsTheReferenceDoes)
   for (std::size_t l = 0; l < reference.landmarks.size(); ++l)
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
+}
+
+// sliding apart: backends renew contacts at other times, which moves the skin by micrometres whatever the precision
+TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
+{
+  Model model = *model_;
+  for (const auto& node : model.sliding)
+    if (node.node % 3 == 0)
+      model.rigid.push_back({ node.node, -1 });
+  model.sliding.clear();
+  model_ = std::make_shared<const Model>(model);
+  const SkinState reference = after(Backend::reference, 0.15, 1);
+  const double cuda = difference(after(Backend::cuda, 0.15, 1), reference);
+  EXPECT_LT(cuda, 5e-6);
+  EXPECT_LT(cuda, 2 * difference(after(Backend::cpu, 0.15, 1), reference) + 1e-8);
 }
 
 TEST_F(Shell, GivesTheSameBitsFromRunToRun)
