@@ -59,8 +59,20 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
     for (std::size_t family = 0; family < 2; ++family)
     {
       const Vector3 direction = frame.turn(material.families[family]);
-      std::copy(direction.begin(), direction.end(), p.begin() + 5 + 3 * static_cast<std::ptrdiff_t>(family));
+      std::copy(direction.begin(), direction.end(),
+                p.begin() + first_direction + 3 * static_cast<std::ptrdiff_t>(family));
     }
+  }
+  else if (material.law == "guccione")
+  {
+    out.law = Law::guccione;
+    p[0] = parameter("c");
+    p[2] = parameter("bf");
+    p[3] = parameter("bt");
+    p[4] = parameter("bfs");
+    shear = 0.5 * p[0] * std::max({ p[2], p[3], p[4] });
+    const Vector3 direction = frame.turn(material.families[0]);
+    std::copy(direction.begin(), direction.end(), p.begin() + first_direction);
   }
   else
     throw Error(place + ": law '" + material.law + "' is not known");

@@ -1,5 +1,7 @@
 #include "run_summary.hpp"
 
+#include "frontalis/study/table.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -28,25 +30,6 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
   for (std::size_t i = 0; i < 3; ++i)
     motion[i] = 1e3 * (static_cast<double>(summary.end.landmarks[landmark][i]) - summary.rest.landmarks[landmark][i]);
   return motion;
-}
-
-std::string json_text(const std::string& text)
-{
-  std::string quoted = "\"";
-  for (const char letter : text)
-  {
-    char escaped[8];
-    if (letter == '"' || letter == '\\')
-      quoted += std::string("\\") + letter;
-    else if (static_cast<unsigned char>(letter) < 0x20)
-    {
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(letter));
-      quoted += escaped;
-    }
-    else
-      quoted += letter;
-  }
-  return quoted + '"';
 }
 
 // JSON has no number for what is not finite
@@ -103,16 +86,16 @@ std::string json_of(const Model& model, const RunSummary& summary)
 {
   std::string json = "{\n";
   const auto add = [&json](const std::string& key, const std::string& value)
-  { json += (json.size() > 2 ? ",\n  " : "  ") + json_text(key) + ": " + value; };
+  { json += (json.size() > 2 ? ",\n  " : "  ") + json_string(key) + ": " + value; };
   const auto add_count = [&add](const std::string& key, std::size_t value) { add(key, std::to_string(value)); };
 
   add("complete", summary.complete ? "true" : "false");
-  add("backend", json_text(summary.backend));
+  add("backend", json_string(summary.backend));
   add_count("voxels", model.voxels.size());
   add_count("nodes", model.nodes.size());
   add_count("rigid_nodes", model.rigid.size());
   add_count("sliding_nodes", model.sliding.size());
-  add("scene_hash", json_text(model.scene_hash));
+  add("scene_hash", json_string(model.scene_hash));
   add("time_scaling", json_number(model.time_scaling));
   add("time_step_s", json_number(summary.time_step));
   add_count("steps", static_cast<std::size_t>(summary.profile.steps));
@@ -122,7 +105,7 @@ std::string json_of(const Model& model, const RunSummary& summary)
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
   {
     const std::array<double, 3> motion = motion_of(summary, l);
-    landmarks += (l == 0 ? "\n    " : ",\n    ") + json_text(model.landmarks[l]) +
+    landmarks += (l == 0 ? "\n    " : ",\n    ") + json_string(model.landmarks[l]) +
                  ": {\"forward_mm\": " + json_number(motion[0]) + ", \"left_mm\": " + json_number(motion[1]) +
                  ", \"up_mm\": " + json_number(motion[2]) + "}";
   }

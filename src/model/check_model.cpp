@@ -108,13 +108,34 @@ void check_grid(const Model& model)
   }
 }
 
+void check_direction(const std::string& array, std::size_t at, const float* d)
+{
+  const double length = std::hypot(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
+  if (std::abs(length - 1) > 1e-3)
+    fail(array, "entry " + std::to_string(at) + " has length " + std::to_string(length) + "; 1 wanted");
+}
+
+void check_material_directions(const Model& model)
+{
+  const auto& directions = model.material_directions;
+  if (!directions.empty())
+    check_length("material_directions", directions.size(), model.voxels.size(), "voxel, or none at all");
+  for (std::size_t e = 0; e < directions.size(); ++e)
+  {
+    check_finite("material_directions", e, directions[e]);
+    for (const int family : { 0, 3 })
+      if (const float* const d = directions[e].data() + family; d[0] != 0 || d[1] != 0 || d[2] != 0)
+        check_direction("material_directions", e, d);
+  }
+}
+
 void check_mixtures(const Model& model)
 {
   for (std::size_t m = 0; m < model.materials.size(); ++m)
   {
     check_finite("materials", m, model.materials[m].parameters);
     check_positive("materials (density)", m, model.materials[m].density);
-    if (model.materials[m].law > Law::holzapfel)
+    if (model.materials[m].law > Law::guccione)
       fail("materials", "entry " + std::to_string(m) + " has law " +
                             std::to_string(static_cast<int>(model.materials[m].law)) + ", which is not known");
   }
@@ -150,11 +171,7 @@ void check_fibres(const Model& model)
     check_index("fibre_muscle", m, model.fibre_muscle[m], model.muscles.size());
     check_proportion("fibre_weight", m, model.fibre_weight[m]);
     check_finite("fibre_direction", m, model.fibre_direction[m]);
-    const auto& d = model.fibre_direction[m];
-    const double length = std::sqrt(static_cast<double>(d[0]) * d[0] + static_cast<double>(d[1]) * d[1] +
-                                    static_cast<double>(d[2]) * d[2]);
-    if (std::abs(length - 1) > 1e-3)
-      fail("fibre_direction", "entry " + std::to_string(m) + " has length " + std::to_string(length) + "; 1 wanted");
+    check_direction("fibre_direction", m, model.fibre_direction[m].data());
   }
 }
 
@@ -237,6 +254,7 @@ void check_model(const Model& model)
 {
   check_grid(model);
   check_mixtures(model);
+  check_material_directions(model);
   check_fibres(model);
   check_constraints(model);
   check_loads(model);

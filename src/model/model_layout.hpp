@@ -40,6 +40,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.array(in("mixture_begin"), model.mixture_begin);
   archive.array(in("mixture_material"), model.mixture_material);
   archive.array(in("mixture_proportion"), model.mixture_proportion);
+  archive.array(in("material_directions"), model.material_directions);
 
   archive.group(in("muscles"));
   archive.column(in("muscles/name"), model.muscles, &Muscle::name);

@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-const std::vector<std::string> laws{ "neo_hookean", "mooney_rivlin", "ogden", "fung", "holzapfel" };
+const std::vector<std::string> laws{ "neo_hookean", "mooney_rivlin", "ogden", "fung", "holzapfel", "guccione" };
 
 // two directions of the fibre families
 void read_families(const Node& node, std::array<Vector3, 2>& families)
@@ -59,6 +59,13 @@ void read_parameters(const std::string& law, Mapping& mapping, SceneMaterial& ma
     number("k2", "a number greater than 0", positive);
     number("dispersion", "a number from 0 to 1/3", Bound{ 0, 1.0 / 3, true, true });
     read_families(mapping.required("families", "two directions"), material.families);
+  }
+  else if (law == "guccione")
+  {
+    pressure("c", "a pressure greater than 0");
+    for (const std::string b : { "bf", "bt", "bfs" })
+      number(b, "a number greater than 0", positive);
+    material.families[0] = mapping.required("fibre", "a direction").direction({ 1, 0, 0 });
   }
   number("poisson", "Poisson's ratio, greater than -1 and less than 0.5", Bound{ -1, 0.5, false, false });
 }

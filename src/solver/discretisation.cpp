@@ -28,11 +28,26 @@ double fibre_stiffness(const Model& model, std::size_t voxel)
   return sum;
 }
 
+// a material's parameters in a voxel: with the voxel's own directions where it has some
+std::array<double, 11> parameters_in(const Model& model, std::size_t voxel, const Material& material)
+{
+  auto parameters = material.parameters;
+  if ((material.law == Law::holzapfel || material.law == Law::guccione) && !model.material_directions.empty())
+    for (int family = 0; family < 2; ++family)
+    {
+      const float* const d = model.material_directions[voxel].data() + 3 * family;
+      if (d[0] != 0 || d[1] != 0 || d[2] != 0)
+        std::copy(d, d + 3, parameters.begin() + first_direction + 3 * family);
+    }
+  return parameters;
+}
+
 // adds a material to the part of its law
-void add_law(const Model& model, std::int32_t index, double proportion, std::vector<Discretisation::LawPart>& parts,
-             std::size_t first)
+void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion,
+             std::vector<Discretisation::LawPart>& parts, std::size_t first)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
+  const auto parameters = parameters_in(model, voxel, material);
   // exponents and directions have no mean
   const bool averaged = material.law == Law::mooney_rivlin || material.law == Law::fung;
   const std::int32_t key = averaged ? -1 : index;
@@ -43,7 +58,7 @@ void add_law(const Model& model, std::int32_t index, double proportion, std::vec
   const double before = part->weight;
   part->weight += proportion;
   for (std::size_t p = 0; p < part->parameters.size(); ++p)
-    part->parameters[p] = (before * part->parameters[p] + proportion * material.parameters[p]) / part->weight;
+    part->parameters[p] = (before * part->parameters[p] + proportion * parameters[p]) / part->weight;
 }
 
 physics::Kinematics<double> at_rest()
@@ -124,7 +139,7 @@ Discretisation::Discretisation(const Model& model)
       if (material.law == Law::neo_hookean)
         mu[e] += proportion * material.parameters[0];
       else if (proportion > 0)
-        add_law(model, model.mixture_material[m], proportion, laws, static_cast<std::size_t>(law_begin[e]));
+        add_law(model, e, model.mixture_material[m], proportion, laws, static_cast<std::size_t>(law_begin[e]));
       kappa[e] += proportion * material.parameters[1];
       density[e] += proportion * material.density;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/physics/guccione.hpp"
 #include "frontalis/physics/holzapfel.hpp"
 #include "frontalis/physics/mooney_rivlin.hpp"
 #include "frontalis/physics/ogden.hpp"
@@ -30,6 +31,9 @@ FRONTALIS_LAW void visit_law(Law law, const T* p, Visit&& visit)
       visit(physics::HolzapfelGasserOgden<T>{ p[0], p[2], p[3], p[4] }, families);
       break;
     }
+    case Law::guccione:
+      visit(physics::Guccione<T>{ p[0], p[2], p[3], p[4] }, physics::Vec3<T>{ p[5], p[6], p[7] });
+      break;
     case Law::neo_hookean:
       break;
   }

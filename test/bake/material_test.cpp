@@ -64,6 +64,11 @@ TEST(Materials, EveryLawArrivesWithItsBulkModulus)
   const Model fung = bake_material(of_law("fung", { { "shear", 8e3 }, { "b", 1.5 } }));
   EXPECT_EQ(fung.materials[0].law, Law::fung);
   EXPECT_NEAR(fung.materials[0].parameters[1], bulk(8e3), 1e-6);
+
+  const Model heart = bake_material(of_law("guccione", { { "c", 2e3 }, { "bf", 8 }, { "bt", 2 }, { "bfs", 4 } }));
+  EXPECT_EQ(heart.materials[0].law, Law::guccione);
+  EXPECT_NEAR(heart.materials[0].parameters[1], bulk(8e3), 1e-6);
+  EXPECT_EQ(heart.materials[0].parameters[4], 4);
 }
 
 TEST(Materials, FibreFamiliesTurnIntoLocalAxes)

@@ -24,6 +24,7 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
         model.mixture_material.insert(model.mixture_material.end(), { 0, 1 });
         model.mixture_proportion.insert(model.mixture_proportion.end(), { 0.25f, 0.75f });
         model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
+        model.material_directions.push_back({ 0.6f, 0, 0.8f, 0, 0, 0 });
         if (j == 0)
         {
           model.fibre_muscle.push_back(0);

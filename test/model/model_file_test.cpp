@@ -64,6 +64,7 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(a.mixture_begin, b.mixture_begin);
   EXPECT_EQ(a.mixture_material, b.mixture_material);
   EXPECT_EQ(a.mixture_proportion, b.mixture_proportion);
+  EXPECT_EQ(a.material_directions, b.material_directions);
   EXPECT_EQ(a.fibre_begin, b.fibre_begin);
   EXPECT_EQ(a.fibre_weight, b.fibre_weight);
   EXPECT_EQ(a.fibre_direction, b.fibre_direction);
@@ -154,12 +155,12 @@ TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
   const std::size_t name = content.find("model_file_version");
   ASSERT_NE(name, std::string::npos);
   const std::size_t at = name + 24 + 16 + 8;
-  ASSERT_EQ(content[at], 1);
+  ASSERT_EQ(content[at], model_file_version);
   content[at] = 77;
   std::ofstream(path("b.vtkhdf"), std::ios::binary) << content;
   const std::string fault = fault_of(path("b.vtkhdf"));
   EXPECT_NE(fault.find("version 77"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("reads version 1"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("reads version " + std::to_string(model_file_version)), std::string::npos) << fault;
 }
 
 TEST_F(ModelFile, NothingIsLeftWhenWritingFails)

@@ -91,6 +91,8 @@ TEST(CheckModel, AcceptsAFullModelAndNamesTheArrayAtFault)
   EXPECT_NE(fault([&](Model& m) { m.fill[3] = nan; }).find("fill: entry 3"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.mixture_material[2] = 2; }).find("mixture_material"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.mixture_proportion[0] = 0.5f; }).find("add up"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.material_directions.pop_back(); }).find("material_directions"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.material_directions[1][4] = 2; }).find("entry 1 has length 2"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.fibre_begin[1] = 100; }).find("fibre_begin"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.fibre_direction[0] = { 0, 0, 2 }; }).find("fibre_direction"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.rigid[0].bone = 2; }).find("rigid"), std::string::npos);

@@ -1,4 +1,5 @@
 #include "frontalis/physics/exponential.hpp"
+#include "frontalis/physics/guccione.hpp"
 #include "frontalis/physics/holzapfel.hpp"
 #include "frontalis/physics/mooney_rivlin.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
@@ -48,11 +49,16 @@ LawCase isotropic(const std::string& name, double shear_modulus, const Material&
 std::vector<LawCase> cases()
 {
   const HolzapfelGasserOgden<double> skin{ 2.0, 3.0, 0.8, 0.1 };
+  const Guccione<double> heart{ 2.0, 8.0, 1.5, 4.0 };
   return { isotropic("MooneyRivlin", 2 * (1.2 + 0.7), MooneyRivlin<double>{ 1.2, 0.7 }),
            isotropic("Fung", 1.5, FungExponential<double>{ 1.5, 2.0 }),
            isotropic("Ogden", 0.5 * (1.3 * 2.5 + -0.4 * -2.0), Ogden<double>{ { 1.3, -0.4 }, { 2.5, -2.0 } }),
            { "Holzapfel", 2.0, [skin](const Kinematics<double>& k) { return energy(skin, k, families); },
-             [skin](const Kinematics<double>& k, Matrix& P) { add_stress(skin, k, families, P); } } };
+             [skin](const Kinematics<double>& k, Matrix& P) { add_stress(skin, k, families, P); } },
+           // shear of yz with the fibre along (0.8, 0.6, 0): Efs^2 + Efn^2 = (0.6 / 2)^2 of its square
+           { "Guccione", 2.0 * ((4.0 - 1.5) * 2 * 0.09 + 1.5 / 2),
+             [heart](const Kinematics<double>& k) { return energy(heart, k, families[0]); },
+             [heart](const Kinematics<double>& k, Matrix& P) { add_stress(heart, k, families[0], P); } } };
 }
 
 class IsochoricLaw : public testing::TestWithParam<LawCase>

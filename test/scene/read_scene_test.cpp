@@ -107,7 +107,7 @@ TEST(EveryKey, surfaces)
 TEST(EveryLaw, has_its_parameters)
 {
   const Scene scene = read_scene(source + "/test/scene/every_law.yaml");
-  ASSERT_EQ(scene.materials.size(), 4U);
+  ASSERT_EQ(scene.materials.size(), 5U);
   using Parameters = std::map<std::string, double>;
   EXPECT_EQ(scene.materials[0].parameters, (Parameters{ { "c1", 4e3 }, { "c2", 1e3 }, { "poisson", 0.49 } }));
   EXPECT_EQ(scene.materials[1].parameters,
@@ -117,6 +117,9 @@ TEST(EveryLaw, has_its_parameters)
             (Parameters{ { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 }, { "poisson", 0.49 } }));
   expect_vector(scene.materials[3].families[0], { 0.8, 0.6, 0 });
   expect_vector(scene.materials[3].families[1], { 0.8, -0.6, 0 });
+  EXPECT_EQ(scene.materials[4].parameters,
+            (Parameters{ { "c", 2e3 }, { "bf", 8 }, { "bt", 2 }, { "bfs", 4 }, { "poisson", 0.49 } }));
+  expect_vector(scene.materials[4].families[0], { 0, 0, 1 });
 }
 
 TEST(EveryKey, volumes_materials_and_layers)

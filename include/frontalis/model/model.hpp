@@ -31,6 +31,9 @@ struct Model
   std::vector<std::int32_t> mixture_begin;
   std::vector<std::int16_t> mixture_material;
   std::vector<float> mixture_proportion;
+  /// Empty, or two directions a voxel (local axes, length 1) that its directed materials take instead of their own:
+  /// holzapfel's families; guccione's fibre is the first. Zero: the material's own.
+  std::vector<std::array<float, 6>> material_directions;
 
   // muscles of voxel e: entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1
   std::vector<Muscle> muscles;

@@ -16,8 +16,12 @@ enum class Law : std::uint8_t
   mooney_rivlin,  ///< c1 [Pa], kappa, c2 [Pa]
   ogden,          ///< mu1 [Pa], kappa, alpha1, mu2 [Pa], alpha2
   fung,           ///< mu [Pa], kappa, b
-  holzapfel       ///< mu [Pa], kappa, k1 [Pa], k2, dispersion, two family directions (local axes, length 1)
+  holzapfel,      ///< mu [Pa], kappa, k1 [Pa], k2, dispersion, two family directions (local axes, length 1)
+  guccione        ///< c [Pa], kappa, bf, bt, bfs, fibre direction (local axes, length 1)
 };
+
+/// Where the directions of a directed law (holzapfel, guccione) stand among its parameters.
+constexpr int first_direction = 5;
 
 struct Material
 {

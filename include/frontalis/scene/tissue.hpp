@@ -16,9 +16,9 @@ struct SceneMaterial
   std::string law = "neo_hookean";
   double density = 0;  ///< [kg/m3]
   /// SI units, by name as in doc/scene.md: poisson, and by law young | c1, c2 | mu1, alpha1, mu2, alpha2 | shear, b |
-  /// shear, k1, k2, dispersion.
+  /// shear, k1, k2, dispersion | c, bf, bt, bfs.
   std::map<std::string, double> parameters;
-  std::array<Vector3, 2> families{};  ///< holzapfel: directions of the two fibre families, scene axes, length 1
+  std::array<Vector3, 2> families{};  ///< holzapfel: the two fibre families; guccione: the fibre; scene axes, length 1
   int line = 0;
 };
 

@@ -1,0 +1,113 @@
+#pragma once
+
+#include "frontalis/physics/exponential.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Transversely isotropic Fung-type solid (Guccione, McCulloch & Waldman 1991, J. Biomech. Eng. 113:42) of the
+/// isochoric strain: psi = c/2 (e^Q - 1), Q = bf Eff^2 + bt (Ess^2 + Enn^2 + 2 Esn^2) + 2 bfs (Efs^2 + Efn^2), E = (g
+/// F^T F - 1) / 2, f along the fibre. Continued below a small J with g.
+template <class T>
+struct Guccione
+{
+  T c;    ///< [Pa]
+  T bf;   ///< along the fibre, > 0 [-]
+  T bt;   ///< across it, > 0 [-]
+  T bfs;  ///< shear between the two, > 0 [-]
+};
+
+/// Isochoric strain, Q and half of its gradient.
+template <class T>
+struct GuccioneStrain
+{
+  Matrix3<T> C;         ///< F^T F
+  Matrix3<T> gradient;  ///< 1/2 dQ/dE
+  T Q;
+  T squared;  ///< E : E
+};
+
+template <class T>
+FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, const Kinematics<T>& k, T g,
+                                                const Vec3<T>& fibre)
+{
+  using N = Number<T>;
+  const auto& F = k.F.a;
+  const T a[3] = { fibre.x, fibre.y, fibre.z };
+  GuccioneStrain<T> s;
+  T E[3][3], along[3];
+  s.squared = N::of(0);
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      s.C.a[i][j] = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
+      E[i][j] = N::of(0.5) * (i == j ? g * s.C.a[i][j] - N::of(1) : g * s.C.a[i][j]);
+      s.squared = s.squared + E[i][j] * E[i][j];
+    }
+    along[i] = E[i][0] * a[0] + E[i][1] * a[1] + E[i][2] * a[2];
+  }
+  // with |E f|^2 = Eff^2 + Efs^2 + Efn^2, Q = on_fibre Eff^2 + 2 on_shear |E f|^2 + bt E : E
+  const T fibre_strain = a[0] * along[0] + a[1] * along[1] + a[2] * along[2];
+  const T on_fibre = material.bf + material.bt - N::of(2) * material.bfs, on_shear = material.bfs - material.bt;
+  s.Q = on_fibre * fibre_strain * fibre_strain +
+        N::of(2) * on_shear * (along[0] * along[0] + along[1] * along[1] + along[2] * along[2]) +
+        material.bt * s.squared;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      s.gradient.a[i][j] = on_fibre * fibre_strain * a[i] * a[j] + on_shear * (along[i] * a[j] + a[i] * along[j]) +
+                           material.bt * E[i][j];
+  return s;
+}
+
+/// Adds the first Piola-Kirchhoff stress [Pa] of the solid with fibres along `fibre` (unit length, at rest) to P.
+template <class T>
+FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre, Matrix3<T>& P)
+{
+  using N = Number<T>;
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const GuccioneStrain<T> s = guccione_strain(material, k, g.value, fibre);
+  const T scale = material.c * bounded_exponential_slope(s.Q);
+  T along = N::of(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      along = along + s.gradient.a[i][j] * s.C.a[i][j];
+  const T on_strain = scale * g.value, on_cofactor = N::of(0.5) * scale * g.slope * along;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = P.a[i][j] + on_cofactor * k.cofactor.a[i][j] +
+                  on_strain * (k.F.a[i][0] * s.gradient.a[0][j] + k.F.a[i][1] * s.gradient.a[1][j] +
+                               k.F.a[i][2] * s.gradient.a[2][j]);
+}
+
+/// Strain energy a volume at rest [J/m3].
+template <class T>
+FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+{
+  using N = Number<T>;
+  const GuccioneStrain<T> s = guccione_strain(material, k, isochoric_scale(k.J).value, fibre);
+  return N::of(0.5) * material.c * (bounded_exponential(s.Q) - N::of(1));
+}
+
+/// Bound of the tangent shear stiffness [Pa]: half of d2 psi along any unit change of F, (dQ)^2 + d2Q bounded by the
+/// norms of E and dQ/dE, F^T F g by 1 + 2 |E|.
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+{
+  using N = Number<T>;
+  const T g = isochoric_scale(k.J).value;
+  const GuccioneStrain<T> s = guccione_strain(material, k, g, fibre);
+  const T largest = N::max(material.bf, N::max(material.bt, material.bfs));
+  T squared = N::of(0);
+  for (const auto& row : s.gradient.a)
+    for (const T& x : row)
+      squared = squared + N::of(4) * x * x;
+  const T stretch = N::of(1) + N::of(2) * N::sqrt(s.squared);
+  return N::of(0.25) * material.c * bounded_exponential_slope(s.Q) * g *
+         (stretch * (squared + N::of(2) * largest) + N::sqrt(squared));
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Curves over one pair of axes, drawn by gnuplot.
+struct Plot
+{
+  enum class Style
+  {
+    points,
+    line,
+    dashed,  ///< for theory, bounds and slopes
+    line_and_points
+  };
+  struct Curve
+  {
+    std::string name;  ///< in the legend; empty: not in it
+    std::vector<double> x, y;
+    Style style = Style::line_and_points;
+  };
+
+  std::string title;
+  std::string x_label, y_label;  ///< with units
+  bool x_log = false, y_log = false;
+  /// Limits of an axis where the two differ.
+  double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
+  std::string key = "top right";  ///< place of the legend in gnuplot's words
+  std::vector<Curve> curves;
+};
+
+/// Writes PATH.png (800 x 500 pixels) and PATH.svg; `path` has no extension. Throws Error where gnuplot is missing or
+/// fails, with what it said.
+void write_plot(const Plot& plot, const std::string& path);
+
+}  // namespace frontalis

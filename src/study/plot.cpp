@@ -1,0 +1,103 @@
+#include "frontalis/study/plot.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace frontalis
+{
+namespace
+{
+
+// colours that stay apart for colour-blind eyes (Okabe & Ito 2008)
+const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000" };
+
+// text between single quotes: doubled inside
+std::string quoted(const std::string& text)
+{
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string style_of(const Plot::Curve& curve, std::size_t index)
+{
+  const std::string colour = std::string(" lc rgb '") + colours[index % std::size(colours)] + "'";
+  const std::string point = " pt " + std::to_string(index % 2 ? 5 : 7) + " ps 0.9";
+  switch (curve.style)
+  {
+    case Plot::Style::points:
+      return "with points" + point + colour;
+    case Plot::Style::line:
+      return "with lines lw 2" + colour;
+    case Plot::Style::dashed:
+      return "with lines lw 1.5 dt 2" + colour;
+    case Plot::Style::line_and_points:
+      break;
+  }
+  return "with linespoints lw 2" + point + colour;
+}
+
+std::string script(const Plot& plot, const std::string& path)
+{
+  std::ostringstream out;
+  out.precision(9);
+  for (std::size_t c = 0; c < plot.curves.size(); ++c)
+  {
+    out << "$curve" << c << " << EOD\n";
+    for (std::size_t i = 0; i < plot.curves[c].x.size(); ++i)
+      if (std::isfinite(plot.curves[c].x[i]) && std::isfinite(plot.curves[c].y[i]))
+        out << plot.curves[c].x[i] << ' ' << plot.curves[c].y[i] << '\n';
+    out << "EOD\n";
+  }
+  out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
+      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << " opaque samplen 2 spacing 1.2\n"
+      << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
+      << quoted(plot.y_label) << '\n';
+  for (const auto& [axis, log, from, to] :
+       { std::tuple{ 'x', plot.x_log, plot.x_from, plot.x_to }, std::tuple{ 'y', plot.y_log, plot.y_from, plot.y_to } })
+  {
+    if (log)
+      out << "set logscale " << axis << '\n';
+    if (from != to)
+      out << "set " << axis << "range [" << from << ':' << to << "]\n";
+  }
+  const auto draw = [&](const std::string& terminal, const std::string& file)
+  {
+    out << "set terminal " << terminal << "\nset output " << quoted(file) << "\nplot ";
+    for (std::size_t c = 0; c < plot.curves.size(); ++c)
+      out << (c ? ", " : "") << "$curve" << c << ' ' << style_of(plot.curves[c], c)
+          << (plot.curves[c].name.empty() ? " notitle" : " title " + quoted(plot.curves[c].name));
+    out << "\nset output\n";
+  };
+  draw("pngcairo noenhanced size 800,500 font 'sans,13' background '#ffffff'", path + ".png");
+  draw("svg noenhanced size 800,500 font 'sans,15' background '#ffffff'", path + ".svg");
+  return out.str();
+}
+
+}  // namespace
+
+void write_plot(const Plot& plot, const std::string& path)
+{
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    throw Error("plot " + path + ": the program gnuplot is missing (Debian's package gnuplot-nox)");
+  const std::string commands = path + ".gnuplot", messages = path + ".log";
+  write_text(commands, script(plot, path));
+  const bool drawn = std::system(("gnuplot '" + commands + "' 2>'" + messages + "' >&2").c_str()) == 0;
+  std::ifstream log(messages);
+  const std::string said{ std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>() };
+  std::filesystem::remove(messages);
+  if (!drawn)
+    throw Error("plot " + path + ": gnuplot failed on " + commands + ": " + said);
+  std::filesystem::remove(commands);
+}
+
+}  // namespace frontalis
