@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// a node that has slid farther than this from its latest exact closest point gets a new one [m]; as on the host
+// a node that has slid farther than this from its latest exact closest point gets a new one [m]
 constexpr double slip_until_renewal = 15e-6;
 
 struct NodeState
@@ -27,11 +27,7 @@ __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t 
   const SurfaceSearch::Closest c = g.surfaces[s.surface].closest(p, reach);
   if (c.triangle < 0)
     return;
-  const SurfaceSearch::Point away = p - c.point;
-  const double distance = sqrt(c.squared_distance);
-  // sign by the pseudonormal, and the pseudonormal itself where the point lies on the surface
-  const SurfaceSearch::Point n =
-      distance < 1e-7 ? c.normal : (dot(away, c.normal) < 0 ? -1 / distance : 1 / distance) * away;
+  const SurfaceSearch::Point n = SurfaceSearch::offset_normal(c, p, s.distance, s.turned);
   s.foot[0] = c.point.x;
   s.foot[1] = c.point.y;
   s.foot[2] = c.point.z;

@@ -50,6 +50,7 @@ struct SlidingContact
   double foot[3];   ///< the latest exact closest point [m]
   std::uint32_t node;
   std::int32_t surface;
+  bool turned;  ///< has gone round the rim of an open surface
 };
 
 /// What a step needs of it: the tangent plane of the offset surface at the latest exact closest point. A displacement u

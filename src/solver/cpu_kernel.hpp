@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slide_kernel.hpp"
 #include "voxel_rows.hpp"
 
 namespace frontalis
@@ -52,10 +53,11 @@ using CpuKernel = float (*)(const CpuKernelArguments& arguments, std::int32_t fi
 struct CpuKernelChoice
 {
   CpuKernel kernel;
+  SlideKernel<float> slide;
   const char* name;
 };
 
-/// The kernel for the widest instruction set that this machine has; FRONTALIS_INSTRUCTION_SET (baseline, avx2, avx512)
+/// The kernels for the widest instruction set that this machine has; FRONTALIS_INSTRUCTION_SET (baseline, avx2, avx512)
 /// in the environment asks for another. Throws Error if it is not there.
 CpuKernelChoice choose_cpu_kernel();
 

@@ -53,9 +53,9 @@ private:
   std::vector<float> mu_, kappa_, hourglass_, frequency_squared_, inverse_mass_, with_length_, with_passive_;
   Components u_, next_, v_;
   std::int32_t buffer_stride_ = 0;
+  CpuKernelChoice kernel_;
   RestrictedNodes<float> restricted_;
   NodalLoads loads_;
-  CpuKernelChoice kernel_;
   ThreadTeam team_;
   std::string remark_;
   std::vector<std::int32_t> slab_;           // node planes of thread t: slab_[t] .. slab_[t + 1]
@@ -77,9 +77,9 @@ CpuSolver::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& s
       kappa_(rows_.blocks(times(discretisation_.kappa, discretisation_.tissue_volume))),
       hourglass_(rows_.blocks(discretisation_.hourglass)),
       frequency_squared_(rows_.blocks(discretisation_.frequency_squared)),
-      restricted_(*model_),
-      loads_(*model_),
       kernel_(choose_cpu_kernel()),
+      restricted_(*model_, kernel_.slide),
+      loads_(*model_),
       team_(settings.threads),
       remark_(remark)
 {

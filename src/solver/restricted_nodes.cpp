@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace frontalis
 {
@@ -80,75 +81,96 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
 }
 
 template <class Real>
-RestrictedNodes<Real>::RestrictedNodes(const Model& model)
-    : model_(model), rigid_(model.rigid), prescribed_(model.prescribed)
+RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
+    : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)
 {
   for (const auto& surface : model.constraint_surfaces)
     trees_.push_back(std::make_unique<SurfaceTree>(surface.mesh));
-  for (const auto& node : model.sliding)
-  {
-    const auto rest = rest_position(model, node.node);
-    sliding_.push_back({ node.node, node.surface, node.distance, { rest[0], rest[1], rest[2] }, {} });
-  }
   sort_by_node(rigid_);
   sort_by_node(prescribed_);
-  sort_by_node(sliding_);
-  for (const auto& s : sliding_)
-    planes_.push_back({ s.node, { 0, 0, 0 }, 0, { 0, 0, 0 }, -1 });
+  auto sliding = model.sliding;
+  sort_by_node(sliding);
+  make_blocks(sliding);
+  reset();
+}
+
+// blocks begin at the first node that is in none yet and stay within its node plane: they go back a little where it
+// ends
+template <class Real>
+void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
+{
+  const auto end_of_plane = [&](std::int32_t node)
+  {
+    const auto above = [](const std::array<std::int32_t, 3>& a, std::int32_t k) { return a[2] <= k; };
+    return static_cast<std::int32_t>(
+        std::lower_bound(model_.nodes.begin() + node, model_.nodes.end(), model_.nodes[node][2], above) -
+        model_.nodes.begin());
+  };
+  std::int32_t covered = 0;
+  for (const auto& node : nodes)
+  {
+    if (node.node >= covered)
+    {
+      const std::int32_t end = end_of_plane(node.node);
+      std::int32_t first = std::min(node.node, std::max(0, end - Block::width));
+      while (model_.nodes[first][2] != model_.nodes[node.node][2])
+        ++first;
+      block_node_.push_back(first);
+      block_count_.push_back(std::min(end - first, std::int32_t{ Block::width }));
+      block_sliding_.emplace_back().fill(-1);
+      covered = first + block_count_.back();
+    }
+    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(sliding_.size());
+    const auto rest = rest_position(model_, node.node);
+    sliding_.push_back({ { rest[0], rest[1], rest[2] }, { *trees_[node.surface], node.distance } });
+  }
 }
 
 template <class Real>
 void RestrictedNodes<Real>::reset()
 {
-  for (auto& plane : planes_)
-    plane.slip_squared = -1;
+  for (auto& sliding : sliding_)
+    sliding.contact.forget();
+  blocks_.assign(block_node_.size(), {});
+  for (std::size_t block = 0; block < blocks_.size(); ++block)
+    for (int lane = 0; lane < Block::width; ++lane)
+      blocks_[block].slip_squared[lane] = block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
 }
 
 template <class Real>
-void RestrictedNodes<Real>::renew(Plane& plane, Sliding& s, const Point& u)
+void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3])
 {
-  const Point p = s.rest + u;
-  // the latest foot is on the surface: nothing farther can be the closest
-  const double reach = plane.slip_squared < 0 ? 1e3 : norm(p - s.foot) * (1 + 1e-9) + 1e-12;
-  const SurfaceTree::Closest c = trees_[s.surface]->closest(p, reach);
-  if (c.triangle < 0)
-    return;
-  const Point away = p - c.point;
-  const double distance = std::sqrt(c.squared_distance);
-  // sign by the pseudonormal, and the pseudonormal itself where the point lies on the surface
-  const Point normal = distance < 1e-7 ? c.normal : (dot(away, c.normal) < 0 ? -1 / distance : 1 / distance) * away;
-  s.foot = c.point;
-  const double part[3] = { normal.x, normal.y, normal.z }, moved[3] = { u.x, u.y, u.z };
+  auto& nodes = *static_cast<RestrictedNodes*>(self);
+  Sliding& s = nodes.sliding_[nodes.block_sliding_[block][lane]];
+  Block& b = nodes.blocks_[block];
+  const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
+  const double normal[3] = { plane.normal.x, plane.normal.y, plane.normal.z };
   for (int axis = 0; axis < 3; ++axis)
   {
-    plane.normal[axis] = static_cast<Real>(part[axis]);
-    plane.reference[axis] = static_cast<Real>(moved[axis]);
+    b.normal[axis][lane] = static_cast<Real>(normal[axis]);
+    b.reference[axis][lane] = u[axis];
   }
-  plane.offset = static_cast<Real>(s.distance - dot(normal, s.rest - c.point));
-  plane.slip_squared = static_cast<Real>(c.slip * c.slip);
+  b.offset[lane] = static_cast<Real>(plane.height - dot(plane.normal, s.rest));
+  b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
 }
 
 template <class Real>
 void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                                   const Real* const before[3], const Drive& drive)
 {
-  const auto slides = range(planes_, first, last);
-  for (auto plane = slides.first; plane != slides.second; ++plane)
+  const auto block_of = [&](std::int32_t node)
   {
-    const auto n = plane->node;
-    const Real x = u[0][n], y = u[1][n], z = u[2][n];
-    const Real dx = x - plane->reference[0], dy = y - plane->reference[1], dz = z - plane->reference[2];
-    if (dx * dx + dy * dy + dz * dz > plane->slip_squared)
-      renew(*plane, sliding_[plane - planes_.begin()], { double(x), double(y), double(z) });
-    const Real* normal = plane->normal;
-    const Real error = normal[0] * x + normal[1] * y + normal[2] * z - plane->offset;
-    const Real speed = normal[0] * v[0][n] + normal[1] * v[1][n] + normal[2] * v[2][n];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      u[axis][n] -= error * normal[axis];
-      v[axis][n] -= speed * normal[axis];
-    }
-  }
+    return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -
+                                     block_node_.begin());
+  };
+  kernel_({ blocks_.data(),
+            block_node_.data(),
+            block_count_.data(),
+            { u[0], u[1], u[2] },
+            { v[0], v[1], v[2] },
+            renew,
+            this },
+          block_of(first), block_of(last));
 
   const auto prescriptions = range(prescribed_, first, last);
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
-#include "surface_tree.hpp"
+#include "slide_kernel.hpp"
+#include "surface_contact.hpp"
 
 #include <memory>
 #include <vector>
@@ -20,47 +21,42 @@ struct Drive
   std::vector<RigidTransform> bone;  ///< at the end of the step
 };
 
-/// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Node by
-/// node, so that threads may take disjoint ranges of nodes. Real is the backend's number type.
+/// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
+/// may take disjoint ranges of node planes. Real is the backend's number type.
 template <class Real>
 class RestrictedNodes
 {
 public:
-  explicit RestrictedNodes(const Model& model);
+  /// The kernel may read and write, unchanged, what lies between sliding nodes of one node plane.
+  explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset();
-  /// Applies to nodes in [first, last); u holds the displacements after the step's update, before those before it.
+  /// Applies to nodes in [first, last), whole node planes; u holds the displacements after the step's update, before
+  /// those before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
              const Drive& drive);
   bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty(); }
 
 private:
-  // tangent plane of the offset surface near the latest exact closest point: normal . u = offset
-  struct Plane
-  {
-    std::int32_t node;
-    Real normal[3];
-    Real offset;
-    Real reference[3];  // displacement at that search
-    Real slip_squared;  // how far the node may have moved since; < 0: never searched
-  };
+  using Block = SlidingBlock<Real>;
   struct Sliding
   {
-    std::int32_t node;
-    std::int32_t surface;
-    double distance;
     SurfaceTree::Point rest;
-    SurfaceTree::Point foot;
+    SurfaceContact contact;
   };
 
-  void renew(Plane& plane, Sliding& s, const SurfaceTree::Point& u);
+  void make_blocks(const std::vector<SlidingNode>& nodes);
+  static void renew(void* self, std::int32_t block, int lane, const Real u[3]);
 
   const Model& model_;
+  SlideKernel<Real> kernel_;
+  std::vector<std::unique_ptr<SurfaceTree>> trees_;
   std::vector<RigidNode> rigid_;  // all lists sorted by node
   std::vector<PrescribedNode> prescribed_;
-  std::vector<Plane> planes_;  // one a sliding node
   std::vector<Sliding> sliding_;
-  std::vector<std::unique_ptr<SurfaceTree>> trees_;
+  std::vector<Block> blocks_;
+  std::vector<std::int32_t> block_node_, block_count_;
+  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into sliding_; -1: does not slide
 };
 
 }  // namespace frontalis

@@ -26,7 +26,7 @@ struct SurfaceSearch
     Point face_normal;
     Point edge_normal[3];    ///< of edges 01, 12, 20
     Point vertex_normal[3];  ///< angle-weighted
-    double slip;             ///< how far a point may move before the plane through its offset errs too much [m]
+    std::int32_t rim;        ///< bit c: edge from corner c to the next has no other triangle; bit 3 + c: corner of such
     std::int32_t index;      ///< in the mesh
   };
   struct Closest
@@ -34,8 +34,8 @@ struct SurfaceSearch
     Point point;
     Point normal;  ///< unit pseudonormal there
     double squared_distance;
-    double slip;  ///< of that triangle
     std::int32_t triangle;
+    bool rim;  ///< on the rim of an open surface
   };
 
   const Box* boxes;
@@ -55,33 +55,59 @@ struct SurfaceSearch
     return sum;
   }
 
-  static FRONTALIS_LAW Point pseudonormal(const Triangle& triangle, const Point& at)
+  /// Fills in what the triangle knows of its closest point.
+  static FRONTALIS_LAW void describe(const Triangle& triangle, Closest& closest)
   {
+    closest.triangle = triangle.index;
+    closest.rim = false;
+    closest.normal = triangle.face_normal;
     // barycentric coordinates say whether the point lies on the face, an edge or a corner
     const Point& a = triangle.corner[0];
-    const Point ab = triangle.corner[1] - a, ac = triangle.corner[2] - a, ap = at - a;
+    const Point ab = triangle.corner[1] - a, ac = triangle.corner[2] - a, ap = closest.point - a;
     const double d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
     const double determinant = d00 * d11 - d01 * d01;
-    if (!(determinant > 0))
-      return triangle.vertex_normal[0];
     double weight[3];
     weight[1] = (d11 * d20 - d01 * d21) / determinant;
     weight[2] = (d00 * d21 - d01 * d20) / determinant;
     weight[0] = 1 - weight[1] - weight[2];
     constexpr double on_boundary = 1e-7;
     for (int c = 0; c < 3; ++c)
-      if (weight[c] > 1 - on_boundary)
-        return triangle.vertex_normal[c];
-    for (int c = 0; c < 3; ++c)
       if (weight[(c + 2) % 3] < on_boundary)
-        return triangle.edge_normal[c];
-    return triangle.face_normal;
+      {
+        closest.normal = triangle.edge_normal[c];
+        closest.rim = (triangle.rim >> c & 1) != 0;
+      }
+    for (int c = 0; c < 3; ++c)
+      if (weight[c] > 1 - on_boundary)
+      {
+        closest.normal = triangle.vertex_normal[c];
+        closest.rim = (triangle.rim >> (3 + c) & 1) != 0;
+      }
+  }
+
+  /// Unit normal of the offset surface at p, outwards: signed distance grows along it. At the rim of an open surface
+  /// distance has no sign of its own and takes that of `kept`; `turned` remembers that p has gone round the rim.
+  static FRONTALIS_LAW Point offset_normal(const Closest& closest, const Point& p, double kept, bool& turned)
+  {
+    const double distance = physics::Number<double>::sqrt(closest.squared_distance);
+    if (distance < 1e-7)
+      return closest.normal;
+    const Point away = p - closest.point;
+    bool inside = dot(away, closest.normal) < 0;
+    if (closest.rim)
+    {
+      turned = inside != (kept < 0);
+      inside = kept < 0;
+    }
+    else
+      inside = inside != turned;
+    return (inside ? -1 / distance : 1 / distance) * away;
   }
 
   /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
   FRONTALIS_LAW Closest closest(const Point& p, double within) const
   {
-    Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, 0, -1 };
+    Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, -1, false };
     std::int32_t found = -1;
     std::int32_t stack[64];
     int depth = 0;
@@ -115,11 +141,7 @@ struct SurfaceSearch
       }
     }
     if (found >= 0)
-    {
-      best.triangle = triangles[found].index;
-      best.slip = triangles[found].slip;
-      best.normal = pseudonormal(triangles[found], best.point);
-    }
+      describe(triangles[found], best);
     return best;
   }
 };

@@ -34,8 +34,13 @@ double angle(const Point& a, const Point& b)
 SurfaceTree::SurfaceTree(const TriangleMesh& mesh)
 {
   const std::size_t count = mesh.triangles.size();
+  struct Edge
+  {
+    Point normal{ 0, 0, 0 };
+    int triangles = 0;
+  };
   std::vector<Point> vertex_normal(mesh.vertices.size(), Point{ 0, 0, 0 });
-  std::map<std::pair<std::int32_t, std::int32_t>, Point> edges;
+  std::map<std::pair<std::int32_t, std::int32_t>, Edge> edges;
   const auto edge_of = [](std::int32_t a, std::int32_t b) { return std::make_pair(std::min(a, b), std::max(a, b)); };
   for (std::size_t t = 0; t < count; ++t)
   {
@@ -52,41 +57,80 @@ SurfaceTree::SurfaceTree(const TriangleMesh& mesh)
       const Point& here = triangle.corner[c];
       const double weight = angle(triangle.corner[(c + 1) % 3] - here, triangle.corner[(c + 2) % 3] - here);
       vertex_normal[corner[c]] = vertex_normal[corner[c]] + weight * triangle.face_normal;
-      Point& edge = edges[edge_of(corner[c], corner[(c + 1) % 3])];
-      edge = edge + triangle.face_normal;
+      Edge& edge = edges[edge_of(corner[c], corner[(c + 1) % 3])];
+      edge.normal = edge.normal + triangle.face_normal;
+      ++edge.triangles;
     }
   }
+  std::vector<bool> on_rim(mesh.vertices.size(), false);
+  for (const auto& edge : edges)
+    if (edge.second.triangles == 1)
+      on_rim[edge.first.first] = on_rim[edge.first.second] = true;
   for (std::size_t t = 0; t < count; ++t)
     for (int c = 0; c < 3; ++c)
     {
       const auto& corner = mesh.triangles[t];
+      const Edge& edge = edges[edge_of(corner[c], corner[(c + 1) % 3])];
       triangles_[t].vertex_normal[c] = unit(vertex_normal[corner[c]]);
-      triangles_[t].edge_normal[c] = unit(edges[edge_of(corner[c], corner[(c + 1) % 3])]);
+      triangles_[t].edge_normal[c] = unit(edge.normal);
+      triangles_[t].rim |= (edge.triangles == 1 ? 1 << c : 0) | (on_rim[corner[c]] ? 8 << c : 0);
     }
-  allow_slip(mesh);
-  if (count > 0)
-    build(0, static_cast<std::int32_t>(count));
+  // triangles without area have nothing that their neighbours do not have
+  triangles_.erase(std::remove_if(triangles_.begin(), triangles_.end(),
+                                  [](const Triangle& t) { return !(dot(t.face_normal, t.face_normal) > 0); }),
+                   triangles_.end());
+  if (!triangles_.empty())
+    build(0, static_cast<std::int32_t>(triangles_.size()));
 }
 
-// the normal of the offset surface turns by no more than the largest angle to a triangle that shares a corner, while
-// the foot stays among those: after a slip s the plane errs by at most s times that angle
-void SurfaceTree::allow_slip(const TriangleMesh& mesh)
+void SurfaceTree::near(const Point& p, NearTriangles& out) const
 {
-  std::vector<std::vector<std::size_t>> ring(mesh.vertices.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const auto corner : mesh.triangles[t])
-      ring[corner].push_back(t);
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
+  out.at = p;
+  out.count = 0;
+  out.beyond = std::numeric_limits<double>::max();
+  struct Entry
   {
-    Triangle& triangle = triangles_[t];
-    double widest = 0, shortest = 1e300;
-    for (int c = 0; c < 3; ++c)
+    std::int32_t box;
+    double squared_distance;
+  };
+  Entry stack[64];
+  int depth = 0;
+  const auto push = [&](std::int32_t box) {
+    stack[depth++] = { box, SurfaceSearch::squared_distance(boxes_[box], p) };
+  };
+  if (!boxes_.empty())
+    push(0);
+  while (depth > 0)
+  {
+    const Entry self = stack[--depth];
+    if (self.squared_distance > out.beyond * out.beyond)
+      continue;
+    const Box& box = boxes_[self.box];
+    if (box.count == 0)
     {
-      shortest = std::min(shortest, norm(triangle.corner[(c + 1) % 3] - triangle.corner[c]));
-      for (const auto other : ring[mesh.triangles[t][c]])
-        widest = std::max(widest, angle(triangle.face_normal, triangles_[other].face_normal));
+      push(box.first);
+      push(self.box + 1);
+      if (stack[depth - 1].squared_distance > stack[depth - 2].squared_distance)
+        std::swap(stack[depth - 1], stack[depth - 2]);
     }
-    triangle.slip = std::min(0.25 * shortest, plane_error / std::max(widest, 1e-9));
+    for (std::int32_t t = box.first; t < box.first + box.count; ++t)
+    {
+      const Triangle& triangle = triangles_[t];
+      const double distance = norm(p - closest_point(p, triangle.corner[0], triangle.corner[1], triangle.corner[2]));
+      if (!(distance < out.beyond))
+        continue;
+      int place = out.count < NearTriangles::capacity ? out.count++ : NearTriangles::capacity - 1;
+      for (; place > 0 && out.distance[place - 1] > distance; --place)
+      {
+        out.triangle[place] = out.triangle[place - 1];
+        out.distance[place] = out.distance[place - 1];
+      }
+      out.triangle[place] = t;
+      out.distance[place] = distance;
+      out.beyond = out.distance[0] + NearTriangles::reach;
+      if (out.count == NearTriangles::capacity)
+        out.beyond = std::min(out.beyond, out.distance[out.count - 1]);
+    }
   }
 }
 

@@ -9,6 +9,19 @@
 namespace frontalis
 {
 
+/// The triangles of a surface nearest to a point, nearest first.
+struct NearTriangles
+{
+  static constexpr int capacity = 24;
+  static constexpr double reach = 2e-3;  ///< none is listed that is so much farther than the nearest [m]
+
+  SurfaceSearch::Point at{ 0, 0, 0 };  ///< the point
+  double beyond = -1;                  ///< triangles that are not listed are at least so far from it [m]
+  int count = 0;
+  std::int32_t triangle[capacity] = {};  ///< into SurfaceTree::triangles()
+  double distance[capacity] = {};        ///< [m]
+};
+
 /// Bounding-box tree over a triangle mesh for exact closest points, with the pseudonormal of the face, edge or corner
 /// found (Baerentzen & Aanaes 2005), which tells the side. Read-only after construction.
 class SurfaceTree
@@ -17,13 +30,12 @@ public:
   using Point = SurfaceSearch::Point;
   using Closest = SurfaceSearch::Closest;
 
-  /// Largest error of the plane that stands for the offset surface between two searches [m].
-  static constexpr double plane_error = 8e-6;
-
   explicit SurfaceTree(const TriangleMesh& mesh);
 
   /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
   Closest closest(const Point& p, double within) const { return search().closest(p, within); }
+
+  void near(const Point& p, NearTriangles& out) const;
 
   const std::vector<SurfaceSearch::Box>& boxes() const { return boxes_; }
   const std::vector<SurfaceSearch::Triangle>& triangles() const { return triangles_; }
@@ -33,7 +45,6 @@ public:
   }
 
 private:
-  void allow_slip(const TriangleMesh& mesh);
   void build(std::int32_t first, std::int32_t last);
 
   std::vector<SurfaceSearch::Box> boxes_;
