@@ -59,7 +59,8 @@ std::string script(const Plot& plot, const std::string& path)
     out << "EOD\n";
   }
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
-      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << " opaque samplen 2 spacing 1.2\n"
+      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (plot.key == "below" ? "" : " opaque")
+      << " samplen 2 spacing 1.2\n"
       << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
       << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, from, to] :
@@ -70,6 +71,8 @@ std::string script(const Plot& plot, const std::string& path)
     if (from != to)
       out << "set " << axis << "range [" << from << ':' << to << "]\n";
   }
+  for (std::size_t t = 0; t < plot.x_ticks.size(); ++t)
+    out << (t ? ", " : "set xtics (") << plot.x_ticks[t] << (t + 1 == plot.x_ticks.size() ? ")\n" : "");
   const auto draw = [&](const std::string& terminal, const std::string& file)
   {
     out << "set terminal " << terminal << "\nset output " << quoted(file) << "\nplot ";

@@ -39,11 +39,38 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
 /// displacements).
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
+/// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it
+/// with n = nu times the square of the shortest edge over that axis' edge; the plate's own where that edge is the
+/// shortest.
+template <class T>
+struct AxisBending
+{
+  T own;
+  T coupled;
+};
+
+template <class T, class S>
+FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* weight, int axis)
+{
+  using N = Number<T>;
+  const S other = weight[(axis + 1) % 3] > weight[(axis + 2) % 3] ? weight[(axis + 1) % 3] : weight[(axis + 2) % 3];
+  if (!(weight[axis] < other))
+    return { k.bending, k.coupling };
+  const S ratio = weight[axis] / other;
+  // nothing is bent in a lane without a voxel
+  const T n = T(ratio * ratio) * k.coupling / N::max(k.bending, N::of(1e-30));
+  // E times tissue volume is three times the warping stiffness
+  const T own = N::of(3) * k.warping / (N::of(1) - n * n);
+  return { own, n * own };
+}
+
 /// Forces conjugate to pulled-back modes r[pair][axis], likewise ordered; weight[i] = 1 / (4 sqrt(3) h_i): products of
 /// two are the integrals of mode derivatives over the volume, for modes of amplitude 8.
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
 {
+  const AxisBending<T> along[3] = { axis_bending(k, weight, 0), axis_bending(k, weight, 1),
+                                    axis_bending(k, weight, 2) };
   for (int i = 0; i < 3; ++i)
   {
     const int j = (i + 1) % 3, l = (i + 2) % 3;
@@ -51,8 +78,8 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, 
     // u_i with the mode that does not vary along i: torsion, and its coupling to the other two
     force[i][i] = k.torsion * (((wj * wj) + (wl * wl)) * r[i][i] + wi * (wj * r[j][j] + wl * r[l][l]));
     // u_i with the modes paired with j and l: bending along i, coupled to bending along j and l
-    force[j][i] = wi * (k.bending * wi * r[j][i] + k.coupling * wj * r[i][j]);
-    force[l][i] = wi * (k.bending * wi * r[l][i] + k.coupling * wl * r[i][l]);
+    force[j][i] = wi * (along[l].own * wi * r[j][i] + along[l].coupled * wj * r[i][j]);
+    force[l][i] = wi * (along[j].own * wi * r[l][i] + along[j].coupled * wl * r[i][l]);
     force[3][i] = k.warping * wi * wi * r[3][i];
   }
 }

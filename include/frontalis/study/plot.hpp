@@ -28,7 +28,8 @@ struct Plot
   bool x_log = false, y_log = false;
   /// Limits of an axis where the two differ.
   double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
-  std::string key = "top right";  ///< place of the legend in gnuplot's words
+  std::vector<double> x_ticks;    ///< where the x axis has numbers; empty: gnuplot's choice
+  std::string key = "top right";  ///< place of the legend in gnuplot's words; "below": under the axes
   std::vector<Curve> curves;
 };
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "frontalis/solver/solver.hpp"
+#include "frontalis/study/voxel_model.hpp"
+
+#include <memory>
+
+namespace frontalis
+{
+
+struct EquilibriumSettings
+{
+  Backend backend = Backend::cpu;
+  double period = 0;         ///< [s] of the slowest motion, about: damping is critical for it
+  double ramp = 1;           ///< periods over which loads and activations grow
+  double tolerance = 1e-4;   ///< largest change of a displacement in a quarter period over the largest displacement
+  double longest = 60;       ///< periods; Error beyond
+  float activation = 0;      ///< of every muscle
+  RigidTransform bone_pose;  ///< of every bone
+};
+
+/// Model at rest under its loads.
+struct Equilibrium
+{
+  std::unique_ptr<Solver> solver;
+  Vectors displacements;  ///< [m]
+  double periods = 0;     ///< that it took
+};
+
+/// Lets the model come to rest by mass-proportional damping (the model's own is replaced) under slowly growing loads.
+/// Throws Error where it does not within settings.longest.
+Equilibrium find_equilibrium(Model model, const EquilibriumSettings& settings);
+
+/// Mean displacement [m] of nodes, and the internal force [N] on them.
+std::array<double, 3> mean_displacement(const Vectors& displacements, const std::vector<std::int32_t>& nodes);
+std::array<double, 3> internal_force(Solver& solver, const std::vector<std::int32_t>& nodes);
+
+}  // namespace frontalis

@@ -1,0 +1,88 @@
+#include "frontalis/study/voxel_model.hpp"
+
+namespace frontalis
+{
+
+double shear_modulus(double young, double poisson) { return young / (2 * (1 + poisson)); }
+double bulk_modulus(double young, double poisson) { return young / (3 * (1 - 2 * poisson)); }
+
+Material neo_hookean(double young, double poisson, double density)
+{
+  Material material;
+  material.name = "neo_hookean";
+  material.density = density;
+  material.parameters[0] = shear_modulus(young, poisson);
+  material.parameters[1] = bulk_modulus(young, poisson);
+  return material;
+}
+
+Model voxel_model(const VoxelBox& box)
+{
+  Model model;
+  model.size = box.size;
+  model.spacing = box.spacing;
+  model.materials = box.materials;
+  model.mixture_begin.push_back(0);
+  for (std::int32_t k = 0; k < box.size[2]; ++k)
+    for (std::int32_t j = 0; j < box.size[1]; ++j)
+      for (std::int32_t i = 0; i < box.size[0]; ++i)
+      {
+        const std::array<std::int32_t, 3> voxel{ { i, j, k } };
+        const double fill = box.fill ? box.fill(voxel) : 1;
+        if (!(fill > 0))
+          continue;
+        model.voxels.push_back(voxel);
+        model.fill.push_back(static_cast<float>(fill));
+        model.mixture_material.push_back(static_cast<std::int16_t>(box.material ? box.material(voxel) : 0));
+        model.mixture_proportion.push_back(1);
+        model.mixture_begin.push_back(static_cast<std::int32_t>(model.voxels.size()));
+      }
+  model.fibre_begin.assign(model.voxels.size() + 1, 0);
+  build_nodes(model);
+  return model;
+}
+
+void add_muscle(Model& model, const Muscle& muscle, const std::function<std::array<float, 3>(std::size_t)>& direction)
+{
+  model.muscles = { muscle };
+  model.fibre_begin.assign(1, 0);
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    model.fibre_direction.push_back(direction(e));
+    model.fibre_begin.push_back(static_cast<std::int32_t>(e + 1));
+  }
+  model.fibre_muscle.assign(model.voxels.size(), 0);
+  model.fibre_weight.assign(model.voxels.size(), 1);
+}
+
+std::array<double, 3> rest_position(const Model& model, std::size_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
+
+std::vector<std::int32_t> nodes_where(const Model& model,
+                                      const std::function<bool(const std::array<double, 3>&)>& condition)
+{
+  std::vector<std::int32_t> nodes;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (condition(rest_position(model, n)))
+      nodes.push_back(static_cast<std::int32_t>(n));
+  return nodes;
+}
+
+void prescribe(Model& model, const std::vector<std::int32_t>& nodes, const std::array<bool, 3>& components,
+               const std::array<double, 3>& displacement, double ramp)
+{
+  Load load;
+  load.name = "prescribed " + std::to_string(model.loads.size());
+  load.kind = Load::Kind::displacement;
+  load.value = displacement;
+  load.fixed = components;
+  load.ramp = ramp;
+  for (const auto node : nodes)
+    model.prescribed.push_back({ node, static_cast<std::int32_t>(model.loads.size()) });
+  model.loads.push_back(load);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,67 @@
+#include "frontalis/study/linear_statics.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace frontalis;
+
+namespace
+{
+
+Model bar(double young, double poisson)
+{
+  VoxelBox box;
+  box.size = { { 5, 2, 3 } };
+  box.spacing = { { 1e-3, 2e-3, 1.5e-3 } };
+  box.materials = { neo_hookean(young, poisson) };
+  Model model = voxel_model(box);
+  for (int axis = 0; axis < 3; ++axis)
+    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
+              { { axis == 0, axis == 1, axis == 2 } });
+  return model;
+}
+
+}  // namespace
+
+TEST(LinearStatics, PullsABarAsHookesLawSays)
+{
+  const Model model = bar(1e5, 0.3);
+  const Vectors u = LinearStatics(model).solve(face_forces(model, 0, 5, { { 100, 0, 0 } }));
+  for (std::size_t n = 0; n < u.size(); ++n)
+  {
+    const auto p = rest_position(model, n);
+    EXPECT_NEAR(u[n][0], 1e-3 * p[0], 1e-10);
+    EXPECT_NEAR(u[n][1], -0.3e-3 * p[1], 1e-10);
+    EXPECT_NEAR(u[n][2], -0.3e-3 * p[2], 1e-10);
+  }
+}
+
+TEST(LinearStatics, TakesPrescribedDisplacements)
+{
+  Model model = bar(1e5, 0.3);
+  prescribe(model, nodes_where(model, [](const auto& p) { return p[0] > 4.5e-3; }), { { true, false, false } },
+            { { 5e-6, 0, 0 } });
+  const Vectors u = LinearStatics(model).solve(Vectors(model.nodes.size()));
+  for (std::size_t n = 0; n < u.size(); ++n)
+    EXPECT_NEAR(u[n][0], 1e-3 * rest_position(model, n)[0], 1e-10);
+}
+
+TEST(LinearStatics, FindsWhatIsUnstable)
+{
+  const Model model = bar(1e5, 0.3);
+  EXPECT_TRUE(LinearStatics(model).positive_definite());
+  // turned inside out
+  const LinearStatics crushed(model, { { -0.2, 0, 0, 0, 1, 0, 0, 0, 1 } });
+  EXPECT_FALSE(crushed.positive_definite());
+  EXPECT_THROW(crushed.solve(Vectors(model.nodes.size())), Error);
+}
+
+TEST(LinearStatics, FaceForcesAddUpToTractionTimesArea)
+{
+  const Model model = bar(1e5, 0.3);
+  double sum = 0;
+  for (const auto& f : face_forces(model, 1, 0, { { 0, 2, 0 } }))
+    sum += f[1];
+  EXPECT_NEAR(sum, 2 * 5e-3 * 4.5e-3, 1e-15);
+}
