@@ -155,7 +155,7 @@ void CudaSolver::set_displacements(const Vectors& in)
   rest();
   upload_displacements(&in, present_);
   still_moved_ = true;
-  renew_time_step();
+  displacements_were_set();
 }
 
 void CudaSolver::set_velocities(const Vectors& in)
@@ -211,7 +211,7 @@ StepArguments CudaSolver::arguments(double dt) const
   for (int axis = 0; axis < 3; ++axis)
   {
     g.v[axis] = v_[axis].data();
-    g.impulse[axis] = static_cast<float>(gain(dt) * model_->gravity[axis]);
+    g.impulse[axis] = static_cast<float>(gain(dt) * gravity_[axis]);
   }
   g.first = present_;
   g.dt = static_cast<float>(dt);
@@ -321,7 +321,7 @@ void CudaSolver::internal_forces(Vectors& out)
 {
   synchronise();
   StepArguments g = arguments(0);
-  const DeviceArray<float> activation(controls().activation);
+  const DeviceArray<float> activation(this->activation());
   g.activation_begin = g.activation_end = activation.data();
   g.steps = 1;
   g.forces_only = true;

@@ -54,7 +54,7 @@ void expect_room(const Model& model, const VoxelStrips& strips)
 
 Effects effects_of(const Model& model, const Discretisation& discretisation)
 {
-  if (!discretisation.assumed_strain[0].empty() || !discretisation.laws.empty())
+  if (discretisation.assumed_strain || discretisation.laws)
     return Effects::all;
   return model.fibre_muscle.empty() ? Effects::none : Effects::fibres;
 }
@@ -126,29 +126,32 @@ StepArguments DeviceModel::arguments() const { return constants_; }
 // voxels of equal make share an entry; entry 0 has no stiffness
 void DeviceModel::add_palette(const Model& model, const Discretisation& d, std::vector<StripSlot>& slots)
 {
-  const bool stabilised = !d.assumed_strain[0].empty();
+  const bool stabilised = d.assumed_strain;
   const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
   std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
   std::vector<std::uint32_t> law_begin(2, 0);
   std::vector<LawEntry> laws;
-  std::vector<std::uint32_t> entry_of(d.mu.size());
+  std::vector<std::uint32_t> entry_of(model.voxels.size());
   std::unordered_map<Entry, std::uint32_t, HashEntry> known;
   Entry latest, entry;
   std::uint32_t index = 0;
-  for (std::size_t e = 0; e < d.mu.size(); ++e)
+  VoxelProperties voxel;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
+    d.voxel(e, voxel);
     entry.clear();
-    for (const double x :
-         { d.mu[e] * d.tissue_volume[e], d.kappa[e] * d.tissue_volume[e], d.hourglass[e], d.frequency_squared[e] })
+    for (const double x : { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass,
+                            voxel.frequency_squared })
       entry.push_back(static_cast<float>(x));
-    for (int part = 0; stabilised && part < 4; ++part)
-      entry.push_back(static_cast<float>(d.assumed_strain[part][e]));
-    for (auto l = d.law_begin[e]; l < d.law_begin[e + 1]; ++l)
+    const auto& form = voxel.stabilisation;
+    if (stabilised)
+      for (const double x : { form.bending, form.coupling, form.torsion, form.warping })
+        entry.push_back(static_cast<float>(x));
+    for (const LawPart& part : voxel.laws)
     {
-      const auto& part = d.laws[l];
-      for (const double x : { static_cast<double>(part.law), part.weight * d.tissue_volume[e],
-                              8 * part.weight / (d.density[e] * shortest * shortest), part.stiffness_at_rest })
+      for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume,
+                              8 * part.weight / (voxel.density * shortest * shortest), part.stiffness_at_rest })
         entry.push_back(static_cast<float>(x));
       for (const double x : part.parameters)
         entry.push_back(static_cast<float>(x));
@@ -201,9 +204,9 @@ void DeviceModel::add_fibres(const Model& model, const Discretisation& discretis
       const auto index = static_cast<std::uint32_t>(model.fibre_muscle[f]);
       const Muscle& muscle = model.muscles[index];
       const auto& a = model.fibre_direction[f];
-      fibres.push_back(
-          { a[0], a[1], a[2],
-            static_cast<float>(muscle.stress_reference * model.fibre_weight[f] * discretisation.tissue_volume[e]) });
+      fibres.push_back({ a[0], a[1], a[2],
+                         static_cast<float>(muscle.stress_reference * model.fibre_weight[f] * discretisation.volume *
+                                            model.fill[e]) });
       muscles.push_back(index | (muscle.tension_length ? 0x40000000u : 0) | (muscle.passive ? 0x80000000u : 0));
     }
   fibres_ = DeviceArray<float4>(fibres);

@@ -40,6 +40,10 @@ std::string missing_gpu(const Model& model)
   for (const auto& material : model.materials)
     if (material.law != Law::neo_hookean)
       return "it has no law but neo-Hookean, and material " + material.name + " has another";
+    else if (material.viscous_share[0] > 0 || material.viscous_share[1] > 0)
+      return "it has no viscosity, and material " + material.name + " has it";
+  if (model.integration != Integration::one_point)
+    return "it has no selective reduced integration";
 #if defined(FRONTALIS_WITH_CUDA)
   return missing_cuda_device();
 #else

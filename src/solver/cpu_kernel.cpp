@@ -8,13 +8,10 @@
 namespace frontalis
 {
 
-float cpu_kernel_baseline(const CpuKernelArguments&, std::int32_t, std::int32_t, float*, KernelTask);
-void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
+CpuKernelChoice cpu_kernel_baseline(const char* name);
 #if defined(__x86_64__)
-float cpu_kernel_avx2(const CpuKernelArguments&, std::int32_t, std::int32_t, float*, KernelTask);
-float cpu_kernel_avx512(const CpuKernelArguments&, std::int32_t, std::int32_t, float*, KernelTask);
-void slide_kernel_avx2(const SlideArguments<float>&, std::int32_t, std::int32_t);
-void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_t);
+CpuKernelChoice cpu_kernel_avx2(const char* name);
+CpuKernelChoice cpu_kernel_avx512(const char* name);
 #endif
 
 CpuKernelChoice choose_cpu_kernel()
@@ -26,12 +23,12 @@ CpuKernelChoice choose_cpu_kernel()
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd");
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (avx512 && (wanted.empty() || wanted == "avx512"))
-    return { cpu_kernel_avx512, slide_kernel_avx512, "AVX-512" };
+    return cpu_kernel_avx512("AVX-512");
   if (avx2 && (wanted.empty() || wanted == "avx2"))
-    return { cpu_kernel_avx2, slide_kernel_avx2, "AVX2" };
+    return cpu_kernel_avx2("AVX2");
 #endif
   if (wanted.empty() || wanted == "baseline")
-    return { cpu_kernel_baseline, slide_kernel_baseline, "baseline" };
+    return cpu_kernel_baseline("baseline");
   throw Error("FRONTALIS_INSTRUCTION_SET is \"" + wanted +
               "\": this machine has none such; known are baseline, avx2, avx512");
 }

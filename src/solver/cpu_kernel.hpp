@@ -6,53 +6,69 @@
 namespace frontalis
 {
 
-/// One time step over planes of nodes, or the internal forces alone. Plain pointers only: the kernels are compiled once
-/// an instruction set, and nothing that they instantiate may be shared with other translation units.
+/// What fibres did last, a tile's lanes: for the energy ledger.
+struct FibreMemory
+{
+  float squared[Tile::width];  ///< stretch squared
+  float stress[Tile::width];   ///< fibre stress times weight [N m]
+};
+
+/// One time step over planes of nodes, or a part of it. Plain pointers only: the kernels are compiled once an
+/// instruction set, and nothing that they instantiate may be shared with other translation units. Real is the number
+/// type of the state; parameters are floats.
+template <class Real>
 struct CpuKernelArguments
 {
-  const float* u[3];          ///< displacements [m]; readable Tile::width floats past the end
-  float* next[3];             ///< displacements after the step [m]
-  float* v[3];                ///< velocities [m/s]
+  const Real* u[3];           ///< displacements [m]; readable Tile::width numbers past the end
+  Real* next[3];              ///< displacements after the step [m]
+  Real* v[3];                 ///< velocities [m/s]
+  Real* rounding[3];          ///< what the sums of displacements have lost [m]; null: not kept
   const float* inverse_mass;  ///< [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;
   std::int32_t planes;
-  // blocks of Tile::width a tile
-  const float* mu;                 ///< shear modulus times tissue volume [N m]
-  const float* kappa;              ///< bulk modulus times tissue volume [N m]
-  const float* hourglass;          ///< scalar stiffness [N/m]
-  const float* assumed_strain[4];  ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control alone
-  const float* frequency_squared;  ///< bound at rest [1/s2]
+  const TileStiffness* stiffness;
+  const TileStabilisation* stabilisation;  ///< null: scalar hourglass control alone
+  bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
   const FibreSlot* fibres;
   const LawSlot* laws;
+  const ViscousSlot* viscous;
+  float* relaxed;              ///< viscous_terms * 6 * Tile::width a ViscousSlot: relaxed stress times volume [N m]
+  std::int32_t viscous_terms;  ///< 0: none
+  Real viscous_elapsed;        ///< [s] since the relaxed stresses were renewed last
+  double* viscous_work;        ///< two a plane: sum of change of H : E, and of H : E; null: not wanted
   const float* activation;     ///< one a muscle
   const float* with_length;    ///< one a muscle: 1 or 0
   const float* with_passive;   ///< one a muscle: 1 or 0
-  float scale[3];              ///< 1 / (4 h)
-  float stretch_weight[3];     ///< 1/h^2 over the sum of the three
-  float hourglass_weight[3];   ///< 1 / (4 sqrt(3) h)
-  float dt, keep, gain;        ///< v = keep v - gain f / m + impulse
-  float impulse[3];            ///< gain times gravity
-  std::int32_t buffer_stride;  ///< floats a component of a plane buffer
+  FibreMemory* fibre_memory;   ///< one a FibreSlot; null: no ledger
+  double* muscle_work;         ///< one a plane [J]; null: fibre_memory is only renewed
+  Real scale[3];               ///< 1 / (4 h)
+  Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
+  Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
+  Real dt, keep, gain;         ///< v = keep v - gain f / m + impulse
+  Real impulse[3];             ///< gain times gravity
+  std::int32_t buffer_stride;  ///< numbers a component of a plane buffer
 };
 
-/// What a kernel is asked for besides forces.
 enum class KernelTask
 {
   step,           ///< updates v and next
   step_and_look,  ///< the same, and the largest frequency bound squared now
-  forces          ///< internal forces into next, nothing updated
+  forces,         ///< internal forces into next, nothing updated
+  relax           ///< viscous stresses relax, nothing else
 };
 
-/// Steps the nodes of planes [first, last); buffer has 6 * buffer_stride floats. Returns the largest frequency bound
+/// Steps the nodes of planes [first, last); buffer has 6 * buffer_stride numbers. Returns the largest frequency bound
 /// squared [1/s2] over the voxels passed (step_and_look), NaN where motion is not finite.
-using CpuKernel = float (*)(const CpuKernelArguments& arguments, std::int32_t first, std::int32_t last, float* buffer,
-                            KernelTask task);
+template <class Real>
+using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32_t first, std::int32_t last,
+                           Real* buffer, KernelTask task);
 
 struct CpuKernelChoice
 {
-  CpuKernel kernel;
+  CpuKernel<float> single;
+  CpuKernel<double> twice;
   SlideKernel<float> slide;
   const char* name;
 };

@@ -3,10 +3,12 @@
 namespace frontalis
 {
 
-float cpu_kernel_avx2(const CpuKernelArguments& arguments, std::int32_t first, std::int32_t last, float* buffer,
-                      KernelTask task)
+void slide_kernel_avx2(const SlideArguments<float>&, std::int32_t, std::int32_t);
+
+CpuKernelChoice cpu_kernel_avx2(const char* name)
 {
-  return CpuKernelBody<xsimd::fma3<xsimd::avx2>>::run(arguments, first, last, buffer, task);
+  return { CpuKernelBody<xsimd::fma3<xsimd::avx2>, float>::run, CpuKernelBody<xsimd::fma3<xsimd::avx2>, double>::run,
+           name };
 }
 
 }  // namespace frontalis

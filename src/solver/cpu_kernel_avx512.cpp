@@ -3,10 +3,11 @@
 namespace frontalis
 {
 
-float cpu_kernel_avx512(const CpuKernelArguments& arguments, std::int32_t first, std::int32_t last, float* buffer,
-                        KernelTask task)
+void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_t);
+
+CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
-  return CpuKernelBody<xsimd::avx512bw>::run(arguments, first, last, buffer, task);
+  return { CpuKernelBody<xsimd::avx512bw, float>::run, CpuKernelBody<xsimd::avx512bw, double>::run, slide_kernel_avx512, name };
 }
 
 }  // namespace frontalis

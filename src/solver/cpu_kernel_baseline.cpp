@@ -3,10 +3,11 @@
 namespace frontalis
 {
 
-float cpu_kernel_baseline(const CpuKernelArguments& arguments, std::int32_t first, std::int32_t last, float* buffer,
-                          KernelTask task)
+void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
+
+CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
-  return CpuKernelBody<xsimd::default_arch>::run(arguments, first, last, buffer, task);
+  return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run, slide_kernel_baseline, name };
 }
 
 }  // namespace frontalis

@@ -43,15 +43,14 @@ std::array<double, 11> parameters_in(const Model& model, std::size_t voxel, cons
 }
 
 // adds a material to the part of its law
-void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion,
-             std::vector<Discretisation::LawPart>& parts, std::size_t first)
+void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
   const auto parameters = parameters_in(model, voxel, material);
   // exponents and directions have no mean
   const bool averaged = material.law == Law::mooney_rivlin || material.law == Law::fung;
   const std::int32_t key = averaged ? -1 : index;
-  auto part = std::find_if(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.end(),
+  auto part = std::find_if(parts.begin(), parts.end(),
                            [&](const auto& p) { return p.law == material.law && p.material == key; });
   if (part == parts.end())
     part = parts.insert(parts.end(), { material.law, 0, {}, 0, key });
@@ -76,104 +75,158 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
   return false;
 }
 
-// gives voxels mass as the model's settings say; frequencies follow
-void scale_mass(const Model& model, Discretisation& d)
+// shear stiffness of a material at rest [Pa]
+double shear_at_rest(const Material& material)
 {
-  const MassScalingSettings& settings = model.mass_scaling;
-  std::vector<double> factor(model.voxels.size(), 1.0);
-  if (settings.kind == MassScalingSettings::Kind::uniform)
-    std::fill(factor.begin(), factor.end(), settings.factor);
-  else if (settings.kind == MassScalingSettings::Kind::selective)
+  return material.law == Law::neo_hookean ? material.parameters[0]
+                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
+}
+
+void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
+{
+  double stiffness = 0;
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
   {
-    double allowed = 0;
-    std::vector<bool> chosen(model.voxels.size());
-    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    const Material& material = model.materials[model.mixture_material[m]];
+    const double part = model.mixture_proportion[m] * shear_at_rest(material);
+    stiffness += part;
+    for (std::size_t term = 0; term < 2; ++term)
+      if (material.viscous_share[term] > 0)
+      {
+        out.viscous_share[term] += part * material.viscous_share[term];
+        out.viscous_rate[term] += part * material.viscous_share[term] / material.viscous_time[term];
+      }
+  }
+  for (std::size_t term = 0; term < 2; ++term)
+    if (out.viscous_share[term] > 0)
     {
-      chosen[e] = contains_any(model, e, settings.materials);
-      if (!chosen[e])
-        allowed = std::max(allowed, d.frequency_squared[e]);
+      out.viscous_rate[term] /= out.viscous_share[term];
+      out.viscous_share[term] /= stiffness;
     }
-    if (allowed > 0)
-      for (std::size_t e = 0; e < model.voxels.size(); ++e)
-        if (chosen[e] && d.frequency_squared[e] > allowed)
-          factor[e] = d.frequency_squared[e] / allowed;
-  }
-  double before = 0, after = 0;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    before += d.density[e] * d.tissue_volume[e];
-    d.density[e] *= factor[e];
-    d.frequency_squared[e] /= factor[e];
-    after += d.density[e] * d.tissue_volume[e];
-    if (factor[e] != 1)
-      d.scaled.push_back(static_cast<std::int32_t>(e));
-  }
-  d.mass_added = after / before - 1;
 }
 
 }  // namespace
 
-physics::AssumedStrain<double> stabilisation(const Discretisation& discretisation, std::size_t voxel)
-{
-  const auto& parts = discretisation.assumed_strain;
-  return { parts[0][voxel], parts[1][voxel], parts[2][voxel], parts[3][voxel] };
-}
-
 Discretisation::Discretisation(const Model& model)
+    : assumed_strain(model.hourglass == HourglassControl::assumed_strain),
+      selective_reduced(model.integration == Integration::selective_reduced),
+      model_(&model)
 {
   const auto& h = model.spacing;
-  const double longest = std::max({ h[0], h[1], h[2] });
-  const std::size_t count = model.voxels.size();
   volume = h[0] * h[1] * h[2];
   for (int axis = 0; axis < 3; ++axis)
     hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
-  for (auto* array : { &mu, &kappa, &tissue_volume, &hourglass, &density, &frequency_squared })
-    array->assign(count, 0);
-  law_begin.assign(1, 0);
-  for (std::size_t e = 0; e < count; ++e)
-  {
-    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-    {
-      const Material& material = model.materials[model.mixture_material[m]];
-      const double proportion = model.mixture_proportion[m];
-      if (material.law == Law::neo_hookean)
-        mu[e] += proportion * material.parameters[0];
-      else if (proportion > 0)
-        add_law(model, e, model.mixture_material[m], proportion, laws, static_cast<std::size_t>(law_begin[e]));
-      kappa[e] += proportion * material.parameters[1];
-      density[e] += proportion * material.density;
-    }
-    law_begin.push_back(static_cast<std::int32_t>(laws.size()));
-    double shear = mu[e];
-    for (auto l = law_begin[e]; l < law_begin[e + 1]; ++l)
-    {
-      laws[l].stiffness_at_rest = law_stiffness(laws[l].law, laws[l].parameters.data(), at_rest());
-      shear += laws[l].weight * laws[l].stiffness_at_rest;
-    }
-    if (!(shear > 0 && kappa[e] > 0 && density[e] > 0 && model.fill[e] > 0))
-      throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
-    tissue_volume[e] = volume * model.fill[e];
-    hourglass[e] = physics::hourglass_stiffness(physics::young_modulus(shear, kappa[e]), tissue_volume[e], longest);
-    if (model.hourglass == HourglassControl::assumed_strain)
-    {
-      const auto k = physics::assumed_strain(shear, kappa[e], tissue_volume[e]);
-      const double parts[4] = { k.bending, k.coupling, k.torsion, k.warping };
-      for (int part = 0; part < 4; ++part)
-        assumed_strain[part].push_back(parts[part]);
-      hourglass[e] *= physics::assumed_strain_floor;
-    }
-    frequency_squared[e] =
-        physics::frequency_squared_bound(shear, kappa[e], fibre_stiffness(model, e), density[e], h[0], h[1], h[2]);
-  }
-  scale_mass(model, *this);
+  assumed_strain = assumed_strain && !selective_reduced;
+  for (const Material& material : model.materials)
+    for (int term = 0; term < 2; ++term)
+      if (material.viscous_share[term] > 0)
+      {
+        viscous_terms = std::max(viscous_terms, term + 1);
+        const double time = material.viscous_time[term];
+        viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
+      }
+  choose_mass_factors();
 
   node_mass.assign(model.nodes.size(), 0);
+  std::vector<double> weight(mass_factor_.empty() ? 0 : model.nodes.size(), 0.0);
+  double unscaled = 0, scaled = 0;
+  VoxelProperties v;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    voxel(e, v);
+    laws = laws || !v.laws.empty();
+    frequency_squared_max = std::max(frequency_squared_max, v.frequency_squared);
+    const double mass = v.density * v.tissue_volume;
+    const double own = mass_factor_.empty() ? mass : mass / double(mass_factor_[e]);
+    unscaled += own;
+    scaled += mass;
+    for (const auto node : model.voxel_nodes[e])
+    {
+      node_mass[node] += mass / 8;
+      if (!weight.empty())
+        weight[node] += own / 8;
+    }
+  }
+  mass_added = unscaled > 0 ? scaled / unscaled - 1 : 0;
+  for (std::size_t n = 0; n < weight.size(); ++n)
+    weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
+}
+
+void Discretisation::mix(std::size_t e, VoxelProperties& out) const
+{
+  const Model& model = *model_;
+  const auto& h = model.spacing;
+  out.mu = out.kappa = out.density = 0;
+  out.viscous_share = out.viscous_rate = {};
+  out.laws.clear();
+  for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+  {
+    const Material& material = model.materials[model.mixture_material[m]];
+    const double proportion = model.mixture_proportion[m];
+    if (material.law == Law::neo_hookean)
+      out.mu += proportion * material.parameters[0];
+    else if (proportion > 0)
+      add_law(model, e, model.mixture_material[m], proportion, out.laws);
+    out.kappa += proportion * material.parameters[1];
+    out.density += proportion * material.density;
+  }
+  double shear = out.mu;
+  for (auto& part : out.laws)
+  {
+    part.stiffness_at_rest = law_stiffness(part.law, part.parameters.data(), at_rest());
+    shear += part.weight * part.stiffness_at_rest;
+  }
+  if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
+    throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
+  out.tissue_volume = volume * model.fill[e];
+  out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
+                                               std::max({ h[0], h[1], h[2] }));
+  if (assumed_strain)
+  {
+    out.stabilisation = physics::assumed_strain(shear, out.kappa, out.tissue_volume);
+    out.hourglass *= physics::assumed_strain_floor;
+  }
+  else if (selective_reduced)
+    out.hourglass = 0;
+  out.frequency_squared =
+      physics::frequency_squared_bound(shear, out.kappa, fibre_stiffness(model, e), out.density, h[0], h[1], h[2]);
+  if (viscous_terms > 0)
+    mix_viscosity(model, e, out);
+}
+
+void Discretisation::voxel(std::size_t e, VoxelProperties& out) const
+{
+  mix(e, out);
+  if (mass_factor_.empty())
+    return;
+  out.density *= double(mass_factor_[e]);
+  out.frequency_squared /= double(mass_factor_[e]);
+}
+
+// how much more mass each voxel gets, as the model's settings say
+void Discretisation::choose_mass_factors()
+{
+  const MassScalingSettings& settings = model_->mass_scaling;
+  const std::size_t count = model_->voxels.size();
+  if (settings.kind == MassScalingSettings::Kind::uniform && settings.factor != 1)
+    mass_factor_.assign(count, static_cast<float>(settings.factor));
+  if (settings.kind != MassScalingSettings::Kind::selective)
+    return;
+  double allowed = 0;
+  std::vector<double> chosen(count, 0);
+  VoxelProperties v;
   for (std::size_t e = 0; e < count; ++e)
   {
-    frequency_squared_max = std::max(frequency_squared_max, frequency_squared[e]);
-    for (const auto node : model.voxel_nodes[e])
-      node_mass[node] += density[e] * tissue_volume[e] / 8;
+    mix(e, v);
+    if (contains_any(*model_, e, settings.materials))
+      chosen[e] = v.frequency_squared;
+    else
+      allowed = std::max(allowed, v.frequency_squared);
   }
+  if (allowed == 0 || *std::max_element(chosen.begin(), chosen.end()) <= allowed)
+    return;
+  for (const double squared : chosen)
+    mass_factor_.push_back(static_cast<float>(std::max(squared / allowed, 1.0)));
 }
 
 }  // namespace frontalis

@@ -9,44 +9,61 @@
 namespace frontalis
 {
 
-/// What every backend needs of a model, in double: mixed materials, masses, the time step at rest.
-struct Discretisation
+/// Share of a voxel that has another law than neo-Hookean: one a material, but materials of laws whose parameters are
+/// moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
+struct LawPart
 {
-  explicit Discretisation(const Model& model);
-
-  double volume = 0;  ///< of a whole voxel [m3]
-
-  /// Share of a voxel that has another law than neo-Hookean: one a material, but materials of laws whose parameters are
-  /// moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
-  struct LawPart
-  {
-    Law law;
-    double weight;  ///< proportion of the voxel's tissue
-    std::array<double, 11> parameters;
-    double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-    std::int32_t material;     ///< -1: averaged
-  };
-  std::vector<std::int32_t> law_begin;  ///< parts of voxel e: law_begin[e] .. law_begin[e + 1]
-  std::vector<LawPart> laws;
-
-  // one a voxel
-  std::vector<double> mu;             ///< neo-Hookean shear modulus, mixed by proportion [Pa]
-  std::vector<double> kappa;          ///< mixed by proportion [Pa]
-  std::vector<double> tissue_volume;  ///< volume times fill [m3]
-  std::vector<double> hourglass;      ///< scalar stiffness on the hourglass modes [N/m]
-  /// Assumed strain [N m]: bending, coupling, torsion, warping; empty with scalar hourglass control.
-  std::array<std::vector<double>, 4> assumed_strain;
-  std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
-  std::vector<double> density;               ///< mixed, after mass scaling [kg/m3]
-  std::vector<double> frequency_squared;     ///< bound at rest with every muscle at full activation [1/s2]
-
-  std::vector<double> node_mass;     ///< lumped [kg]
-  double frequency_squared_max = 0;  ///< [1/s2]
-  double mass_added = 0;             ///< by mass scaling, proportion of the unscaled mass
-  std::vector<std::int32_t> scaled;  ///< voxels that mass scaling changed
+  Law law;
+  double weight;  ///< proportion of the voxel's tissue
+  std::array<double, 11> parameters;
+  double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
+  std::int32_t material;     ///< -1: averaged
 };
 
-/// The assumed-strain stiffnesses of a voxel; only where the model asks for them.
-physics::AssumedStrain<double> stabilisation(const Discretisation& discretisation, std::size_t voxel);
+/// One voxel as the backends need it, mixed from its materials.
+struct VoxelProperties
+{
+  double mu = 0;                                   ///< neo-Hookean shear modulus, mixed by proportion [Pa]
+  double kappa = 0;                                ///< mixed by proportion [Pa]
+  double tissue_volume = 0;                        ///< volume times fill [m3]
+  double density = 0;                              ///< mixed, after mass scaling [kg/m3]
+  double hourglass = 0;                            ///< scalar stiffness on the hourglass modes [N/m]
+  physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
+  double frequency_squared = 0;                    ///< bound at rest with every muscle at full activation [1/s2]
+  std::vector<LawPart> laws;
+  /// Prony terms: shares are averaged by stiffness, rates [1/s] by relaxing stiffness.
+  std::array<double, 2> viscous_share{};
+  std::array<double, 2> viscous_rate{};
+};
+
+/// What every backend needs of a model, in double. Voxels are mixed when asked for, so that what a backend keeps is its
+/// own.
+class Discretisation
+{
+public:
+  /// The model must outlive it. Throws Error on a voxel without stiffness or mass.
+  explicit Discretisation(const Model& model);
+
+  void voxel(std::size_t index, VoxelProperties& out) const;
+
+  double volume = 0;                         ///< of a whole voxel [m3]
+  bool assumed_strain = false;               ///< hourglass control by assumed strain
+  bool selective_reduced = false;            ///< no hourglass control
+  bool laws = false;                         ///< a voxel has a law beyond neo-Hookean
+  int viscous_terms = 0;                     ///< 0..2
+  double viscous_time_min = 0;               ///< [s]
+  std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
+  std::vector<double> node_mass;             ///< lumped [kg]
+  std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
+  double frequency_squared_max = 0;          ///< [1/s2]
+  double mass_added = 0;                     ///< by mass scaling, proportion of the unscaled mass
+
+private:
+  void mix(std::size_t index, VoxelProperties& out) const;
+  void choose_mass_factors();
+
+  const Model* model_;
+  std::vector<float> mass_factor_;  // one a voxel; empty without mass scaling
+};
 
 }  // namespace frontalis

@@ -37,8 +37,14 @@ void vertex_forces(const Load& load, double ramp, const std::vector<std::array<d
 
 }  // namespace
 
-NodalLoads::NodalLoads(const Model& model) : model_(model)
+NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation) : model_(model)
 {
+  const auto& g = model.gravity;
+  const bool heavy = model.mass_scaling.kind == MassScalingSettings::Kind::selective &&
+                     !discretisation.weight_share.empty() && (g[0] != 0 || g[1] != 0 || g[2] != 0);
+  for (std::size_t n = 0; heavy && n < model.nodes.size(); ++n)
+    if (discretisation.weight_share[n] < 1)
+      nodes_.push_back(static_cast<std::int32_t>(n));
   for (const auto& load : model.loads)
   {
     if (load.kind == Load::Kind::displacement)
@@ -48,7 +54,14 @@ NodalLoads::NodalLoads(const Model& model) : model_(model)
   }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-  forces_.assign(nodes_.size(), { { 0, 0, 0 } });
+  surface_forces_.assign(nodes_.size(), { { 0, 0, 0 } });
+  forces_ = surface_forces_;
+  for (const auto n : nodes_)
+    if (heavy)
+    {
+      const double excess = discretisation.node_mass[n] * (double(discretisation.weight_share[n]) - 1);
+      relief_.push_back({ { excess * g[0], excess * g[1], excess * g[2] } });
+    }
   for (const auto& load : model.loads)
   {
     if (load.kind == Load::Kind::displacement)
@@ -80,7 +93,7 @@ NodalLoads::NodalLoads(const Model& model) : model_(model)
 template <class Real>
 void NodalLoads::update(double time, const Real* const u[3])
 {
-  std::fill(forces_.begin(), forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
+  std::fill(surface_forces_.begin(), surface_forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
   for (auto& surface : surfaces_)
   {
     const Load& load = *surface.load;
@@ -95,9 +108,13 @@ void NodalLoads::update(double time, const Real* const u[3])
     for (std::size_t rank = 0; rank < nodes_.size(); ++rank)
       for (auto c = surface.begin[rank]; c < surface.begin[rank + 1]; ++c)
         for (int axis = 0; axis < 3; ++axis)
-          forces_[rank][axis] +=
+          surface_forces_[rank][axis] +=
               double(surface.contributions[c].weight) * surface.vertex_force[surface.contributions[c].vertex][axis];
   }
+  forces_ = surface_forces_;
+  for (std::size_t rank = 0; rank < relief_.size(); ++rank)
+    for (int axis = 0; axis < 3; ++axis)
+      forces_[rank][axis] += relief_[rank][axis];
 }
 
 template void NodalLoads::update(double, const float* const[3]);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "discretisation.hpp"
 
 #include <array>
 #include <vector>
@@ -9,15 +9,19 @@ namespace frontalis
 {
 
 /// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding. Forces are added
-/// in a fixed order.
+/// in a fixed order. Where selective mass scaling has made nodes heavier under gravity, the weight that is too much is
+/// taken off them again.
 class NodalLoads
 {
 public:
-  explicit NodalLoads(const Model& model);
+  NodalLoads(const Model& model, const Discretisation& discretisation);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
   const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one a loaded node
+
+  /// The same without what mass scaling takes off.
+  const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
   /// Forces at a time, from the present nodal displacements.
   template <class Real>
@@ -40,7 +44,8 @@ private:
 
   const Model& model_;
   std::vector<std::int32_t> nodes_;
-  std::vector<std::array<double, 3>> forces_;
+  std::vector<std::array<double, 3>> surface_forces_, forces_;
+  std::vector<std::array<double, 3>> relief_;  // one a loaded node; empty where nothing is too heavy
   std::vector<Surface> surfaces_;
 };
 

@@ -44,5 +44,26 @@ struct Number<xsimd::batch<float, Architecture>>
   }
 };
 
+/// The same in double.
+template <class Architecture>
+struct Number<xsimd::batch<double, Architecture>>
+{
+  using Batch = xsimd::batch<double, Architecture>;
+  using Bool = typename Batch::batch_bool_type;
+
+  static FRONTALIS_LAW Batch of(double value) { return Batch(value); }
+  static FRONTALIS_LAW Batch select(const Bool& condition, const Batch& yes, const Batch& no)
+  {
+    return xsimd::select(condition, yes, no);
+  }
+  static FRONTALIS_LAW Batch max(const Batch& a, const Batch& b) { return xsimd::max(a, b); }
+  static FRONTALIS_LAW Batch min(const Batch& a, const Batch& b) { return xsimd::min(a, b); }
+  static FRONTALIS_LAW Batch sqrt(const Batch& a) { return xsimd::sqrt(a); }
+  static FRONTALIS_LAW Batch exp(const Batch& a) { return xsimd::exp(a); }
+  static FRONTALIS_LAW Batch log(const Batch& a) { return xsimd::log(a); }
+  static constexpr bool is_double = true;
+  static FRONTALIS_LAW Batch inverse_cube_root(const Batch& a) { return of(1) / xsimd::cbrt(a); }
+};
+
 }  // namespace physics
 }  // namespace frontalis

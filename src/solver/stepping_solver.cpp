@@ -55,10 +55,17 @@ Drive StepPlan::drive(int step) const
 SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
     : model_((check_model(*model), std::move(model))),
       discretisation_(*model_),
+      wants_ledger_(settings.ledger),
+      damping_(model_->damping),
+      gravity_(model_->gravity),
       forced_time_step_(settings.time_step),
       frequency_squared_(discretisation_.frequency_squared_max),
-      controls_(rest_controls(*model_))
+      controls_(rest_controls(*model_)),
+      activation_(controls_.activation)
 {
+  if (model_->mass_scaling.kind == MassScalingSettings::Kind::uniform)
+    for (double& component : gravity_)
+      component /= model_->mass_scaling.factor;
   const double critical = 2 / std::sqrt(frequency_squared_);
   if (forced_time_step_ > critical || forced_time_step_ < 0)
   {
@@ -69,23 +76,31 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
   }
 }
 
+double SteppingSolver::critical_frequency_squared() const { return frequency_squared_ * assembled_share_; }
+
 double SteppingSolver::safe_time_step() const
 {
-  const double safe = model_->time_step_share * 2 / std::sqrt(frequency_squared_);
-  return forced_time_step_ > 0 ? std::min(forced_time_step_, 2 / std::sqrt(frequency_squared_)) : safe;
+  const double critical = 2 / std::sqrt(critical_frequency_squared());
+  return forced_time_step_ > 0 ? std::min(forced_time_step_, critical) : model_->time_step_share * critical;
 }
 
-double SteppingSolver::keep(double dt) const
+double SteppingSolver::keep(double dt) const { return (1 - 0.5 * damping_ * dt) / (1 + 0.5 * damping_ * dt); }
+
+double SteppingSolver::gain(double dt) const { return dt / (1 + 0.5 * damping_ * dt); }
+
+void SteppingSolver::velocities_were_set()
 {
-  return (1 - 0.5 * model_->damping * dt) / (1 + 0.5 * model_->damping * dt);
+  if (wants_ledger_ && !settling_)
+    open_ledger();
 }
 
-double SteppingSolver::gain(double dt) const { return dt / (1 + 0.5 * model_->damping * dt); }
-
-void SteppingSolver::renew_time_step()
+void SteppingSolver::displacements_were_set()
 {
   const double critical = monitor().critical_time_step;
   frequency_squared_ = std::max(4 / (critical * critical), discretisation_.frequency_squared_max);
+  assembled_share_ = 1;
+  assembled_at_frequency_ = 0;
+  velocities_were_set();
 }
 
 void SteppingSolver::reset()
@@ -94,8 +109,12 @@ void SteppingSolver::reset()
   time_ = 0;
   failed_ = false;
   frequency_squared_ = discretisation_.frequency_squared_max;
+  assembled_share_ = 1;
+  assembled_at_frequency_ = 0;
   controls_ = rest_controls(*model_);
+  activation_ = controls_.activation;
   profile_ = {};
+  velocities_were_set();
 }
 
 void SteppingSolver::check(double seconds, const Controls& target) const
@@ -117,6 +136,37 @@ void SteppingSolver::check(double seconds, const Controls& target) const
     throw Error("the motion has diverged earlier: reset the solver first");
 }
 
+Controls SteppingSolver::between(const Controls& from, const Controls& target, double fraction) const
+{
+  Controls result = target;
+  for (std::size_t m = 0; m < result.activation.size(); ++m)
+    result.activation[m] =
+        from.activation[m] + static_cast<float>(fraction) * (target.activation[m] - from.activation[m]);
+  for (std::size_t b = 0; b < result.bone.size(); ++b)
+    result.bone[b] = interpolate(from.bone[b], target.bone[b], fraction);
+  return result;
+}
+
+// first-order response of the muscles to activations asked for that go linearly from one to another:
+// da/dt = (e - a) / time, with the rise or the fall time (as in Zajac 1989, Crit. Rev. Biomed. Eng. 17:359)
+void SteppingSolver::respond(const std::vector<float>& from, const std::vector<float>& to, double seconds)
+{
+  for (std::size_t m = 0; m < activation_.size(); ++m)
+  {
+    const Muscle& muscle = model_->muscles[m];
+    const double now = double(activation_[m]);
+    const double time = double(to[m]) > now ? muscle.rise_time : muscle.fall_time;
+    if (time <= 0)
+    {
+      activation_[m] = to[m];
+      continue;
+    }
+    const double lag = (double(to[m]) - double(from[m])) * time / seconds;
+    const double reached = double(to[m]) - lag + (now - double(from[m]) + lag) * std::exp(-seconds / time);
+    activation_[m] = static_cast<float>(std::min(std::max(reached, 0.0), 1.0));
+  }
+}
+
 void SteppingSolver::advance(double seconds, const Controls& target)
 {
   check(seconds, target);
@@ -124,18 +174,10 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   const double end = time_ + seconds;
   const Controls from = controls_;
   const double begin = time_;
-  const auto at = [&](double fraction)
-  {
-    Controls between = target;
-    for (std::size_t m = 0; m < between.activation.size(); ++m)
-      between.activation[m] =
-          from.activation[m] + static_cast<float>(fraction) * (target.activation[m] - from.activation[m]);
-    for (std::size_t b = 0; b < between.bone.size(); ++b)
-      between.bone[b] = interpolate(from.bone[b], target.bone[b], fraction);
-    return between;
-  };
   while (time_ < end)
   {
+    if (model_->time_step_estimate == TimeStepEstimate::assembled)
+      renew_assembled_bound();
     const double remaining = end - time_;
     const double steps_left = std::ceil(remaining / safe_time_step() * (1 - 1e-9));
     StepPlan plan;
@@ -144,11 +186,14 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     plan.time = time_;
     const bool last = steps_left <= steps_a_plan();
     const double reached = last ? end : time_ + plan.steps * plan.dt;
-    plan.begin = controls_;
-    plan.end = last ? target : at((reached - begin) / seconds);
+    const Controls next = last ? target : between(from, target, (reached - begin) / seconds);
+    plan.begin = { activation_, controls_.bone };
+    respond(controls_.activation, next.activation, plan.steps * plan.dt);
+    plan.end = { activation_, next.bone };
     const double squared = run(plan);
     time_ = reached;
-    controls_ = plan.end;
+    latest_step_ = plan.dt;
+    controls_ = next;
     profile_.steps += plan.steps;
     if (!std::isfinite(squared))
     {
@@ -164,7 +209,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
 Monitor SteppingSolver::monitor()
 {
   const auto start = std::chrono::steady_clock::now();
-  std::vector<std::array<double, 3>> u, v;
+  Vectors u, v;
   displacements(u);
   velocities(v);
   Monitor result = monitor_voxels(*model_, discretisation_, u, v);

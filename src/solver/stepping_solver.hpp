@@ -1,6 +1,7 @@
 #pragma once
 
 #include "discretisation.hpp"
+#include "energy_account.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "restricted_nodes.hpp"
 
@@ -14,26 +15,31 @@ struct StepPlan
 {
   int steps = 0;
   double dt = 0;
-  double time = 0;  ///< at its begin
-  Controls begin, end;
+  double time = 0;      ///< at its begin
+  Controls begin, end;  ///< activations are those of the muscles, not those asked for
 
   double fraction(int step) const { return (step + 1.0) / steps; }
   void activation(int step, float* out) const;
   Drive drive(int step) const;
 };
 
-/// What the backends on the host share: time, controls, the choice of the time step, the monitor.
+/// What the backends on the host share: time, controls, the choice of the time step, equilibrium, energies.
 class SteppingSolver : public Solver
 {
 public:
+  using Vectors = std::vector<std::array<double, 3>>;
+
   SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
 
   void reset() override;
   void advance(double seconds, const Controls& target) override;
+  Equilibrium settle(const Controls& target, double tolerance, double seconds) override;
   double time() const override { return time_; }
   double time_step() const override { return safe_time_step(); }
   const Controls& controls() const override { return controls_; }
+  const std::vector<float>& activation() const override { return activation_; }
   Monitor monitor() override;
+  EnergyLedger ledger() override;
   Profile profile() const override { return profile_; }
 
 protected:
@@ -42,28 +48,57 @@ protected:
   /// Most steps between two looks at how far the voxels have stiffened.
   virtual int steps_a_plan() const { return 32; }
   virtual void rest() = 0;  ///< displacements and velocities to zero
-  virtual void velocities(std::vector<std::array<double, 3>>& out) const = 0;
+  virtual void velocities(Vectors& out) const = 0;
+  /// Internal forces [N] at displacements that are not the state's.
+  virtual void forces_at(const Vectors& displacements, Vectors& out);
+  /// Loads and, where mass scaling is not uniform, what gravity is less on scaled nodes [N], at the present state.
+  virtual void external_forces(Vectors& out);
+  /// Opens an account of work, and what is in it; only called where the ledger is wanted.
+  virtual void open_account();
+  virtual Work work();
 
-  /// Chooses the time step anew after displacements were set from outside.
-  void renew_time_step();
+  /// To be called after displacements were set from outside: time step and ledger begin anew.
+  void displacements_were_set();
+  /// The same for velocities.
+  void velocities_were_set();
 
   /// Damped central difference: v = keep * v + gain * force / mass.
   double keep(double dt) const;
   double gain(double dt) const;
+  /// Most simulated seconds between two renewals of the viscous stresses.
+  double viscous_interval() const { return 0.005 * discretisation_.viscous_time_min; }
 
   std::shared_ptr<const Model> model_;
   Discretisation discretisation_;
   Profile profile_;
+  bool wants_ledger_ = false;
+  double damping_ = 0;     ///< mass-proportional [1/s]
+  bool settling_ = false;  ///< viscous stresses are fully relaxed
+  /// Gravity [m/s2] on the masses as they are scaled: uniform mass scaling changes no weight.
+  std::array<double, 3> gravity_{};
 
 private:
   void check(double seconds, const Controls& target) const;
   double safe_time_step() const;
+  double critical_frequency_squared() const;
+  void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
+  void renew_assembled_bound();
+  void open_ledger();
+  Controls between(const Controls& from, const Controls& target, double fraction) const;
 
   double forced_time_step_ = 0;
   double time_ = 0;
-  double frequency_squared_ = 0;
+  double latest_step_ = 0;        // [s]
+  double frequency_squared_ = 0;  // of the stiffest voxel
+  double assembled_share_ = 1;    // of the assembled model over it
+  std::int64_t assembled_at_step_ = 0;
+  double assembled_at_frequency_ = 0;
+  Vectors assembled_mode_;
   bool failed_ = false;
   Controls controls_;
+  std::vector<float> activation_;
+  EnergyLedger ledger_;
+  double initial_ = 0;
 };
 
 /// Controls at rest: no activation, bones in place.

@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/selective_reduced.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "material_laws.hpp"
 
@@ -10,6 +11,48 @@
 
 namespace frontalis
 {
+namespace
+{
+
+using Kinematics = physics::Kinematics<double>;
+
+// elastic energy a volume, the volumetric part by kappa
+double elastic_energy(const VoxelProperties& voxel, double kappa, const Kinematics& k)
+{
+  double sum = physics::energy(physics::NeoHookean<double>{ voxel.mu, kappa }, k);
+  for (const auto& part : voxel.laws)
+    visit_law(part.law, part.parameters.data(),
+              [&](const auto& material, const auto&... families)
+              { sum += part.weight * physics::energy(material, k, families...); });
+  return sum;
+}
+
+double hourglass_energy(const Discretisation& d, const VoxelProperties& voxel, const Kinematics& k,
+                        const double (&mode)[3][8])
+{
+  if (d.assumed_strain)
+    return physics::hourglass_energy(voxel.stabilisation, voxel.hourglass, d.hourglass_weight.data(), k.F, mode);
+  double sum = 0;
+  for (const auto& component : mode)
+    for (int m = 0; m < 8; ++m)
+      if (physics::is_hourglass_mode(m))
+        sum += 0.5 * voxel.hourglass * component[m] * component[m];
+  return sum;
+}
+
+}  // namespace
+
+double frequency_squared_now(const VoxelProperties& voxel, const Kinematics& k, const double* weight, double shortest)
+{
+  const double growth = physics::stiffening(physics::NeoHookean<double>{ voxel.mu, voxel.kappa }, k, weight);
+  double squared = voxel.frequency_squared * std::max(growth, 1.0) + (growth - growth);
+  for (const auto& part : voxel.laws)
+  {
+    const double more = law_stiffness(part.law, part.parameters.data(), k) - part.stiffness_at_rest;
+    squared += 8 * part.weight / (voxel.density * shortest * shortest) * std::max(more, 0.0);
+  }
+  return squared;
+}
 
 Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::vector<std::array<double, 3>>& u,
                        const std::vector<std::array<double, 3>>& v)
@@ -26,8 +69,10 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
   double frequency_squared = 0;
   for (std::size_t n = 0; n < v.size(); ++n)
     result.kinetic += 0.5 * d.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
+  VoxelProperties voxel;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
+    d.voxel(e, voxel);
     double mode[3][8];
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -36,33 +81,31 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
       physics::walsh_hadamard(mode[axis]);
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
-    if (!d.assumed_strain[0].empty())
-      result.hourglass +=
-          physics::hourglass_energy(stabilisation(d, e), d.hourglass[e], d.hourglass_weight.data(), k.F, mode);
-    else
-      for (const auto& component : mode)
-        for (int m = 0; m < 8; ++m)
-          if (physics::is_hourglass_mode(m))
-            result.hourglass += 0.5 * d.hourglass[e] * component[m] * component[m];
-    result.internal += d.tissue_volume[e] * physics::energy(physics::NeoHookean<double>{ d.mu[e], d.kappa[e] }, k);
-    for (auto l = d.law_begin[e]; l < d.law_begin[e + 1]; ++l)
-      visit_law(d.laws[l].law, d.laws[l].parameters.data(),
-                [&](const auto& material, const auto&... families) {
-                  result.internal += d.tissue_volume[e] * d.laws[l].weight * physics::energy(material, k, families...);
-                });
-    if (!(k.J >= result.worst_jacobian))
+    double worst = k.J;
+    if (d.selective_reduced)
     {
-      result.worst_jacobian = k.J;
+      result.internal += voxel.tissue_volume * 0.5 * voxel.kappa * (k.J - 1) * (k.J - 1);
+      for (int point = 0; point < 8; ++point)
+      {
+        double moved[3][8];
+        physics::at_gauss_point(point, mode, moved);
+        const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
+        result.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
+        frequency_squared = std::max(frequency_squared, frequency_squared_now(voxel, at_point, weight, shortest));
+        worst = std::min(worst, at_point.J);
+      }
+    }
+    else
+    {
+      result.internal += voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
+      result.hourglass += hourglass_energy(d, voxel, k, mode);
+      frequency_squared = std::max(frequency_squared, frequency_squared_now(voxel, k, weight, shortest));
+    }
+    if (!(worst >= result.worst_jacobian))
+    {
+      result.worst_jacobian = worst;
       result.worst_voxel = static_cast<std::int32_t>(e);
     }
-    const double growth = physics::stiffening(physics::NeoHookean<double>{ d.mu[e], d.kappa[e] }, k, weight);
-    double squared = d.frequency_squared[e] * std::max(growth, 1.0);
-    for (auto l = d.law_begin[e]; l < d.law_begin[e + 1]; ++l)
-    {
-      const double more = law_stiffness(d.laws[l].law, d.laws[l].parameters.data(), k) - d.laws[l].stiffness_at_rest;
-      squared += 8 * d.laws[l].weight / (d.density[e] * shortest * shortest) * std::max(more, 0.0);
-    }
-    frequency_squared = std::max(frequency_squared, squared);
   }
   result.critical_time_step = 2 / std::sqrt(frequency_squared);
   result.finite = std::isfinite(result.kinetic) && std::isfinite(result.internal) && std::isfinite(result.hourglass);

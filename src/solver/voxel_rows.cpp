@@ -7,8 +7,10 @@ namespace frontalis
 namespace
 {
 
+using TileVoxels = std::array<VoxelProperties, Tile::width>;
+
 // the fibres of a tile, one slot a muscle, muscles ascending
-void add_fibres(const Model& model, const std::vector<double>& tissue_volume, Tile& tile, std::vector<FibreSlot>& slots)
+void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots)
 {
   tile.fibre_begin = static_cast<std::int32_t>(slots.size());
   for (std::int16_t m = 0; m < static_cast<std::int16_t>(model.muscles.size()); ++m)
@@ -24,8 +26,8 @@ void add_fibres(const Model& model, const std::vector<double>& tissue_volume, Ti
       for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
         if (model.fibre_muscle[f] == m)
         {
-          slot.weight[lane] =
-              static_cast<float>(model.fibre_weight[f] * tissue_volume[e] * model.muscles[m].stress_reference);
+          slot.weight[lane] = static_cast<float>(model.fibre_weight[f] * voxels[lane].tissue_volume *
+                                                 model.muscles[m].stress_reference);
           slot.x[lane] = model.fibre_direction[f][0];
           slot.y[lane] = model.fibre_direction[f][1];
           slot.z[lane] = model.fibre_direction[f][2];
@@ -39,16 +41,13 @@ void add_fibres(const Model& model, const std::vector<double>& tissue_volume, Ti
 }
 
 // the laws of a tile beyond neo-Hookean, one slot a law; unused lanes keep valid parameters and weight 0
-void add_laws(const Model& model, const Discretisation& d, Tile& tile, std::vector<LawSlot>& slots)
+void add_laws(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
 {
   const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
   tile.law_begin = static_cast<std::int32_t>(slots.size());
   for (int lane = 0; lane < Tile::width; ++lane)
-  {
-    const auto e = tile.voxel(lane);
-    for (auto l = e < 0 ? 0 : d.law_begin[e]; e >= 0 && l < d.law_begin[e + 1]; ++l)
+    for (const auto& part : voxels[lane].laws)
     {
-      const auto& part = d.laws[l];
       auto slot = std::find_if(slots.begin() + tile.law_begin, slots.end(),
                                [&](const LawSlot& s) { return s.law == part.law && s.material == part.material; });
       if (slot == slots.end())
@@ -60,14 +59,84 @@ void add_laws(const Model& model, const Discretisation& d, Tile& tile, std::vect
           std::fill(empty.parameters[p], empty.parameters[p] + Tile::width, static_cast<float>(part.parameters[p]));
         slot = slots.insert(slots.end(), empty);
       }
-      slot->weight[lane] = static_cast<float>(part.weight * d.tissue_volume[e]);
-      slot->inertia[lane] = static_cast<float>(8 * part.weight / (d.density[e] * shortest * shortest));
+      slot->weight[lane] = static_cast<float>(part.weight * voxels[lane].tissue_volume);
+      slot->inertia[lane] = static_cast<float>(8 * part.weight / (voxels[lane].density * shortest * shortest));
       slot->at_rest[lane] = static_cast<float>(part.stiffness_at_rest);
       for (std::size_t p = 0; p < part.parameters.size(); ++p)
         slot->parameters[p][lane] = static_cast<float>(part.parameters[p]);
     }
-  }
   tile.law_end = static_cast<std::int32_t>(slots.size());
+}
+
+void add_viscosity(const TileVoxels& voxels, Tile& tile, std::vector<ViscousSlot>& slots)
+{
+  tile.viscous = -1;
+  ViscousSlot slot{};
+  bool any = false;
+  for (int lane = 0; lane < Tile::width; ++lane)
+    for (int term = 0; term < 2; ++term)
+    {
+      slot.share[term][lane] = static_cast<float>(voxels[lane].viscous_share[term]);
+      slot.rate[term][lane] = static_cast<float>(voxels[lane].viscous_rate[term]);
+      any = any || slot.share[term][lane] > 0;
+    }
+  if (!any)
+    return;
+  tile.viscous = static_cast<std::int32_t>(slots.size());
+  slots.push_back(slot);
+}
+
+TileStiffness stiffness_of(const TileVoxels& voxels)
+{
+  TileStiffness s{};
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const VoxelProperties& v = voxels[lane];
+    s.mu[lane] = static_cast<float>(v.mu * v.tissue_volume);
+    s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
+    s.hourglass[lane] = static_cast<float>(v.hourglass);
+    s.frequency_squared[lane] = static_cast<float>(v.frequency_squared);
+  }
+  return s;
+}
+
+TileStabilisation stabilisation_of(const TileVoxels& voxels)
+{
+  TileStabilisation s{};
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const auto& k = voxels[lane].stabilisation;
+    s.bending[lane] = static_cast<float>(k.bending);
+    s.coupling[lane] = static_cast<float>(k.coupling);
+    s.torsion[lane] = static_cast<float>(k.torsion);
+    s.warping[lane] = static_cast<float>(k.warping);
+  }
+  return s;
+}
+
+// the next tile of voxels from e on, which it moves on
+Tile next_tile(const Model& model, std::int32_t& e)
+{
+  const auto count = static_cast<std::int32_t>(model.voxels.size());
+  const std::int32_t plane = model.voxels[e][2];
+  Tile tile{};
+  for (int strip = 0; strip < Tile::strips; ++strip)
+  {
+    // an empty strip reads and writes zeros where the one before it does
+    const bool any = e < count && model.voxels[e][2] == plane;
+    const auto first = any ? e : tile.first_voxel[strip - 1];
+    tile.first_voxel[strip] = first;
+    for (int row = 0; row < 4; ++row)
+      tile.node[strip][row] = model.voxel_nodes[first][2 * row];
+    while (any && e < count && tile.count[strip] < Tile::strip && model.voxels[e][2] == plane &&
+           model.voxels[e][1] == model.voxels[first][1] &&
+           model.voxels[e][0] == model.voxels[first][0] + tile.count[strip])
+    {
+      ++tile.count[strip];
+      ++e;
+    }
+  }
+  return tile;
 }
 
 }  // namespace
@@ -82,44 +151,33 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
   for (std::int32_t k = 0; k < planes; ++k)
     plane_nodes[k + 1] += plane_nodes[k];
 
-  const auto count = static_cast<std::int32_t>(model.voxels.size());
-  for (std::int32_t e = 0; e < count;)
+  TileVoxels voxels;
+  for (std::int32_t e = 0; e < static_cast<std::int32_t>(model.voxels.size());)
   {
     const std::int32_t plane = model.voxels[e][2];
-    Tile tile{};
-    for (int strip = 0; strip < Tile::strips; ++strip)
+    Tile tile = next_tile(model, e);
+    for (int lane = 0; lane < Tile::width; ++lane)
     {
-      // an empty strip reads and writes zeros where the one before it does
-      const bool any = e < count && model.voxels[e][2] == plane;
-      const auto first = any ? e : tile.first_voxel[strip - 1];
-      tile.first_voxel[strip] = first;
-      for (int row = 0; row < 4; ++row)
-        tile.node[strip][row] = model.voxel_nodes[first][2 * row];
-      while (any && e < count && tile.count[strip] < Tile::strip && model.voxels[e][2] == plane &&
-             model.voxels[e][1] == model.voxels[first][1] &&
-             model.voxels[e][0] == model.voxels[first][0] + tile.count[strip])
-      {
-        ++tile.count[strip];
-        ++e;
-      }
+      voxels[lane] = {};
+      if (tile.voxel(lane) >= 0)
+        discretisation.voxel(tile.voxel(lane), voxels[lane]);
     }
-    add_fibres(model, discretisation.tissue_volume, tile, fibres);
-    add_laws(model, discretisation, tile, laws);
+    add_fibres(model, voxels, tile, fibres);
+    add_laws(model, voxels, tile, laws);
+    add_viscosity(voxels, tile, viscous);
+    stiffness.push_back(stiffness_of(voxels));
+    if (discretisation.assumed_strain)
+      stabilisation.push_back(stabilisation_of(voxels));
     tiles.push_back(tile);
     ++plane_tiles[plane + 1];
   }
   for (std::int32_t k = 0; k < planes; ++k)
     plane_tiles[k + 1] += plane_tiles[k];
-}
-
-std::vector<float> VoxelRows::blocks(const std::vector<double>& values) const
-{
-  std::vector<float> result(tiles.size() * Tile::width, 0.0f);
-  for (std::size_t t = 0; t < tiles.size(); ++t)
-    for (int lane = 0; lane < Tile::width; ++lane)
-      if (const auto e = tiles[t].voxel(lane); e >= 0)
-        result[t * Tile::width + lane] = static_cast<float>(values[e]);
-  return result;
+  tiles.shrink_to_fit();
+  stiffness.shrink_to_fit();
+  stabilisation.shrink_to_fit();
+  fibres.shrink_to_fit();
+  laws.shrink_to_fit();
 }
 
 }  // namespace frontalis

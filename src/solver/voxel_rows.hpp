@@ -22,12 +22,28 @@ struct Tile
   std::int32_t fibre_end;
   std::int32_t law_begin;  ///< range of LawSlots
   std::int32_t law_end;
+  std::int32_t viscous;  ///< ViscousSlot; -1: none
 
   /// Voxel of a lane, or -1.
   std::int32_t voxel(int lane) const
   {
     return lane % strip < count[lane / strip] ? first_voxel[lane / strip] + lane % strip : -1;
   }
+};
+
+/// Elasticity of a tile's voxels; 0 in unused lanes.
+struct TileStiffness
+{
+  float mu[Tile::width];                 ///< shear modulus times tissue volume [N m]
+  float kappa[Tile::width];              ///< bulk modulus times tissue volume [N m]
+  float hourglass[Tile::width];          ///< scalar stiffness [N/m]
+  float frequency_squared[Tile::width];  ///< bound at rest [1/s2]
+};
+
+/// Assumed-strain hourglass control of a tile's voxels [N m].
+struct TileStabilisation
+{
+  float bending[Tile::width], coupling[Tile::width], torsion[Tile::width], warping[Tile::width];
 };
 
 /// One muscle's fibres in a tile; 0 where a voxel has none.
@@ -42,11 +58,18 @@ struct FibreSlot
 struct LawSlot
 {
   Law law;
-  std::int32_t material;              ///< as in Discretisation::LawPart
+  std::int32_t material;              ///< as in LawPart
   float weight[Tile::width];          ///< proportion times tissue volume [m3]
   float inertia[Tile::width];         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
   float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]
   float parameters[11][Tile::width];  ///< order: Law
+};
+
+/// Prony terms of a tile's voxels.
+struct ViscousSlot
+{
+  float share[2][Tile::width];
+  float rate[2][Tile::width];  ///< [1/s]
 };
 
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tile widths are the same for every
@@ -57,13 +80,13 @@ struct VoxelRows
 
   std::int32_t planes = 0;  ///< of nodes
   std::vector<Tile> tiles;
-  std::vector<std::int32_t> plane_tiles;  ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
-  std::vector<std::int32_t> plane_nodes;  ///< nodes of plane k, likewise
+  std::vector<std::int32_t> plane_tiles;         ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
+  std::vector<std::int32_t> plane_nodes;         ///< nodes of plane k, likewise
+  std::vector<TileStiffness> stiffness;          ///< one a tile
+  std::vector<TileStabilisation> stabilisation;  ///< one a tile; empty without assumed-strain hourglass control
   std::vector<FibreSlot> fibres;
   std::vector<LawSlot> laws;
-
-  /// One value a voxel as blocks of Tile::width a tile, 0 in unused lanes.
-  std::vector<float> blocks(const std::vector<double>& values) const;
+  std::vector<ViscousSlot> viscous;
 };
 
 }  // namespace frontalis

@@ -76,6 +76,9 @@ struct Model
   double time_step_share = 0.9;
   MassScalingSettings mass_scaling;
   HourglassControl hourglass = HourglassControl::scalar;
+  Integration integration = Integration::one_point;
+  Precision precision = Precision::single;  ///< of the CPU backend
+  TimeStepEstimate time_step_estimate = TimeStepEstimate::element;
 
   // presets by name: activations by muscle index
   struct Expression

@@ -29,6 +29,10 @@ struct Material
   Law law = Law::neo_hookean;
   std::array<double, 11> parameters{};
   double density = 0;  ///< [kg/m3]
+  /// Viscosity of the isochoric part as a Prony series of up to two terms: the share of the instantaneous stress that
+  /// relaxes (their sum below 1), and its time constant [s]. Share 0: no such term. The moduli are the instantaneous.
+  std::array<double, 2> viscous_share{};
+  std::array<double, 2> viscous_time{};
 };
 
 struct Muscle
@@ -37,6 +41,8 @@ struct Muscle
   double stress_reference = 0.3e6;  ///< sigma_max [Pa]
   bool passive = false;
   bool tension_length = true;
+  double rise_time = 0;  ///< activation follows what is asked for with this time constant when it grows [s]; 0: at once
+  double fall_time = 0;  ///< the same when it falls [s]
 };
 
 /// Mass given to voxels so that they do not rule the time step.
@@ -58,6 +64,29 @@ enum class HourglassControl : std::uint8_t
 {
   scalar,         ///< one stiffness a voxel, tied to Young's modulus: cheap
   assumed_strain  ///< a stiffness an axis, Poisson coupling and torsion, turned with the element: accurate
+};
+
+/// Where the isochoric stress of a voxel is integrated. The volumetric part, fibres and viscosity are taken at its
+/// centre.
+enum class Integration : std::uint8_t
+{
+  one_point,         ///< at the centre, with hourglass control: cheap
+  selective_reduced  ///< at eight Gauss points, no hourglass control: dear
+};
+
+/// Numbers of the state: displacements, velocities and the forces on them.
+enum class Precision : std::uint8_t
+{
+  single,       ///< float
+  compensated,  ///< float, displacements summed with their rounding errors carried along (Kahan)
+  double_precision
+};
+
+/// How the critical time step is found.
+enum class TimeStepEstimate : std::uint8_t
+{
+  element,   ///< from the stiffest voxel by itself: always safe
+  assembled  ///< from the assembled model by power iteration, renewed as it stiffens: longer where few voxels are stiff
 };
 
 }  // namespace frontalis

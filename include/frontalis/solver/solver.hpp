@@ -29,6 +29,7 @@ struct SolverSettings
   Backend backend = Backend::automatic;
   int threads = 0;       ///< CPU threads; 0: one a core
   double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
+  bool ledger = false;   ///< keep account of energies (Solver::ledger); costs a part of a step
 };
 
 /// What drives the model from outside.
@@ -58,6 +59,38 @@ struct Monitor
   bool finite = true;
 };
 
+/// Where the energy is and where it came from [J], since reset or since displacements or velocities were set.
+struct EnergyLedger
+{
+  double initial = 0;  ///< kinetic, internal, hourglass at the begin
+  double kinetic = 0;  ///< 1/2 m v(n - 1/2) . v(n + 1/2): what central differences conserve
+  double internal = 0;
+  double hourglass = 0;
+  double viscous = 0;     ///< taken up by viscous stresses
+  double damping = 0;     ///< lost
+  double friction = 0;    ///< lost
+  double muscle = 0;      ///< work done by fibres, active and passive
+  double load = 0;        ///< work done by surface loads
+  double gravity = 0;     ///< work done
+  double constraint = 0;  ///< work done by bones, prescribed motion and sliding surfaces, without friction
+  double largest = 0;     ///< largest of the above, in magnitude, that was seen so far
+
+  /// What the terms leave unexplained; 0 for exact arithmetic and small steps.
+  double imbalance() const
+  {
+    return kinetic + internal + hourglass + viscous + damping + friction - muscle - load - gravity - constraint -
+           initial;
+  }
+};
+
+/// How a search for equilibrium ended.
+struct Equilibrium
+{
+  bool reached = false;
+  double residual = 0;  ///< norm of the unbalanced nodal forces over the norm of all nodal forces
+  double seconds = 0;   ///< simulated
+};
+
 /// Wall seconds spent since construction or reset.
 struct Profile
 {
@@ -81,12 +114,22 @@ public:
   /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length.
   virtual void advance(double seconds, const Controls& target) = 0;
 
+  /// Dynamic relaxation: controls go to `target` at once, and the motion is stopped wherever its kinetic energy has a
+  /// peak (kinetic damping: Cundall 1976, Barnes 1999, Int. J. Space Struct. 14:89), until the unbalanced forces of the
+  /// nodes that are free to move are at most `tolerance` of all nodal forces (Euclidean norms), or `seconds` of
+  /// simulated time have passed. Viscous stresses are fully relaxed all the time. Throws Error as advance().
+  virtual Equilibrium settle(const Controls& target, double tolerance, double seconds) = 0;
+
   virtual double time() const = 0;       ///< [s] since reset
   virtual double time_step() const = 0;  ///< [s] the largest step that would be taken now
   virtual const Controls& controls() const = 0;
+  /// Activation of each muscle now: what the controls ask for, after the muscles' rise and fall times.
+  virtual const std::vector<float>& activation() const = 0;
 
   virtual void skin(SkinState& out) = 0;
   virtual Monitor monitor() = 0;
+  /// Throws Error where SolverSettings::ledger was not asked for or the backend keeps none.
+  virtual EnergyLedger ledger() = 0;
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

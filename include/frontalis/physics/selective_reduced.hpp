@@ -1,0 +1,65 @@
+#pragma once
+
+#include "frontalis/physics/voxel_element.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Selective reduced integration of a box voxel: the isochoric stress at the eight Gauss points, the volumetric one at
+/// the centre (Hughes 1980, Int. J. Numer. Meth. Eng. 15:1413; here of an energy whose two parts are split, so that the
+/// forces are its gradient). In the transformed displacements q the derivative along x at the point
+/// (s_x, s_y, s_z) / sqrt(3) is (q1 + s_y q3 + s_z q5 + s_y s_z q7 ...) / (4 h_x): the hourglass modes get stiffness.
+constexpr double gauss_coordinate = 0.57735026918962576;  // 1 / sqrt(3)
+
+/// +-1/sqrt(3) along an axis at one of the eight points.
+FRONTALIS_LAW constexpr double gauss_point(int point, int axis)
+{
+  return point & (1 << axis) ? gauss_coordinate : -gauss_coordinate;
+}
+
+/// Part of mode `mode` in the derivative along `axis` at a point: 1 for the gradient's own mode, 0 where the mode does
+/// not vary along the axis.
+FRONTALIS_LAW constexpr double gauss_weight(int point, int axis, int mode)
+{
+  double weight = mode & (1 << axis) ? 1 : 0;
+  for (int other = 0; other < 3; ++other)
+    if (other != axis && (mode & (1 << other)))
+      weight *= gauss_point(point, other);
+  return weight;
+}
+
+/// Transformed displacements whose mean gradient is the gradient at a Gauss point: what kinematics() takes.
+template <class T>
+FRONTALIS_LAW void at_gauss_point(int point, const T (&q)[3][8], T (&moved)[3][8])
+{
+  using N = Number<T>;
+  for (int c = 0; c < 3; ++c)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      T sum = q[c][gradient_mode(axis)];
+      for (int m = 3; m < 8; ++m)
+        if (m != 4 && (m & (1 << axis)))
+          sum = sum + N::of(gauss_weight(point, axis, m)) * q[c][m];
+      moved[c][gradient_mode(axis)] = sum;
+    }
+}
+
+/// Adds the forces on the modes of a stress P at a Gauss point; scale as in kinematics().
+template <class T, class S>
+FRONTALIS_LAW void add_gauss_forces(int point, const Matrix3<T>& P, const S* scale, T (&force)[3][8])
+{
+  using N = Number<T>;
+  for (int c = 0; c < 3; ++c)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const T part = N::of(0.125) * P.a[c][axis] * T(scale[axis]);
+      for (int m = 1; m < 8; ++m)
+        if (m & (1 << axis))
+          force[c][m] = force[c][m] + N::of(gauss_weight(point, axis, m)) * part;
+    }
+}
+
+}  // namespace physics
+}  // namespace frontalis

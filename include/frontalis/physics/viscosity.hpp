@@ -1,0 +1,78 @@
+#pragma once
+
+#include "frontalis/physics/isochoric.hpp"
+#include "frontalis/physics/voxel_element.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Symmetric tensor: xx, yy, zz, xy, yz, zx.
+template <class T>
+struct Symmetric3
+{
+  T a[6];
+};
+
+FRONTALIS_LAW constexpr int symmetric_row(int i) { return i < 3 ? i : i - 3; }
+FRONTALIS_LAW constexpr int symmetric_column(int i) { return i < 3 ? i : (i - 2) % 3; }
+
+/// Second Piola-Kirchhoff stress S = F^-1 P = (cof F)^T P / J; below a small J the divisor stays, so that S is finite.
+template <class T>
+FRONTALIS_LAW Symmetric3<T> second_piola(const Kinematics<T>& k, const Matrix3<T>& P)
+{
+  using N = Number<T>;
+  const T inverse = N::of(1) / N::max(k.J, N::of(continuation_jacobian));
+  Symmetric3<T> S;
+  for (int n = 0; n < 6; ++n)
+  {
+    const int i = symmetric_row(n), j = symmetric_column(n);
+    S.a[n] =
+        inverse * (k.cofactor.a[0][i] * P.a[0][j] + k.cofactor.a[1][i] * P.a[1][j] + k.cofactor.a[2][i] * P.a[2][j]);
+  }
+  return S;
+}
+
+/// One term of a Prony series on the isochoric stress (Taylor et al. 2009, Med. Image Anal. 13:234): the part H of the
+/// stress that has relaxed follows dH/dt = (share S - H) / time, here exactly over `elapsed` for a constant S;
+/// decay = exp(-elapsed / time). The body feels S - H.
+template <class T>
+FRONTALIS_LAW void relax(const T& share, const T& decay, const Symmetric3<T>& S, Symmetric3<T>& H)
+{
+  const T gain = (Number<T>::of(1) - decay) * share;
+  for (int n = 0; n < 6; ++n)
+    H.a[n] = decay * H.a[n] + gain * S.a[n];
+}
+
+/// P -= F H.
+template <class T>
+FRONTALIS_LAW void take_relaxed(const Kinematics<T>& k, const Symmetric3<T>& H, Matrix3<T>& P)
+{
+  const auto& h = H.a;
+  for (int i = 0; i < 3; ++i)
+  {
+    const auto& f = k.F.a[i];
+    P.a[i][0] = P.a[i][0] - (f[0] * h[0] + f[1] * h[3] + f[2] * h[5]);
+    P.a[i][1] = P.a[i][1] - (f[0] * h[3] + f[1] * h[1] + f[2] * h[4]);
+    P.a[i][2] = P.a[i][2] - (f[0] * h[5] + f[1] * h[4] + f[2] * h[2]);
+  }
+}
+
+/// H : E with the Green-Lagrange strain E = (F^T F - 1) / 2.
+template <class T>
+FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
+{
+  using N = Number<T>;
+  T sum = N::of(0);
+  for (int n = 0; n < 6; ++n)
+  {
+    const int i = symmetric_row(n), j = symmetric_column(n);
+    const T c = k.F.a[0][i] * k.F.a[0][j] + k.F.a[1][i] * k.F.a[1][j] + k.F.a[2][i] * k.F.a[2][j];
+    sum = sum + (n < 3 ? N::of(0.5) * (c - N::of(1)) : c) * H.a[n];
+  }
+  return sum;
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,225 @@
+#include "cpu_solver.hpp"
+#include "flush_denormals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+template <class Real>
+CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* activation)
+{
+  Arguments g{};
+  const auto& h = model_->spacing;
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.u[axis] = u_[axis].data();
+    g.next[axis] = next_[axis].data();
+    g.v[axis] = v_[axis].data();
+    g.rounding[axis] = rounding_[axis].empty() ? nullptr : rounding_[axis].data();
+    g.scale[axis] = static_cast<Real>(0.25 / h[axis]);
+    g.impulse[axis] = static_cast<Real>(gain(dt) * gravity_[axis]);
+    g.hourglass_weight[axis] = static_cast<Real>(discretisation_.hourglass_weight[axis]);
+    sum += 1 / (h[axis] * h[axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    g.stretch_weight[axis] = static_cast<Real>(1 / (h[axis] * h[axis]) / sum);
+  g.inverse_mass = inverse_mass_.data();
+  g.tiles = rows_.tiles.data();
+  g.plane_tiles = rows_.plane_tiles.data();
+  g.plane_nodes = rows_.plane_nodes.data();
+  g.planes = rows_.planes;
+  g.stiffness = rows_.stiffness.data();
+  g.stabilisation = rows_.stabilisation.empty() ? nullptr : rows_.stabilisation.data();
+  g.selective_reduced = discretisation_.selective_reduced;
+  g.fibres = rows_.fibres.data();
+  g.laws = rows_.laws.data();
+  g.viscous = rows_.viscous.data();
+  g.relaxed = relaxed_.data();
+  g.viscous_terms = discretisation_.viscous_terms;
+  g.activation = activation;
+  g.with_length = with_length_.data();
+  g.with_passive = with_passive_.data();
+  if (account_)
+  {
+    g.fibre_memory = fibre_memory_.data();
+    g.muscle_work = account_->muscle.data();
+    g.viscous_work = account_->viscous.data();
+  }
+  g.dt = static_cast<Real>(dt);
+  g.keep = static_cast<Real>(keep(dt));
+  g.gain = static_cast<Real>(gain(dt));
+  g.buffer_stride = buffer_stride_;
+  return g;
+}
+
+template <class Real>
+void CpuSolver<Real>::forces(const Components& at, Vectors& out)
+{
+  Arguments g = arguments(0, activation().data());
+  g.fibre_memory = nullptr;
+  for (int axis = 0; axis < 3; ++axis)
+    g.u[axis] = at[axis].data();
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
+  interleave(next_, out);
+}
+
+template <class Real>
+void CpuSolver<Real>::forces_at(const Vectors& at, Vectors& out)
+{
+  Components moved = u_;
+  separate(at, moved);
+  forces(moved, out);
+}
+
+template <class Real>
+void CpuSolver<Real>::external_forces(Vectors& out)
+{
+  out.assign(model_->nodes.size(), {});
+  if (loads_.empty())
+    return;
+  loads_.update(time(), constant(u_).data());
+  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
+    out[loads_.nodes()[l]] = loads_.forces()[l];
+}
+
+// the account begins with what fibres and viscous stresses do now
+template <class Real>
+void CpuSolver<Real>::open_account()
+{
+  account_->open();
+  for (auto& memory : fibre_memory_)
+    std::fill(std::begin(memory.squared), std::end(memory.squared), 0.0f);
+  Arguments g = arguments(0, activation().data());
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
+  std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
+}
+
+template <class Real>
+Work CpuSolver<Real>::work()
+{
+  relax(0);
+  return account_->work();
+}
+
+// viscous stresses relax by the time since they last did
+template <class Real>
+void CpuSolver<Real>::relax(double elapsed)
+{
+  if (relaxed_.empty())
+    return;
+  Arguments g = arguments(0, nullptr);
+  g.viscous_elapsed = static_cast<Real>(elapsed);
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::relax); });
+}
+
+// the update is linear in the force: loads are added after it
+template <class Real>
+void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arguments& g)
+{
+  const auto& nodes = loads_.nodes();
+  for (auto l = std::lower_bound(nodes.begin(), nodes.end(), first) - nodes.begin();
+       l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < last; ++l)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto n = nodes[l];
+      const Real change = g.gain * inverse_mass_[n] * static_cast<Real>(loads_.forces()[l][axis]);
+      g.v[axis][n] += change;
+      g.next[axis][n] += g.dt * change;
+    }
+}
+
+// the work of a step in a thread's planes
+template <class Real>
+void CpuSolver<Real>::account(int thread, const Arguments& g)
+{
+  account_->after(slab_[thread], slab_[thread + 1], g.v, damping_, double(g.dt));
+  const auto& nodes = loads_.nodes();
+  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
+    for (auto l = std::lower_bound(nodes.begin(), nodes.end(), rows_.plane_nodes[k]) - nodes.begin();
+         l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < rows_.plane_nodes[k + 1]; ++l)
+      account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.dt));
+}
+
+template <class Real>
+double CpuSolver<Real>::run(const StepPlan& plan)
+{
+  const std::size_t muscles = model_->muscles.size();
+  std::vector<float> activation(plan.steps * muscles);
+  std::vector<Drive> drives;
+  for (int step = 0; step < plan.steps; ++step)
+  {
+    plan.activation(step, activation.data() + step * muscles);
+    drives.push_back(plan.drive(step));
+  }
+  // steps after which viscous stresses are renewed: the last, and when the interval is over
+  std::vector<double> elapsed(plan.steps, 0);
+  for (int step = 0; step < plan.steps && !relaxed_.empty(); ++step)
+  {
+    viscous_elapsed_ += plan.dt;
+    if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
+      continue;
+    elapsed[step] = settling_ ? 1e9 : viscous_elapsed_;
+    viscous_elapsed_ = 0;
+  }
+  std::vector<Real> seen(team_.size(), 0);
+  const Arguments first = arguments(plan.dt, nullptr);
+  team_.run(
+      [&](int t)
+      {
+        const FlushDenormals flush;
+        Arguments g = first;
+        const std::int32_t begin = rows_.plane_nodes[slab_[t]], end = rows_.plane_nodes[slab_[t + 1]];
+        Real* const buffer = buffers_[t].data();
+        for (int step = 0; step < plan.steps; ++step)
+        {
+          g.activation = activation.data() + step * muscles;
+          if (account_)
+            account_->before(begin, end, g.v);
+          if (!loads_.empty())
+          {
+            if (t == 0)
+              loads_.update(plan.time + step * plan.dt, g.u);
+            team_.barrier();
+          }
+          const auto task = step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
+          const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
+          if (step + 1 == plan.steps)
+            seen[t] = frequency_squared;
+          if (!loads_.empty())
+            add_loads(begin, end, g);
+          if (account_)
+            account_->unconstrained(begin, end, g.v);
+          if (!restricted_.empty())
+            restricted_.apply(begin, end, g.next, g.v, g.u, drives[step]);
+          if (account_)
+            account(t, g);
+          team_.barrier();
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            Real* const old = const_cast<Real*>(g.u[axis]);
+            g.u[axis] = g.next[axis];
+            g.next[axis] = old;
+          }
+          if (elapsed[step] > 0)
+          {
+            g.viscous_elapsed = static_cast<Real>(elapsed[step]);
+            kernel_(g, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
+            team_.barrier();
+          }
+        }
+      });
+  if (plan.steps % 2 == 1)
+    u_.swap(next_);
+  double worst = 0;
+  for (const Real x : seen)
+    worst = std::isfinite(x) ? std::max(worst, static_cast<double>(x)) : static_cast<double>(x);
+  return worst;
+}
+
+template class CpuSolver<float>;
+template class CpuSolver<double>;
+
+}  // namespace frontalis

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "discretisation.hpp"
+
+#include <array>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Work on the nodes since the account was opened [J].
+struct Work
+{
+  double muscle = 0;      ///< done by fibres, active and passive
+  double load = 0;        ///< done by surface loads
+  double constraint = 0;  ///< done by rigid, prescribed and sliding nodes, friction included
+  double friction = 0;    ///< of it, lost to friction: 0 or more
+  double damping = 0;     ///< lost to mass-proportional damping: 0 or more
+  double viscous = 0;     ///< taken up by viscous stresses
+};
+
+/// Work of a step's impulses on the nodes, each along the mean of the velocities before and after the step: with that
+/// the change of kinetic energy is their sum exactly. Summed plane by plane in double, so that the result does not
+/// depend on who sums which planes. Real is the backend's number type.
+template <class Real>
+class EnergyAccount
+{
+public:
+  EnergyAccount(const Model& model, const Discretisation& discretisation);
+
+  /// Nodes of plane k: plane_nodes()[k] .. plane_nodes()[k + 1].
+  const std::vector<std::int32_t>& plane_nodes() const { return plane_nodes_; }
+  void open();
+  /// Velocities before the update of nodes [first, last).
+  void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }
+  /// The same after the update and the loads, before constraints.
+  void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
+  /// Adds the step's work in planes [first, last); damping [1/s], dt [s].
+  void after(std::int32_t first, std::int32_t last, const Real* const v[3], double damping, double dt);
+  /// Adds the work of a force on a node of a plane over the step, after after().
+  void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
+            double dt);
+  Work work() const;
+
+  std::vector<double> muscle;   ///< one a plane, filled by the backend
+  std::vector<double> viscous;  ///< two a plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
+
+private:
+  using Field = std::array<std::vector<Real>, 3>;
+  static void copy(std::int32_t first, std::int32_t last, const Real* const v[3], Field& to);
+
+  const std::vector<double>& mass_;
+  std::vector<std::int32_t> plane_nodes_;
+  Field before_, free_;
+  std::vector<Work> planes_;
+};
+
+}  // namespace frontalis
