@@ -76,6 +76,11 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   }
   else
     throw Error(place + ": law '" + material.law + "' is not known");
+  for (std::size_t term = 0; term < material.viscosity.size() && term < out.viscous_share.size(); ++term)
+  {
+    out.viscous_share[term] = material.viscosity[term].share;
+    out.viscous_time[term] = material.viscosity[term].time;
+  }
   const double poisson = parameter("poisson");
   if (!(shear > 0) || !(poisson > -1) || !(poisson < 0.5))
     throw Error(place + ": its shear modulus at rest is " + std::to_string(shear) + " Pa and poisson " +
@@ -176,7 +181,8 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.gravity = frame.turn(scene.gravity);
 
   for (const SceneMuscle& muscle : scene.muscles)
-    model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length });
+    model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length,
+                              muscle.rise_time, muscle.fall_time });
   model.damping = scene.time.damping;
   model.time_scaling = scene.time.scaling;
   model.frame_rate = scene.time.frame_rate;
@@ -185,6 +191,14 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
     model.materials.push_back(material_of(scene, material, frame));
   if (scene.accuracy.assumed_strain)
     model.hourglass = HourglassControl::assumed_strain;
+  if (scene.accuracy.integration == "selective_reduced")
+    model.integration = Integration::selective_reduced;
+  if (scene.accuracy.precision == "compensated")
+    model.precision = Precision::compensated;
+  else if (scene.accuracy.precision == "double")
+    model.precision = Precision::double_precision;
+  if (scene.accuracy.time_step == "assembled")
+    model.time_step_estimate = TimeStepEstimate::assembled;
   copy_mass_scaling(scene, model);
   copy_presets(scene, model);
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);

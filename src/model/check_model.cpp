@@ -135,6 +135,15 @@ void check_mixtures(const Model& model)
   {
     check_finite("materials", m, model.materials[m].parameters);
     check_positive("materials (density)", m, model.materials[m].density);
+    const Material& material = model.materials[m];
+    for (std::size_t term = 0; term < 2; ++term)
+      if (material.viscous_share[term] != 0)
+      {
+        check_proportion("materials (viscous_share)", m, static_cast<float>(material.viscous_share[term]));
+        check_positive("materials (viscous_time)", m, material.viscous_time[term]);
+      }
+    if (!(material.viscous_share[0] + material.viscous_share[1] < 1))
+      fail("materials (viscous_share)", "the shares of entry " + std::to_string(m) + " do not stay below 1 together");
     if (model.materials[m].law > Law::guccione)
       fail("materials", "entry " + std::to_string(m) + " has law " +
                             std::to_string(static_cast<int>(model.materials[m].law)) + ", which is not known");
@@ -161,7 +170,13 @@ void check_mixtures(const Model& model)
 void check_fibres(const Model& model)
 {
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
+  {
     check_positive("muscles (stress_reference)", m, model.muscles[m].stress_reference);
+    for (const double time : { model.muscles[m].rise_time, model.muscles[m].fall_time })
+      if (!(time >= 0) || !std::isfinite(time))
+        fail("muscles", "rise or fall time of entry " + std::to_string(m) + " is " + std::to_string(time) +
+                            " s; it must be at least 0");
+  }
   const std::size_t entries = model.fibre_muscle.size();
   check_ranges("fibre_begin", model.fibre_begin, model.voxels.size(), entries);
   check_length("fibre_weight", model.fibre_weight.size(), entries, "entry of fibre_muscle");
@@ -241,6 +256,9 @@ void check_settings(const Model& model)
   check_positive("time_scaling", 0, model.time_scaling);
   check_positive("frame_rate", 0, model.frame_rate);
   check_positive("time_step_share", 0, model.time_step_share);
+  if (model.hourglass > HourglassControl::assumed_strain || model.integration > Integration::selective_reduced ||
+      model.precision > Precision::double_precision || model.time_step_estimate > TimeStepEstimate::assembled)
+    fail("hourglass, integration, precision, step_estimate", "a setting is not known");
   if (model.mass_scaling.kind > MassScalingSettings::Kind::selective)
     fail("mass_scaling", "kind " + std::to_string(static_cast<int>(model.mass_scaling.kind)) + " is not known");
   check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);

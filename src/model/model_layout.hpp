@@ -37,6 +37,8 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.column(in("materials/law"), model.materials, &Material::law);
   archive.column(in("materials/parameters"), model.materials, &Material::parameters);
   archive.column(in("materials/density"), model.materials, &Material::density);
+  archive.column(in("materials/viscous_share"), model.materials, &Material::viscous_share);
+  archive.column(in("materials/viscous_time"), model.materials, &Material::viscous_time);
   archive.array(in("mixture_begin"), model.mixture_begin);
   archive.array(in("mixture_material"), model.mixture_material);
   archive.array(in("mixture_proportion"), model.mixture_proportion);
@@ -47,6 +49,8 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.column(in("muscles/stress_reference"), model.muscles, &Muscle::stress_reference);
   archive.column(in("muscles/passive"), model.muscles, &Muscle::passive);
   archive.column(in("muscles/tension_length"), model.muscles, &Muscle::tension_length);
+  archive.column(in("muscles/rise_time"), model.muscles, &Muscle::rise_time);
+  archive.column(in("muscles/fall_time"), model.muscles, &Muscle::fall_time);
   archive.array(in("fibre_begin"), model.fibre_begin);
   archive.array(in("fibre_muscle"), model.fibre_muscle);
   archive.array(in("fibre_weight"), model.fibre_weight);
@@ -107,6 +111,10 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.value(in("time/scaling"), model.time_scaling);
   archive.value(in("time/frame_rate"), model.frame_rate);
   archive.value(in("time/step_share"), model.time_step_share);
+  archive.value(in("time/step_estimate"), model.time_step_estimate);
+  archive.value(in("hourglass"), model.hourglass);
+  archive.value(in("integration"), model.integration);
+  archive.value(in("precision"), model.precision);
   archive.group(in("mass_scaling"));
   archive.value(in("mass_scaling/kind"), model.mass_scaling.kind);
   archive.value(in("mass_scaling/factor"), model.mass_scaling.factor);

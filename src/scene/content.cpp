@@ -97,13 +97,13 @@ void add_anatomy(const Scene& scene, std::string& content)
     line.add(volume.material).add(volume.priority).add(volume.tissue);
   }
   for (const SceneMaterial& material : scene.materials)
-    Line(content, "material")
-        .add(material.name)
-        .add(material.law)
-        .add(material.density)
-        .add(material.parameters)
-        .add(material.families[0])
-        .add(material.families[1]);
+  {
+    Line line(content, "material");
+    line.add(material.name).add(material.law).add(material.density).add(material.parameters);
+    line.add(material.families[0]).add(material.families[1]);
+    for (const auto& term : material.viscosity)
+      line.add(term.share).add(term.time);
+  }
   for (const Layer& layer : scene.layers)
     Line(content, "layer")
         .add(layer.name)
@@ -118,7 +118,9 @@ void add_anatomy(const Scene& scene, std::string& content)
         .add(muscle.fibre)
         .add(muscle.stress_reference)
         .add(muscle.passive)
-        .add(muscle.tension_length);
+        .add(muscle.tension_length)
+        .add(muscle.rise_time)
+        .add(muscle.fall_time);
 }
 
 void add_restrictions(const Scene& scene, std::string& content)
@@ -165,6 +167,9 @@ void add_numerics(const Scene& scene, std::string& content)
       .add(static_cast<double>(profile.mass_scaling.kind))
       .add(profile.mass_scaling.factor)
       .add(profile.assumed_strain ? 1 : 0)
+      .add(profile.integration)
+      .add(profile.precision)
+      .add(profile.time_step)
       .add(profile.mass_scaling.materials);
 }
 

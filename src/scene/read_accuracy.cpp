@@ -64,6 +64,14 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   read_mass_scaling(mapping.optional("mass_scaling"), profile.mass_scaling, names);
   if (const Node hourglass = mapping.optional("hourglass"); hourglass.given())
     profile.assumed_strain = hourglass.choice({ "scalar", "assumed_strain" }) == "assumed_strain";
+  const auto choose = [&mapping](const std::string& key, const std::vector<std::string>& allowed, std::string& chosen)
+  {
+    if (const Node node_of_key = mapping.optional(key); node_of_key.given())
+      chosen = node_of_key.choice(allowed);
+  };
+  choose("integration", { "one_point", "selective_reduced" }, profile.integration);
+  choose("precision", { "single", "compensated", "double" }, profile.precision);
+  choose("time_step", { "element", "assembled" }, profile.time_step);
   return profile;
 }
 

@@ -17,6 +17,28 @@ void read_families(const Node& node, std::array<Vector3, 2>& families)
     families[f] = entries[f].direction({ 1, 0, 0 });
 }
 
+// terms of a Prony series
+void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& terms)
+{
+  const std::vector<Node> entries = node.entries();
+  if (entries.size() > 2)
+    node.fault("found " + std::to_string(entries.size()) + " terms; must be one or two");
+  double sum = 0;
+  for (const Node& entry : entries)
+  {
+    Mapping mapping(entry);
+    SceneMaterial::ViscousTerm term;
+    term.share =
+        mapping.required("share", "a share from 0 to 1").number(Dimension::number, Bound{ 0, 1, false, false }, 0);
+    term.time = mapping.required("time", "a time greater than 0").number(Dimension::time, positive, 0);
+    sum += term.share;
+    terms.push_back(term);
+  }
+  if (!(sum < 1))
+    node.fault("the shares add up to " + std::to_string(sum) +
+               "; must stay below 1, or nothing is left of the stiffness");
+}
+
 // the law's parameters, in SI units; a law more is a branch more
 void read_parameters(const std::string& law, Mapping& mapping, SceneMaterial& material)
 {
@@ -91,6 +113,7 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names)
       else
       {
         read_parameters(material.law, mapping, material);
+        read_viscosity(mapping.optional("viscosity"), material.viscosity);
         material.density =
             mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
       }

@@ -23,6 +23,8 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
       muscle.fibre = mapping.required("fibre", "a direction [x, y, z]").direction(muscle.fibre);
       muscle.stress_reference =
           mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
+      muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, 0);
+      muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, 0);
       muscle.passive = mapping.optional("passive").boolean(muscle.passive);
       muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
     }

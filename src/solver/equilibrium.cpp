@@ -6,24 +6,31 @@
 
 namespace frontalis
 {
-namespace
-{
-
-using Vectors = SteppingSolver::Vectors;
-
-double length(const Vectors& x)
-{
-  double sum = 0;
-  for (const auto& p : x)
-    sum += p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-  return std::sqrt(sum);
-}
-
-}  // namespace
-
 void SteppingSolver::forces_at(const Vectors&, Vectors&)
 {
   throw Error("backend " + description() + " cannot find forces at other displacements");
+}
+
+// Rayleigh quotient of a change of displacements: the frequency squared [1/s2] of the motion
+double SteppingSolver::rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now,
+                                         const Vectors& f_now) const
+{
+  double stiffness = 0;
+  for (std::size_t n = 0; n < u.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      stiffness += (u_now[n][axis] - u[n][axis]) * (f_now[n][axis] - f[n][axis]);
+  const double change = distance(u, u_now);
+  return change > 0 ? std::max(stiffness / (change * change), 0.0) : 0;
+}
+
+// between two states, weighted by mass: root of the sum of m |a - b|^2
+double SteppingSolver::distance(const Vectors& a, const Vectors& b) const
+{
+  double sum = 0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      sum += discretisation_.node_mass[n] * (a[n][axis] - b[n][axis]) * (a[n][axis] - b[n][axis]);
+  return std::sqrt(sum);
 }
 
 Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, double seconds)
@@ -31,14 +38,10 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
   if (!(tolerance > 0) || !std::isfinite(tolerance))
     throw Error("equilibrium within " + std::to_string(tolerance) + ": allowed are tolerances above 0");
   check(seconds, target);
-  // settled motion has no history: muscles have responded, viscous stresses relaxed, nothing is damped but at peaks
+  // settled motion has no history: muscles have responded, viscous stresses relaxed
   struct Settling
   {
-    explicit Settling(SteppingSolver& s) : solver(s)
-    {
-      solver.damping_ = 0;
-      solver.settling_ = true;
-    }
+    explicit Settling(SteppingSolver& s) : solver(s) { solver.settling_ = true; }
     ~Settling()
     {
       solver.damping_ = solver.model_->damping;
@@ -50,34 +53,47 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
   activation_ = target.activation;
   controls_.activation = target.activation;
 
+  // windows last until the change is a share of the displacement that rounding errors in float cannot make
+  constexpr double clear = 1e-4;
+  constexpr int longest = 64;  // plans
   Equilibrium result;
+  result.residual = 1;
   const double begin = time_;
-  Vectors v, still(model_->nodes.size()), forces;
-  double previous = 0, scale = 0;
-  while (!result.reached && time_ - begin < seconds)
+  double lowest = 0;
+  Vectors u, f, u_now, f_now;
+  const Vectors rest(model_->nodes.size());
+  displacements(u);
+  internal_forces(f);
+  double opened = time_;
+  int plans = 0;
+  for (int good = 0; good < 4 && time_ - begin < seconds;)
   {
     advance(std::min(steps_a_plan() * safe_time_step(), seconds - (time_ - begin)), target);
-    velocities(v);
-    double kinetic = 0;
-    for (std::size_t n = 0; n < v.size(); ++n)
-      kinetic += discretisation_.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
-    const bool peak = kinetic < previous;
-    previous = peak ? 0 : kinetic;
-    if (!peak && kinetic > 0)
+    displacements(u_now);
+    const double change = distance(u, u_now), moved = distance(rest, u_now);
+    if (change < clear * moved && ++plans < longest && time_ - begin < seconds)
       continue;
-    // one step from standstill shows the unbalanced force on each node that is free to move
-    set_velocities(still);
-    const double dt = safe_time_step();
-    advance(dt, target);
-    velocities(v);
-    for (std::size_t n = 0; n < v.size(); ++n)
-      for (double& x : v[n])
-        x *= discretisation_.node_mass[n] / gain(dt);
-    internal_forces(forces);
-    const double unbalanced = length(v);
-    scale = std::max({ scale, unbalanced, length(forces) });
-    result.residual = scale > 0 ? unbalanced / scale : 0;
-    result.reached = result.residual <= tolerance;
+    plans = 0;
+    const double window = time_ - opened;
+    opened = time_;
+    internal_forces(f_now);
+    const double squared = rayleigh_quotient(u, f, u_now, f_now);
+    u.swap(u_now);
+    f.swap(f_now);
+    // critical for the slowest motion seen, and not more: what is faster must not slow it down
+    if (squared > 0)
+    {
+      lowest = lowest > 0 ? std::min(lowest, squared) : squared;
+      damping_ = std::min(2 * std::sqrt(lowest), 1 / safe_time_step());
+    }
+    // it creeps by lowest / damping of what is left a second; at the begin nothing has got going yet
+    if (lowest > 0)
+      result.residual = change / window * damping_ / lowest / moved;
+    else if (change == 0)
+      result.residual = 0;
+    const bool under_way = lowest > 0 && (time_ - begin) * std::sqrt(lowest) < 4;
+    good = result.residual <= tolerance && !under_way ? good + 1 : 0;
+    result.reached = good == 4;
   }
   result.seconds = time_ - begin;
   return result;

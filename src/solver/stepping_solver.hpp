@@ -83,6 +83,8 @@ private:
   double critical_frequency_squared() const;
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
   void renew_assembled_bound();
+  double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
+  double distance(const Vectors& a, const Vectors& b) const;
   void open_ledger();
   Controls between(const Controls& from, const Controls& target, double fraction) const;
 

@@ -35,9 +35,13 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
       }
     }
   }
-  model.materials = { { "fat", Law::neo_hookean, { { 1e4, 5e5 } }, 1000 },
-                      { "a muscle", Law::neo_hookean, { { 2e5, 8e6 } }, 1060 } };
-  model.muscles = { { "frontalis_left", 5e6, true, false } };
+  model.materials = { { "fat", Law::neo_hookean, { { 1e4, 5e5 } }, 1000, {}, {} },
+                      { "a muscle", Law::neo_hookean, { { 2e5, 8e6 } }, 1060, { { 0.3, 0.1 } }, { { 0.1, 2 } } } };
+  model.muscles = { { "frontalis_left", 5e6, true, false, 0.01, 0.03 } };
+  model.hourglass = HourglassControl::assumed_strain;
+  model.integration = Integration::selective_reduced;
+  model.precision = Precision::compensated;
+  model.time_step_estimate = TimeStepEstimate::assembled;
   build_nodes(model);
 
   const TriangleMesh triangle{ { { { 0, 0, 0 } }, { { 1e-3, 0, 0 } }, { { 0, 1e-3, 1e-9 } } }, { { { 0, 1, 2 } } } };

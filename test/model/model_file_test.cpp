@@ -79,6 +79,14 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.muscles[0].stress_reference, 5e6);
   EXPECT_TRUE(b.muscles[0].passive);
   EXPECT_FALSE(b.muscles[0].tension_length);
+  EXPECT_EQ(b.muscles[0].rise_time, 0.01);
+  EXPECT_EQ(b.muscles[0].fall_time, 0.03);
+  EXPECT_EQ(a.materials[1].viscous_share, b.materials[1].viscous_share);
+  EXPECT_EQ(a.materials[1].viscous_time, b.materials[1].viscous_time);
+  EXPECT_EQ(b.hourglass, HourglassControl::assumed_strain);
+  EXPECT_EQ(b.integration, Integration::selective_reduced);
+  EXPECT_EQ(b.precision, Precision::compensated);
+  EXPECT_EQ(b.time_step_estimate, TimeStepEstimate::assembled);
   EXPECT_EQ(a.bones, b.bones);
   ASSERT_EQ(b.constraint_surfaces.size(), 1u);
   EXPECT_EQ(a.constraint_surfaces[0].mesh.vertices, b.constraint_surfaces[0].mesh.vertices);

@@ -148,6 +148,11 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_EQ(scene.materials[0].parameters.at("poisson"), 0.49);
   EXPECT_NEAR(scene.materials[0].density, 1100, 1e-9);
   EXPECT_EQ(scene.materials[1].parameters.at("young"), 2000);
+  ASSERT_EQ(scene.materials[0].viscosity.size(), 2U);
+  EXPECT_EQ(scene.materials[0].viscosity[0].share, 0.3);
+  EXPECT_NEAR(scene.materials[0].viscosity[0].time, 0.04, 1e-12);
+  EXPECT_EQ(scene.materials[0].viscosity[1].time, 1);
+  EXPECT_TRUE(scene.materials[1].viscosity.empty());
 
   ASSERT_EQ(scene.layers.size(), 2U);
   EXPECT_EQ(scene.layers[0].name, "outer");
@@ -164,6 +169,9 @@ TEST(EveryKey, muscles_and_expressions)
   EXPECT_EQ(scene.muscles[0].stress_reference, 5e6);
   EXPECT_TRUE(scene.muscles[0].passive);
   EXPECT_FALSE(scene.muscles[0].tension_length);
+  EXPECT_NEAR(scene.muscles[0].rise_time, 0.01, 1e-12);
+  EXPECT_NEAR(scene.muscles[0].fall_time, 0.05, 1e-12);
+  EXPECT_EQ(scene.muscles[1].rise_time, 0);
   EXPECT_EQ(scene.muscles[1].volume, "deep");
   expect_vector(scene.muscles[1].fibre, { 1, 0, 0 });
   EXPECT_EQ(scene.muscles[1].stress_reference, 0.3e6);
@@ -236,6 +244,10 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.accuracy.mass_scaling.factor, 12);
   EXPECT_TRUE(scene.accuracy.assumed_strain);
   EXPECT_FALSE(scene.profiles[0].assumed_strain);
+  EXPECT_EQ(scene.accuracy.integration, "selective_reduced");
+  EXPECT_EQ(scene.accuracy.precision, "double");
+  EXPECT_EQ(scene.accuracy.time_step, "assembled");
+  EXPECT_EQ(scene.profiles[0].precision, "single");
 
   // what a profile leaves out comes from the defaults, not from another profile
   expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });

@@ -56,7 +56,10 @@ struct AccuracyProfile
   double fill_min = 0.2;              ///< a voxel with less tissue than this proportion is dropped
   double time_step_share = 0.9;       ///< share of the critical time step that is used
   MassScaling mass_scaling;
-  bool assumed_strain = false;  ///< hourglass control: assumed strain instead of one stiffness a voxel
+  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness a voxel
+  std::string integration = "one_point";  ///< or selective_reduced
+  std::string precision = "single";       ///< compensated, double: of the CPU backend
+  std::string time_step = "element";      ///< critical time step: of the stiffest voxel, or of the assembled model
 };
 
 /// Time settings.

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace frontalis
 {
@@ -18,7 +19,14 @@ struct SceneMaterial
   /// SI units, by name as in doc/scene.md: poisson, and by law young | c1, c2 | mu1, alpha1, mu2, alpha2 | shear, b |
   /// shear, k1, k2, dispersion | c, bf, bt, bfs.
   std::map<std::string, double> parameters;
-  std::array<Vector3, 2> families{};  ///< holzapfel: the two fibre families; guccione: the fibre; scene axes, length 1
+  /// One term of a Prony series: share of the instantaneous isochoric stress that relaxes, and its time constant [s].
+  struct ViscousTerm
+  {
+    double share = 0;
+    double time = 0;
+  };
+  std::vector<ViscousTerm> viscosity;  ///< up to two terms
+  std::array<Vector3, 2> families{};   ///< holzapfel: the two fibre families; guccione: the fibre; scene axes, length 1
   int line = 0;
 };
 
@@ -40,6 +48,8 @@ struct SceneMuscle
   Vector3 fibre{ 0, 0, 1 };         ///< direction in scene coordinates; normalised
   double stress_reference = 0.3e6;  ///< sigma_max [Pa]
   bool passive = false;             ///< passive fibre stress of Blemker et al. 2005 too
+  double rise_time = 0;             ///< time constant with which activation follows what is asked for, growing [s]
+  double fall_time = 0;             ///< the same, falling [s]
   bool tension_length = true;       ///< active tension-length curve; without it f = 1
   int line = 0;
 };

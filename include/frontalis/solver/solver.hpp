@@ -87,7 +87,7 @@ struct EnergyLedger
 struct Equilibrium
 {
   bool reached = false;
-  double residual = 0;  ///< norm of the unbalanced nodal forces over the norm of all nodal forces
+  double residual = 0;  ///< motion that is left over displacement, as estimated
   double seconds = 0;   ///< simulated
 };
 
@@ -114,10 +114,10 @@ public:
   /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length.
   virtual void advance(double seconds, const Controls& target) = 0;
 
-  /// Dynamic relaxation: controls go to `target` at once, and the motion is stopped wherever its kinetic energy has a
-  /// peak (kinetic damping: Cundall 1976, Barnes 1999, Int. J. Space Struct. 14:89), until the unbalanced forces of the
-  /// nodes that are free to move are at most `tolerance` of all nodal forces (Euclidean norms), or `seconds` of
-  /// simulated time have passed. Viscous stresses are fully relaxed all the time. Throws Error as advance().
+  /// Dynamic relaxation: controls go to `target` at once, and the motion is damped critically for the lowest frequency
+  /// that it still shows (Underwood 1983). Ends where the motion that is left, estimated from its speed, damping and
+  /// lowest frequency, stays within `tolerance` of the displacement (norms weighted by mass), or after `seconds` of
+  /// simulated time. Viscous stresses are fully relaxed meanwhile. Throws Error as advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds) = 0;
 
   virtual double time() const = 0;       ///< [s] since reset
