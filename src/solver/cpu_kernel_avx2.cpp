@@ -8,7 +8,7 @@ void slide_kernel_avx2(const SlideArguments<float>&, std::int32_t, std::int32_t)
 CpuKernelChoice cpu_kernel_avx2(const char* name)
 {
   return { CpuKernelBody<xsimd::fma3<xsimd::avx2>, float>::run, CpuKernelBody<xsimd::fma3<xsimd::avx2>, double>::run,
-           name };
+           slide_kernel_avx2, name };
 }
 
 }  // namespace frontalis

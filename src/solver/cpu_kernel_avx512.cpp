@@ -7,7 +7,8 @@ void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
-  return { CpuKernelBody<xsimd::avx512bw, float>::run, CpuKernelBody<xsimd::avx512bw, double>::run, slide_kernel_avx512, name };
+  return { CpuKernelBody<xsimd::avx512bw, float>::run, CpuKernelBody<xsimd::avx512bw, double>::run, slide_kernel_avx512,
+           name };
 }
 
 }  // namespace frontalis

@@ -7,7 +7,8 @@ void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int3
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
-  return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run, slide_kernel_baseline, name };
+  return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run,
+           slide_kernel_baseline, name };
 }
 
 }  // namespace frontalis
