@@ -2,9 +2,13 @@
 
 #include "bind_points.hpp"
 #include "frontalis/error.hpp"
+#include "length_text.hpp"
 #include "local_frame.hpp"
+#include "muscle_volumes.hpp"
 #include "restricted_nodes.hpp"
+#include "spread_points.hpp"
 #include "surface.hpp"
+#include "volume_probe.hpp"
 #include "volumes.hpp"
 #include "voxelise.hpp"
 
@@ -55,12 +59,53 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
   }
 }
 
+/// Greatest depth of a volume's points below a surface, of some thousand points.
+double greatest_depth(const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& surface)
+{
+  double greatest = 0;
+  for (int i = 0; i < 4000; ++i)
+  {
+    const Vector3 p = spread_point(volumes.tissue_box(), i);
+    if (standing(volumes, entry, p) == Standing::inside)
+      greatest = std::max(greatest, -surface.signed_distance(p, surface.tree().closest(p)));
+  }
+  return greatest;
+}
+
+/// Refuses layers below the tissue's end, and such as leave nothing of the material below them.
+void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxels)
+{
+  for (std::size_t v = 0; v < volumes.entries().size(); ++v)
+  {
+    const auto& bands = volumes.entries()[v].bands;
+    for (std::size_t b = 0; b <= bands.size() && !bands.empty(); ++b)
+    {
+      if (voxels.band_size[v][b] > 0)
+        continue;
+      const Volumes::Band& band = bands[std::min(b, bands.size() - 1)];
+      const PreparedSurface& surface = *volumes.depths()[static_cast<std::size_t>(band.depth)].surface;
+      const std::string ends = "volume '" + volumes.entries()[v].volume->name + "' ends " +
+                               length_text(greatest_depth(volumes, volumes.entries()[v], surface), scene.unit) +
+                               " below surface '" + surface.name() + "'";
+      throw Error(scene.file + ":" + std::to_string(band.layer->line) + ": layer '" + band.layer->name + "': " +
+                  (b < bands.size() ? "begins " + length_text(band.from, scene.unit) + " deep, but " + ends
+                                    : "reaches " + length_text(band.to, scene.unit) + " deep and " + ends +
+                                          ", so that nothing is left of its own material") +
+                  "; thinner layers, or thicker tissue, are wanted");
+    }
+  }
+}
+
 }  // namespace
 
 Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 {
   if (report != nullptr)
+  {
+    const bool measure = report->measure_muscles;
     *report = {};
+    report->measure_muscles = measure;
+  }
   Stages stages(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
     throw Error(scene.file + ": accuracy: samples is " + std::to_string(scene.accuracy.samples) +
@@ -71,7 +116,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   const Vector3& edges = scene.accuracy.voxel;
   const double sample_spacing = std::min({ edges[0], edges[1], edges[2] }) / scene.accuracy.samples;
   const Volumes volumes(scene, surfaces, sample_spacing);
-  const Grid grid = make_grid(volumes.tissue_box(), edges, scene.file);
+  check_openings(scene, volumes);
+  const Grid grid = make_grid(scene, volumes);
 
   stages.begin("voxels");
   Model model;
@@ -79,6 +125,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   {
     const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min, stages);
     check_volumes(scene, volumes, voxels, stages);
+    check_layers(scene, volumes, voxels);
     if (voxels.place.empty())
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: take smaller "
@@ -100,6 +147,11 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 
   stages.begin("check");
   check_model(model);
+  if (report != nullptr && report->measure_muscles)
+  {
+    stages.begin("muscle volumes");
+    report->muscles = measure_muscles(volumes, model, stages);
+  }
   stages.finish();
   return model;
 }

@@ -2,10 +2,10 @@
 
 #include "cut_mesh.hpp"
 #include "frontalis/error.hpp"
+#include "length_text.hpp"
 #include "parallel.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 namespace frontalis
 {
@@ -19,8 +19,9 @@ struct BoundMesh
 {
   TriangleMesh mesh;
   Binding binding;
-  std::size_t triangles = 0;  ///< inside the crop
-  std::size_t too_far = 0;    ///< of those, with a vertex too far from every voxel
+  std::size_t triangles = 0;   ///< inside the crop
+  std::size_t too_far = 0;     ///< of those, with a vertex too far from every voxel
+  Vector3 unbound{ 0, 0, 0 };  ///< such a vertex, scene coordinates
 };
 
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
@@ -48,7 +49,12 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   {
     bool near = true;
     for (const std::int32_t v : surface.triangles[t])
-      near = near && voxel[static_cast<std::size_t>(v)] >= 0;
+    {
+      if (voxel[static_cast<std::size_t>(v)] >= 0)
+        continue;
+      bound.unbound = surface.vertices[static_cast<std::size_t>(v)];
+      near = false;
+    }
     keep[t] = near;
     bound.too_far += near ? 0 : 1;
   }
@@ -74,13 +80,6 @@ const PreparedSurface& find(const std::vector<std::unique_ptr<PreparedSurface>>&
   throw Error(place + ": there is no surface '" + name + "'");
 }
 
-std::string millimetres(double length)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g mm", 1e3 * length);
-  return text;
-}
-
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
 {
   const TriangleTree tree(model.skin);
@@ -91,8 +90,9 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
     if (closest.triangle < 0)
       throw Error(place + ": there is no published skin that it could lie on");
     if (closest.distance > farthest_landmark)
-      throw Error(place + ": lies " + millimetres(closest.distance) + " from the published skin; at most " +
-                  millimetres(farthest_landmark) + " are allowed: check its coordinates and the skin's crop");
+      throw Error(place + ": lies " + length_text(closest.distance, scene.unit) + " from the published skin; at most " +
+                  length_text(farthest_landmark, scene.unit) +
+                  " are allowed: check its coordinates and the skin's crop");
     std::int32_t voxel = -1;
     std::array<float, 3> coordinates{};
     if (!binder.bind(closest.point, voxel, coordinates))
@@ -174,11 +174,15 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
     BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, stages);
     if (bound.mesh.triangles.empty())
       throw Error(scene.file + ": skin: no triangle of surface '" + scene.skin.surface +
-                  "' lies in the crop and within " + millimetres(extrapolation) +
+                  "' lies in the crop and within " + length_text(extrapolation, scene.unit) +
                   " of the tissue; check its crop and the tissue volumes");
     if (bound.too_far > 0)
-      stages.found("skin: " + std::to_string(bound.too_far) + " of " + std::to_string(bound.triangles) +
-                   " triangles in the crop left out, farther than " + millimetres(extrapolation) + " from the tissue");
+      throw Error(scene.file + ": skin: " + std::to_string(bound.too_far) + " of " + std::to_string(bound.triangles) +
+                  " triangles of surface '" + scene.skin.surface +
+                  "' in the crop have a vertex that no voxel can carry, the one at " +
+                  place_text(bound.unbound, scene.unit) + " say: it is farther than " +
+                  length_text(extrapolation, scene.unit) +
+                  " from the tissue; crop the skin to the tissue, or raise its 'extrapolation'");
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }
@@ -201,7 +205,7 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
       BoundMesh bound = bind_mesh(find(surfaces, load.surface, place).mesh(), load.crop, frame, binder, stages);
       if (bound.mesh.triangles.empty())
         throw Error(place + ": no triangle of surface '" + load.surface + "' lies in its crop and within " +
-                    millimetres(extrapolation) + " of the tissue");
+                    length_text(extrapolation, scene.unit) + " of the tissue");
       if (bound.too_far > 0)
         stages.found("load '" + load.name + "': " + std::to_string(bound.too_far) +
                      " triangles left out, too far from the tissue");

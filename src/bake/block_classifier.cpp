@@ -39,9 +39,11 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
   {
     materials = std::max(materials, entry.material + 1);
     muscles = std::max(muscles, entry.muscle + 1);
+    band_share_.emplace_back(entry.bands.empty() ? 0 : entry.bands.size() + 1, 0);
     for (const Volumes::Band& band : entry.bands)
       materials = std::max(materials, band.material + 1);
   }
+  voxels_.band_size = band_share_;
   material_share_.assign(static_cast<std::size_t>(materials), 0);
   muscle_share_.assign(static_cast<std::size_t>(muscles), 0);
 }
@@ -76,8 +78,7 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
 
   if (known)
   {
-    std::fill(material_share_.begin(), material_share_.end(), 0);
-    std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
+    clear_shares();
     std::vector<double> depth;
     for (const auto& interval : state.depth)
       depth.push_back(interval.depth);
@@ -88,10 +89,8 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
         for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
           emit({ i, j, k }, 1);
     for (std::size_t v = 0; v < state.volume.size(); ++v)
-    {
-      if (state.volume[v] == Answer::yes)
-        voxels_.volume_size[v] += voxels * voxel_volume_;
-    }
+      volume_share_[v] = state.volume[v] == Answer::yes ? 1 : 0;
+    add_sizes(voxels);
     return;
   }
   if (single)
@@ -100,8 +99,7 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
     double fill = 0;
     for (const double share : material_share_)
       fill += share;
-    for (std::size_t v = 0; v < volume_share_.size(); ++v)
-      voxels_.volume_size[v] += volume_share_[v] * voxel_volume_;
+    add_sizes(1);
     if (fill > 0 && fill >= fill_min_)
       emit(begin, fill);
     return;
@@ -124,6 +122,25 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
     }
     if (!empty)
       visit(from, to, state);
+  }
+}
+
+void BlockClassifier::clear_shares()
+{
+  std::fill(material_share_.begin(), material_share_.end(), 0);
+  std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
+  std::fill(volume_share_.begin(), volume_share_.end(), 0);
+  for (auto& bands : band_share_)
+    std::fill(bands.begin(), bands.end(), 0);
+}
+
+void BlockClassifier::add_sizes(double voxels)
+{
+  for (std::size_t v = 0; v < volume_share_.size(); ++v)
+  {
+    voxels_.volume_size[v] += volume_share_[v] * voxels * voxel_volume_;
+    for (std::size_t b = 0; b < band_share_[v].size(); ++b)
+      voxels_.band_size[v][b] += band_share_[v][b] * voxels * voxel_volume_;
   }
 }
 
@@ -256,11 +273,10 @@ void BlockClassifier::settle_sight(std::size_t volume, const Box& box, BlockStat
 {
   // a box without a piece of an `outside` surface lies on one side of them
   const Volumes::Entry& entry = volumes_.entries()[volume];
-  for (const int s : entry.outside)
-  {
-    if (state.solid[static_cast<std::size_t>(s)] == Answer::unknown)
-      return;
-  }
+  const auto hiding = entry.outside.begin() + static_cast<std::ptrdiff_t>(entry.hiding);
+  if (std::any_of(entry.outside.begin(), hiding,
+                  [&](int s) { return state.solid[static_cast<std::size_t>(s)] == Answer::unknown; }))
+    return;
   const Vector3 centre = box.centre();
   const double radius = norm(box.upper - centre);
   const double bound = entry.volume->depth_max + radius;
@@ -268,13 +284,12 @@ void BlockClassifier::settle_sight(std::size_t volume, const Box& box, BlockStat
   const ClosestPoint closest = field.surface->tree().closest(centre, bound);
   if (closest.triangle < 0)
     return;
-  bool clear = true;
-  for (const int s : entry.outside)
+  const auto away = [&](int s)
   {
     const PreparedSurface& surface = *volumes_.solids()[static_cast<std::size_t>(s)].surface;
-    clear = clear && surface.tree().closest(centre, closest.distance + 2 * radius).triangle < 0;
-  }
-  if (clear)
+    return surface.tree().closest(centre, closest.distance + 2 * radius).triangle < 0;
+  };
+  if (std::all_of(entry.outside.begin(), hiding, away))
     state.sight[volume] = Answer::yes;
   else if (radius < 1.001 * reach_)
     state.sight[volume] = in_sight(entry, centre, bound) ? Answer::yes : Answer::no;
@@ -286,7 +301,7 @@ bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3& p, do
   const ClosestPoint closest = field.surface->tree().closest(p, bound);
   return closest.triangle >= 0 &&
          std::none_of(
-             entry.outside.begin(), entry.outside.end(),
+             entry.outside.begin(), entry.outside.begin() + static_cast<std::ptrdiff_t>(entry.hiding),
              [&](int s)
              { return volumes_.solids()[static_cast<std::size_t>(s)].surface->tree().crossed_by(p, closest.point); });
 }

@@ -62,6 +62,9 @@ private:
   double sample_depth(std::size_t depth, const Vector3& p, const BlockState& state);
   bool in_sight(const Volumes::Entry& entry, const Vector3& p, double bound) const;
   void count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
+  void count_bands(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
+  void clear_shares();
+  void add_sizes(double voxels);
   void emit(const std::array<std::int32_t, 3>& place, double fill);
 
   const Volumes& volumes_;
@@ -88,6 +91,7 @@ private:
   std::vector<double> material_share_;
   std::vector<double> muscle_share_;
   std::vector<double> volume_share_;
+  std::vector<std::vector<double>> band_share_;
   // of the sample: answers already found, -1 not yet
   std::vector<std::int8_t> solid_here_;
   std::vector<double> depth_here_;

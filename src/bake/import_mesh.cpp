@@ -52,6 +52,9 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+  const std::string no_triangles = ": has no triangles; a surface is wanted, not points or lines";
+  if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
+    throw Error("mesh file " + file + no_triangles);
   if (scene == nullptr)
     throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
                 "); a file with triangles or quads is wanted, OBJ, STL or PLY say");
@@ -59,7 +62,7 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   if (scene->mRootNode != nullptr)
     append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
   if (mesh.triangles.empty())
-    throw Error("mesh file " + file + ": has no triangles; a surface is wanted, not points or lines");
+    throw Error("mesh file " + file + no_triangles);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
   {
     if (!is_finite(mesh.vertices[v]))

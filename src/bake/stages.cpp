@@ -1,5 +1,6 @@
 #include "stages.hpp"
 
+#include "available_memory.hpp"
 #include "frontalis/error.hpp"
 
 namespace frontalis
@@ -18,7 +19,7 @@ void Stages::finish()
   advance(1);
   if (report_ != nullptr)
     report_->stages.push_back(
-        { name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() });
+        { name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(), peak_memory() });
   name_.clear();
 }
 

@@ -47,6 +47,9 @@ Volumes::Volumes(const Scene& scene, const std::vector<std::unique_ptr<PreparedS
         entry.inside.push_back(solid({ name }));
       for (const std::string& name : volume.outside)
         entry.outside.push_back(solid({ name }));
+      entry.hiding = entry.outside.size();
+      for (const std::string& name : volume.without)
+        entry.outside.push_back(solid({ name }));
       if (!volume.within.empty())
       {
         entry.within = depth(volume.within);
@@ -112,7 +115,7 @@ void Volumes::add_layers(const Scene& scene, double sample_spacing)
     auto& thresholds = depths_[static_cast<std::size_t>(at)].thresholds;
     thresholds.push_back(band_begin);
     thresholds.push_back(bottom);
-    entry.bands.push_back({ at, band_begin, bottom, material });
+    entry.bands.push_back({ at, band_begin, bottom, material, &layer });
     band_begin = bottom;
   }
 }
@@ -202,7 +205,8 @@ Box Volumes::tissue_box() const
         throw Error(place(*entry.volume) + ": has no bounds; give 'inside', 'closed_by' or 'within'");
       if (bounds.lower[a] >= bounds.upper[a])
         throw Error(place(*entry.volume) + ": is empty: its surfaces, depths and crop have no place in common along " +
-                    std::string(1, static_cast<char>('x' + a)) + "; check the crop and the units");
+                    std::string(1, static_cast<char>('x' + a)) +
+                    "; a surface is flat there, or a crop or a length unit is wrong");
     }
     Box box;
     box.lower = bounds.lower;

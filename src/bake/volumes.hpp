@@ -30,6 +30,7 @@ public:
     int depth = 0;
     double from = 0, to = 0;
     int material = 0;
+    const Layer* layer = nullptr;
   };
   /// A layer too thin for sampling.
   struct ThinLayer
@@ -45,14 +46,15 @@ public:
     const Volume* volume = nullptr;
     int closed_by = -1;        ///< solid
     std::vector<int> inside;   ///< solids
-    std::vector<int> outside;  ///< solids
+    std::vector<int> outside;  ///< solids: those of `outside`, then those of `without`
+    std::size_t hiding = 0;    ///< how many of these, the first, hide what lies behind them
     int within = -1;           ///< depth
     int material = -1;
     int muscle = -1;
     std::vector<Band> bands;
 
     /// Depths are counted on the near side of the `outside` surfaces only.
-    bool asks_sight() const { return within >= 0 && !outside.empty(); }
+    bool asks_sight() const { return within >= 0 && hiding > 0; }
   };
 
   /// Throws Error naming what a volume, layer or muscle refers to that is not there.

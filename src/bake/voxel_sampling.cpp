@@ -9,9 +9,7 @@ namespace frontalis
 
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
-  std::fill(material_share_.begin(), material_share_.end(), 0);
-  std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
-  std::fill(volume_share_.begin(), volume_share_.end(), 0);
+  clear_shares();
   std::fill(gathered_.begin(), gathered_.end(), false);
   std::fill(nearby_.begin(), nearby_.end(), Nearby());
   // a little beside the centre: symmetric scenes have edges and corners there
@@ -138,8 +136,26 @@ double BlockClassifier::sample_depth(std::size_t depth, const Vector3& p, const 
   return here = -field.surface->signed_distance(p, closest);
 }
 
+void BlockClassifier::count_bands(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
+{
+  for (std::size_t v = 0; v < inside.size(); ++v)
+  {
+    const auto& bands = volumes_.entries()[v].bands;
+    if (bands.empty() || inside[v] != Answer::yes)
+      continue;
+    const auto holds = [&depth](const Volumes::Band& band)
+    {
+      const double d = depth[static_cast<std::size_t>(band.depth)];
+      return d >= band.from && d < band.to;
+    };
+    const auto band = std::find_if(bands.begin(), bands.end(), holds);
+    band_share_[v][static_cast<std::size_t>(band - bands.begin())] += share;
+  }
+}
+
 void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
 {
+  count_bands(inside, depth, share);
   // the highest priority among those that bring a material; equals share
   int highest = std::numeric_limits<int>::min();
   int sharers = 0;

@@ -1,11 +1,9 @@
 #include "voxelise.hpp"
 
 #include "block_classifier.hpp"
-#include "frontalis/error.hpp"
 #include "parallel.hpp"
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 
 namespace frontalis
 {
@@ -13,43 +11,8 @@ namespace
 {
 
 constexpr std::int32_t block = 16;
-constexpr double most_voxels = 2e9;
-constexpr double least_voxels = 8;
-
-std::string millimetres(const Vector3& v)
-{
-  char text[128];
-  std::snprintf(text, sizeof(text), "%.4g x %.4g x %.4g mm", 1e3 * v[0], 1e3 * v[1], 1e3 * v[2]);
-  return text;
-}
 
 }  // namespace
-
-Grid make_grid(const Box& box, const Vector3& spacing, const std::string& file)
-{
-  Grid grid;
-  grid.lower = box.lower;
-  grid.spacing = spacing;
-  const Vector3 extent = box.upper - box.lower;
-  double count = 1;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    if (!(spacing[a] > 0))
-      throw Error(file + ": voxel edge " + std::to_string(spacing[a]) + " m; it must be above 0");
-    count *= std::max(1.0, std::ceil(extent[a] / spacing[a] - 1e-6));
-  }
-  if (count > most_voxels || count < least_voxels)
-  {
-    char number[32];
-    std::snprintf(number, sizeof(number), "%.3g", count);
-    throw Error(file + ": the tissue spans " + millimetres(extent) + ", which is " + number + " voxels of " +
-                millimetres(spacing) + "; " + (count < least_voxels ? "at least 8" : "at most 2e9") +
-                " are wanted: check the length units of the scene and of its files, and the voxel size");
-  }
-  for (std::size_t a = 0; a < 3; ++a)
-    grid.size[a] = std::max(1, static_cast<std::int32_t>(std::ceil(extent[a] / spacing[a] - 1e-6)));
-  return grid;
-}
 
 void Voxels::append(const Voxels& other)
 {
@@ -68,6 +31,13 @@ void Voxels::append(const Voxels& other)
   volume_size.resize(std::max(volume_size.size(), other.volume_size.size()), 0);
   for (std::size_t v = 0; v < other.volume_size.size(); ++v)
     volume_size[v] += other.volume_size[v];
+  band_size.resize(std::max(band_size.size(), other.band_size.size()));
+  for (std::size_t v = 0; v < other.band_size.size(); ++v)
+  {
+    band_size[v].resize(other.band_size[v].size(), 0);
+    for (std::size_t b = 0; b < band_size[v].size(); ++b)
+      band_size[v][b] += other.band_size[v][b];
+  }
 }
 
 Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, Stages& stages)

@@ -17,9 +17,10 @@ struct Grid
   std::array<std::int32_t, 3> size{ { 0, 0, 0 } };
 };
 
-/// The grid that holds `box`. Throws Error, before anything is allocated, where it would have fewer than 8 voxels or
-/// more than 2e9.
-Grid make_grid(const Box& box, const Vector3& spacing, const std::string& file);
+/// The grid that holds the scene's tissue. Throws Error, before anything is allocated, where it would have fewer than 8
+/// cells, or where the model would have more voxels than can be counted or take more memory than is free, both
+/// estimated from 2000 points. The text has the numbers, and the length unit that was probably meant.
+Grid make_grid(const Scene& scene, const Volumes& volumes);
 
 /// Voxels with tissue, in scene axes, in no particular but always the same order.
 struct Voxels
@@ -35,6 +36,8 @@ struct Voxels
   std::vector<float> weight;
   std::vector<double>
       volume_size;  ///< of each volume of the scene, clipped to the tissue, before voxels are dropped [m3]
+  /// of each volume with layers: what its bands hold, and behind them what is left below them [m3]
+  std::vector<std::vector<double>> band_size;
 
   void append(const Voxels& other);
 };

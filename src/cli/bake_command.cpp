@@ -43,6 +43,7 @@ void bake_to_file(const BakeOptions& options)
     throw Error(options.source.path + ": is a model that is baked already; must be a scene (YAML)");
   const auto begin = std::chrono::steady_clock::now();
   BakeSummary summary;
+  summary.whole = options.report;
   const Model model = bake_scene(options.source, &summary);
   write_model(model, options.output);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -53,6 +54,8 @@ void bake_to_file(const BakeOptions& options)
       std::printf("stage    %s\n", stage.c_str());
     for (const std::string& finding : summary.findings)
       std::printf("finding  %s\n", finding.c_str());
+    for (const std::string& muscle : summary.muscles)
+      std::printf("muscle   %s\n", muscle.c_str());
   }
   std::printf("voxels   %zu of %g x %g x %g mm\n", model.voxels.size(), model.spacing[0] * 1e3, model.spacing[1] * 1e3,
               model.spacing[2] * 1e3);

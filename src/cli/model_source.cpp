@@ -41,6 +41,38 @@ bool is_model_file(const std::string& path)
 
 #ifdef FRONTALIS_WITH_BAKE
 
+namespace
+{
+
+BakeSummary summary_of(const BakeReport& report)
+{
+  BakeSummary summary;
+  summary.whole = report.measure_muscles;
+  summary.findings = report.findings;
+  char line[256];
+  for (const BakeReport::Stage& stage : report.stages)
+  {
+    std::snprintf(line, sizeof line, "%8.3f s  %6.0f MB  ", stage.seconds, stage.peak_memory / 1e6);
+    summary.stages.push_back(line + stage.name);
+  }
+  for (const BakeReport::MuscleVolume& muscle : report.muscles)
+  {
+    if (summary.muscles.empty())
+    {
+      std::snprintf(line, sizeof line, "%8s %9s %7s %8s %8s %8s %8s %8s  cm3", "voxels", "in tissue", "differ", "mesh",
+                    "in bone", "off skin", "limits", "nurbs");
+      summary.muscles.emplace_back(line);
+    }
+    std::snprintf(line, sizeof line, "%8.3f %9.3f %6.1f%% %8.3f %8.3f %8.3f %8.3f %8.3f  ", 1e6 * muscle.voxels,
+                  1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1), 1e6 * muscle.mesh,
+                  1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere, 1e6 * muscle.nurbs);
+    summary.muscles.push_back(line + muscle.name);
+  }
+  return summary;
+}
+
+}  // namespace
+
 Model bake_scene(const ModelSource& source, BakeSummary* summary)
 {
   SceneOptions options;
@@ -51,6 +83,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
 
   Progress progress;
   BakeReport report;
+  report.measure_muscles = summary != nullptr && summary->whole;
   Model model;
   try
   {
@@ -71,15 +104,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   if (interrupt_requested())
     throw Interrupted();
   if (summary != nullptr)
-  {
-    for (const BakeReport::Stage& stage : report.stages)
-    {
-      char seconds[32];
-      std::snprintf(seconds, sizeof seconds, "%8.3f s  ", stage.seconds);
-      summary->stages.push_back(seconds + stage.name);
-    }
-    summary->findings = report.findings;
-  }
+    *summary = summary_of(report);
   return model;
 }
 

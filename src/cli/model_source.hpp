@@ -25,7 +25,9 @@ struct ModelSource
 /// What a bake told, ready to print.
 struct BakeSummary
 {
-  std::vector<std::string> stages;  ///< name and seconds
+  bool whole = false;                ///< to be set before: measure the muscles too
+  std::vector<std::string> stages;   ///< seconds, peak memory and name
+  std::vector<std::string> muscles;  ///< a table of their volumes, heading first; empty: none
   std::vector<std::string> findings;
 };
 

@@ -92,7 +92,7 @@ void add_anatomy(const Scene& scene, std::string& content)
   for (const Volume& volume : scene.volumes)
   {
     Line line(content, "volume");
-    line.add(volume.name).add(volume.closed_by).add(volume.inside).add(volume.outside);
+    line.add(volume.name).add(volume.closed_by).add(volume.inside).add(volume.outside).add(volume.without);
     line.add(volume.within).add(volume.depth_min).add(volume.depth_max).add(volume.crop);
     line.add(volume.material).add(volume.priority).add(volume.tissue);
   }

@@ -67,6 +67,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   SceneNames names;
   // the unit comes first: every length needs it
   read_unit(mapping.required("unit", "the length unit of plain numbers: m, cm, mm, um or in"));
+  scene.unit = root.context().length_unit;
   const Node mesh_directory = mapping.optional("mesh_dir");
   read_frame(mapping.optional("frame"), scene.frame);
   read_surfaces(mapping.required("surfaces", "a mapping of surfaces"), mesh_directory, options, scene, names);

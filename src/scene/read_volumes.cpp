@@ -77,6 +77,7 @@ void read_volumes(const Node& node, Scene& scene, SceneNames& names)
       volume.closed_by = closed_by.references(names.surfaces);
       volume.inside = inside.references(names.surfaces);
       volume.outside = mapping.optional("outside").references(names.surfaces);
+      volume.without = mapping.optional("without").references(names.surfaces);
       if (within.given())
         read_depth(within, volume, names);
       if (entry.is_mapping() && !closed_by.given() && !inside.given() && !within.given())

@@ -112,4 +112,22 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3)), 1, 0.01);
 }
 
+TEST_F(OpenSurfaces, AnOpeningHidesNothing)
+{
+  // a slot into a block from above, wider than deep: the tissue below it sees the slot's mouth
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 20e-3, 20e-3 }),
+                     box_surface("slot", { 0, 0, 10e-3 }, { 10e-3, 10e-3, 4e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  scene.volumes[0].within = "block";
+  scene.volumes[0].depth_max = 5e-3;
+  const double shell = 8e-6 - 1e-6, slot = 10e-3 * 10e-3 * 2e-3;
+  scene.volumes[0].without = { "slot" };
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - slot), 1, 0.01);
+  // as a bone it also takes what lies behind it
+  scene.volumes[0].without.clear();
+  scene.volumes[0].outside = { "slot" };
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - 2.5 * slot), 1, 0.01);
+}
+
 }  // namespace

@@ -181,7 +181,7 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
   };
   EXPECT_FALSE(reported("good", "turned"));
   EXPECT_TRUE(reported("turned", "inside-out"));
-  EXPECT_TRUE(reported("mixed", "1 triangles turned"));
+  EXPECT_TRUE(reported("mixed", "1 triangle turned"));
 }
 
 TriangleMesh forehead(const std::string& part) { return joined(make_forehead(*forehead_surface(part).shape)); }

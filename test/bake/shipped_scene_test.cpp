@@ -129,4 +129,25 @@ TEST(RealHead, BakesFromSegmentedMeshes)
   EXPECT_GT(model.sliding.size(), 1000u);
 }
 
+TEST(RealFace, BakesWithAllItsMuscles)
+{
+  if (!std::filesystem::exists(head + "/skin/skin.obj"))
+    GTEST_SKIP() << "skipped: the meshes of the head are not here";
+  SceneOptions options;
+  options.mesh_directory = head;
+  options.voxel = 1.5e-3;
+  BakeReport report;
+  report.measure_muscles = true;
+  const Model model = bake(read_scene(source + "/config/real_face.yaml", options), &report);
+  ASSERT_EQ(report.muscles.size(), 27u);
+  for (const BakeReport::MuscleVolume& muscle : report.muscles)
+  {
+    EXPECT_NEAR(muscle.voxels / muscle.in_tissue, 1, 0.03) << muscle.name;
+    const double clipped = muscle.in_bone + muscle.beyond_skin + muscle.elsewhere;
+    EXPECT_NEAR((muscle.in_tissue + clipped) / muscle.mesh, 1, 1e-9) << muscle.name;
+  }
+  EXPECT_EQ(model.landmarks.size(), 7u);
+  EXPECT_EQ(model.bones, std::vector<std::string>{ "mandible" });
+}
+
 }  // namespace

@@ -130,6 +130,7 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_EQ(tissue.closed_by, (std::vector<std::string>{ "box", "sphere" }));
   EXPECT_EQ(tissue.inside, (std::vector<std::string>{ "ellipsoid", "cylinder" }));
   EXPECT_EQ(tissue.outside, std::vector<std::string>{ "torus" });
+  EXPECT_EQ(tissue.without, std::vector<std::string>{ "sphere" });
   expect_vector(tissue.crop.lower, { -0.01, -infinity, -infinity });
   expect_vector(tissue.crop.upper, { 0.01, 0.02, infinity });
   EXPECT_EQ(tissue.material, "dermis");

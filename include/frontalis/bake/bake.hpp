@@ -16,8 +16,24 @@ struct BakeReport
   {
     std::string name;
     double seconds = 0;
+    double peak_memory = 0;  ///< the most that the process has had up to its end [bytes]
+  };
+  /// A muscle's volumes [m3]. `voxels` is what the model carries; the others are measured on the surfaces themselves,
+  /// without voxels: lengths of lines inside the muscle, and points on them asked for bone, skin and depth.
+  struct MuscleVolume
+  {
+    std::string name;
+    double voxels = 0;
+    double mesh = 0;         ///< inside the muscle's surfaces
+    double in_tissue = 0;    ///< of these, in the tissue and within the muscle's own limits
+    double in_bone = 0;      ///< clipped: inside surfaces that the tissue lies outside of
+    double beyond_skin = 0;  ///< clipped: outside the surfaces that the tissue lies inside of
+    double elsewhere = 0;    ///< clipped: by a depth or a crop
+    double nurbs = 0;        ///< inside the NURBS volume of its fibres; 0: it has none
   };
   std::vector<Stage> stages;
+  std::vector<MuscleVolume> muscles;  ///< of muscles made of surfaces, where `measure_muscles` asks for them
+  bool measure_muscles = false;       ///< to be set before: takes seconds
   std::vector<std::string> findings;  ///< what was repaired, clipped, removed or left out, one sentence each
 };
 

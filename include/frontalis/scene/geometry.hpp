@@ -56,7 +56,7 @@ struct Surface
 };
 
 /// A set of points: inside the collection `closed_by` taken together (if given), inside at least one of `inside`
-/// (if given), outside each of `outside`, at a depth in [depth_min, depth_max] below the surface `within` (if given)
+/// (if given), outside each of `outside` and of `without`, at a depth in [depth_min, depth_max] below the surface `within` (if given)
 /// with none of the surfaces `outside` on the straight way there, and inside `crop`.
 struct Volume
 {
@@ -64,6 +64,7 @@ struct Volume
   std::vector<std::string> closed_by;
   std::vector<std::string> inside;
   std::vector<std::string> outside;
+  std::vector<std::string> without;
   std::string within;
   double depth_min = 0;
   double depth_max = 0;

@@ -82,6 +82,7 @@ struct DemoPhase
 struct Scene
 {
   std::string file;
+  double unit = 1e-3;  ///< metres a plain number of the file: lengths and places in messages are in it
   std::vector<Surface> surfaces;
   std::vector<Volume> volumes;
   std::vector<SceneMaterial> materials;

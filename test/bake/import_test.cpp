@@ -1,0 +1,211 @@
+// what is repaired in meshes and listed, and what is data; what is refused stands in test/model/bad
+
+#include "../../src/bake/load_surface.hpp"
+#include "../../src/bake/mesh_faults.hpp"
+#include "../../src/bake/mesh_repairs.hpp"
+#include "../../src/bake/surface.hpp"
+
+#include "frontalis/error.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace
+{
+
+using namespace frontalis;
+
+TriangleMesh sphere(const Vector3& centre, double radius)
+{
+  TriangleMesh mesh = make_shape(*sphere_surface("", centre, radius, 0.3 * radius).shape);
+  join_vertices(mesh);
+  return mesh;
+}
+
+TriangleMesh box(const Vector3& centre, const Vector3& size)
+{
+  TriangleMesh mesh = make_shape(*box_surface("", centre, size).shape);
+  join_vertices(mesh);
+  return mesh;
+}
+
+TriangleMesh together(TriangleMesh a, const TriangleMesh& b)
+{
+  const auto base = static_cast<std::int32_t>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Triangle& t : b.triangles)
+    a.triangles.push_back({ base + t[0], base + t[1], base + t[2] });
+  return a;
+}
+
+class Import : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    folder_ = std::filesystem::temp_directory_path() / ("frontalis_import_test_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Writes the mesh with coordinates in millimetres and loads it.
+  LoadedSurface load(const TriangleMesh& mesh) const
+  {
+    const std::string file = (folder_ / "mesh.obj").string();
+    std::ofstream out(file);
+    char line[128];
+    for (const Vector3& v : mesh.vertices)
+    {
+      std::snprintf(line, sizeof(line), "v %.9g %.9g %.9g\n", v[0], v[1], v[2]);
+      out << line;
+    }
+    for (const Triangle& t : mesh.triangles)
+      out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    out.close();
+    return load_surface(file_surface("body", file, 1e-3), 1e-3);
+  }
+
+  static bool told(const LoadedSurface& surface, const std::string& what)
+  {
+    for (const std::string& finding : surface.findings)
+    {
+      if (finding == "surface 'body': " + what)
+        return true;
+    }
+    return false;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Import, AGoodMeshHasNoFindings)
+{
+  const LoadedSurface surface = load(sphere({ 1, 2, 1500 }, 10));
+  EXPECT_TRUE(surface.findings.empty()) << surface.findings.front();
+  EXPECT_NEAR(signed_volume(surface.mesh) / (4.0 / 3 * pi * 1e-6), 1, 0.05);
+}
+
+TEST_F(Import, AnInsideOutSphereIsTurned)
+{
+  TriangleMesh mesh = sphere({ 0, 0, 0 }, 10);
+  const double size = signed_volume(mesh);
+  flip(mesh);
+  const LoadedSurface surface = load(mesh);
+  EXPECT_TRUE(told(surface, "was inside-out; turned"));
+  EXPECT_NEAR(signed_volume(surface.mesh) / (1e-9 * size), 1, 1e-6);
+}
+
+TEST_F(Import, AnInsideOutPieceIsTurnedAndACavityIsNot)
+{
+  TriangleMesh inside_out = sphere({ 30, 0, 0 }, 10), cavity = sphere({ 0, 0, 0 }, 5);
+  flip(inside_out);
+  flip(cavity);
+  const LoadedSurface surface = load(together(together(sphere({ 0, 0, 0 }, 10), cavity), inside_out));
+  EXPECT_TRUE(told(surface, "1 piece inside-out; turned"));
+  const double ball = signed_volume(sphere({ 0, 0, 0 }, 1));
+  EXPECT_NEAR(1e9 * signed_volume(surface.mesh) / (ball * (1000 - 125 + 1000)), 1, 0.02);
+}
+
+TEST_F(Import, TrianglesThatDisagreeAreTurned)
+{
+  TriangleMesh mesh = box({ 0, 0, 0 }, { 10, 10, 10 });
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  const LoadedSurface surface = load(mesh);
+  EXPECT_TRUE(told(surface, "1 triangle turned to agree with its neighbours"));
+  EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
+}
+
+TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
+{
+  TriangleMesh mesh = box({ 0, 0, 0 }, { 10, 10, 10 });
+  const std::size_t triangles = mesh.triangles.size();
+  mesh.vertices.insert(mesh.vertices.end(), { { 20, 0, 0 }, { 30, 0, 0 }, { 20, 10, 0 } });
+  const auto last = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.triangles.push_back({ 0, 1, 1 });
+  mesh.triangles.push_back({ last - 3, last - 2, last - 1 });
+  mesh.triangles.push_back({ last - 3, last - 1, last - 2 });
+  const LoadedSurface surface = load(mesh);
+  EXPECT_TRUE(told(surface, "1 pair of triangles back to back left out"));
+  EXPECT_EQ(surface.mesh.triangles.size(), triangles);
+  EXPECT_EQ(surface.mesh.vertices.size(), 8u);
+  EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
+}
+
+TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
+{
+  // an edge's middle belongs to one of its two sides alone: a triangle without area fills the crack
+  TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
+  const Triangle split = mesh.triangles[0];
+  const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
+  const Vector3 a = mesh.vertices[static_cast<std::size_t>(split[0])],
+                b = mesh.vertices[static_cast<std::size_t>(split[1])];
+  mesh.vertices.push_back(0.5 * (a + b));
+  mesh.triangles[0] = { split[0], middle, split[2] };
+  mesh.triangles.push_back({ middle, split[1], split[2] });
+  mesh.triangles.push_back({ split[0], split[1], middle });
+  const std::size_t triangles = mesh.triangles.size();
+  const LoadedSurface surface = load(mesh);
+  EXPECT_TRUE(told(surface, "1 triangle without area left out"));
+  EXPECT_EQ(surface.mesh.triangles.size(), triangles);  // one less, and its neighbour is two
+  EXPECT_TRUE(unbalanced_edges(surface.mesh).empty());
+  EXPECT_EQ(find_mesh_faults(surface.mesh).flat.count, 0u);
+  EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
+}
+
+TEST_F(Import, HolesAreDataAndMeasured)
+{
+  TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
+  // without its top
+  std::vector<bool> keep;
+  for (const Triangle& t : mesh.triangles)
+  {
+    double lowest = 1e9;
+    for (const std::int32_t v : t)
+      lowest = std::min(lowest, mesh.vertices[static_cast<std::size_t>(v)][2]);
+    keep.push_back(lowest < 9);
+  }
+  const LoadedSurface surface = load(keep_triangles(mesh, keep));
+  EXPECT_TRUE(told(surface, "is open: 1 hole, the largest 40 mm around, at (5, 5, 10) mm"));
+  const auto holes = find_holes(surface.mesh);
+  ASSERT_EQ(holes.size(), 1u);
+  EXPECT_NEAR(holes[0].length, 40e-3, 1e-9);
+  EXPECT_NEAR(holes[0].centre[2], 10e-3, 1e-9);
+}
+
+TEST_F(Import, BodiesThatTouchAlongAnEdgeAreData)
+{
+  const LoadedSurface surface = load(together(box({ 5, 5, 5 }, { 10, 10, 10 }), box({ 15, 15, 5 }, { 10, 10, 10 })));
+  EXPECT_TRUE(told(surface, "1 edge where bodies touch (non-manifold), at (10, 10, 5) mm"));
+  EXPECT_NEAR(signed_volume(surface.mesh), 2e-6, 1e-12);
+}
+
+TEST_F(Import, ASmallCrossingIsDataAndALargeOneAnError)
+{
+  const LoadedSurface surface = load(together(sphere({ 0, 0, 0 }, 10), sphere({ 19.5, 0, 0 }, 10)));
+  ASSERT_FALSE(surface.findings.empty());
+  EXPECT_NE(surface.findings.back().find("pairs of triangles cross"), std::string::npos) << surface.findings.back();
+  EXPECT_THROW(load(together(sphere({ 0, 0, 0 }, 10), sphere({ 14, 0, 0 }, 10))), Error);
+}
+
+TEST(MeshFaults, CountsSliversAndCrossings)
+{
+  // a long thin triangle, and one that stabs it
+  TriangleMesh mesh;
+  mesh.vertices = { { 0, 0, 0 }, { 100, 0, 0 }, { 50, 1, 0 }, { 50, 0.3, -5 }, { 51, 0.3, 5 }, { 49, 0.3, 5 } };
+  mesh.triangles = { { 0, 1, 2 }, { 3, 4, 5 } };
+  const MeshFaults faults = find_mesh_faults(mesh);
+  EXPECT_EQ(faults.slivers.count, 1u);
+  EXPECT_EQ(faults.crossings.count, 1u);
+  EXPECT_EQ(faults.flat.count, 0u);
+  EXPECT_EQ(faults.holes.size(), 2u);
+  EXPECT_GT(faults.crossing_extent, 99);
+  EXPECT_EQ(faults.piece.size(), 2u);
+}
+
+}  // namespace
