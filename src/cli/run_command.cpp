@@ -4,6 +4,7 @@
 #include "frame_folder.hpp"
 #include "interrupt.hpp"
 #include "model_source.hpp"
+#include "motion.hpp"
 #include "progress.hpp"
 #include "run_summary.hpp"
 
@@ -29,48 +30,16 @@ struct RunOptions
   ModelSource source;
   std::string activation;
   std::string expression;
+  std::string activation_file;
+  bool to_equilibrium = false;
+  double tolerance = 1e-3;
+  bool ledger = false;
   double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if that is less
   double seconds = 1;
   std::string frames;
   double frame_rate = 0;  ///< [1/s]; 0: the model's
   std::string backend = "auto";
   int threads = 0;
-};
-
-// the motion over time: activations grow from 0 to their target over the ramp, then stay
-class Motion
-{
-public:
-  Motion(Solver& solver, const Model& model, std::vector<float> target, double ramp)
-      : solver_(solver), scaling_(model.time_scaling), target_(std::move(target)), ramp_(ramp)
-  {
-  }
-
-  /// Advances to `time` on the clock on which activations are given, not across the end of the ramp in one go.
-  void advance_to(double time)
-  {
-    if (time_ < ramp_ && ramp_ < time)
-      advance(ramp_);
-    advance(time);
-  }
-
-private:
-  void advance(double time)
-  {
-    Controls controls = solver_.controls();
-    controls.activation = target_;
-    if (time < ramp_)
-      for (float& activation : controls.activation)
-        activation *= static_cast<float>(time / ramp_);
-    solver_.advance((time - time_) / scaling_, controls);
-    time_ = time;
-  }
-
-  Solver& solver_;
-  double scaling_;
-  std::vector<float> target_;
-  double ramp_;
-  double time_ = 0;
 };
 
 // a state that cannot be trusted ends the run before its frame is written
@@ -86,6 +55,8 @@ void look(Solver& solver, const Model& model, double time, RunSummary& summary)
 {
   solver.skin(summary.end);
   summary.monitor = solver.monitor();
+  if (summary.ledger)
+    summary.ledger = solver.ledger();
   check_motion(summary.monitor, summary.end, time);
   to_face_frame(model, summary.end);
   summary.seconds = time;
@@ -126,8 +97,41 @@ void play(Solver& solver, const Model& model, const RunOptions& options, Motion&
   }
 }
 
+// relaxes to equilibrium, the activations at once where they end
+void settle(Solver& solver, const Model& model, const RunOptions& options, const std::vector<float>& target,
+            std::optional<FrameFolder>& folder, RunSummary& summary)
+{
+  const auto begin = std::chrono::steady_clock::now();
+  look(solver, model, 0, summary);
+  summary.rest = summary.end;
+  Controls controls = solver.controls();
+  controls.activation = target;
+  const double slice = options.seconds / 200 / model.time_scaling;
+  Progress progress;
+  // in slices, so that Ctrl-C is heard; the damping found is lost between them, so they are long
+  Equilibrium found;
+  double time = 0;
+  for (int part = 0; part < 200 && !found.reached && !interrupt_requested(); ++part)
+  {
+    found = solver.settle(controls, options.tolerance, slice);
+    time += found.seconds * model.time_scaling;
+    progress.update("relaxing", part / 200.0, std::to_string(found.residual) + " left");
+  }
+  look(solver, model, time, summary);
+  summary.frames = 1;
+  summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  summary.equilibrium = found;
+  summary.complete = !interrupt_requested() || found.reached;
+  if (folder)
+    folder->add(time, summary.end);
+}
+
 void check_options(const RunOptions& options)
 {
+  if (!options.activation_file.empty() && (!options.activation.empty() || !options.expression.empty()))
+    throw WrongUsage("--activations goes with neither --activate nor --expression");
+  if (options.to_equilibrium && options.ledger)
+    throw WrongUsage("--ledger: there is no balance of energies on the way to equilibrium");
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))
     throw WrongUsage("--seconds: must be a number greater than 0");
   if (!std::isfinite(options.ramp))
@@ -145,27 +149,41 @@ void run(const RunOptions& options)
   SolverSettings settings;
   settings.backend = backend_from_name(options.backend);
   settings.threads = options.threads;
+  settings.ledger = options.ledger;
 
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
-  const std::vector<float> target = target_activation(*model, options.expression, listed);
+  const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
+  const ActivationCurve curve = options.activation_file.empty()
+                                    ? ramp_to(target_activation(*model, options.expression, listed), ramp)
+                                    : read_activation_curve(options.activation_file, *model);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
     folder.emplace(options.frames, *model);
 
   const std::unique_ptr<Solver> solver = make_solver(model, settings);
   RunSummary summary;
+  if (options.ledger)
+    summary.ledger.emplace();
   summary.backend = solver->description();
   summary.time_step = solver->time_step();
   print_set_up(*model, summary);
 
-  const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
-  Motion motion(*solver, *model, target, ramp);
-  play(*solver, *model, options, motion, folder, summary);
+  if (options.to_equilibrium)
+    settle(*solver, *model, options, curve.activation.back(), folder, summary);
+  else
+  {
+    Motion motion(*solver, *model, curve);
+    play(*solver, *model, options, motion, folder, summary);
+  }
   if (folder)
     folder->finish(json_of(*model, summary));
   print_result(*model, summary);
   if (!summary.complete)
     throw Interrupted();
+  if (summary.equilibrium && !summary.equilibrium->reached)
+    throw Error("no equilibrium after " + std::to_string(options.seconds) +
+                " s of relaxation: " + std::to_string(summary.equilibrium->residual) +
+                " of the displacement is left; allow more --seconds or a larger --tolerance");
 }
 
 }  // namespace
@@ -177,6 +195,13 @@ void add_run_command(CLI::App& app, Action& action)
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   command->add_option("--activate", options->activation, "activations from 0 to 1: MUSCLE=VALUE,MUSCLE=VALUE,...");
   command->add_option("--expression", options->expression, "a named set of activations; --activate goes before it");
+  command->add_option("--activations", options->activation_file,
+                      "activations over time: a table (CSV) with columns time [s] and one a muscle");
+  command->add_flag("--to-equilibrium", options->to_equilibrium,
+                    "no motion: relax to equilibrium with the activations as they end, within --seconds (10)");
+  command->add_option("--tolerance", options->tolerance, "of equilibrium: motion left over displacement (0.001)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--ledger", options->ledger, "keep account of energies and print it");
   command->add_option("--ramp", options->ramp, "activations grow linearly over so many seconds (0.1, or half the run)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
@@ -188,7 +213,13 @@ void add_run_command(CLI::App& app, Action& action)
       ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
   command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
   add_scene_options(*command, options->source);
-  command->callback([&action, options] { action = [options] { run(*options); }; });
+  command->callback(
+      [&action, options, command]
+      {
+        if (options->to_equilibrium && command->count("--seconds") == 0)
+          options->seconds = 10;
+        action = [options] { run(*options); };
+      });
 }
 
 }  // namespace frontalis

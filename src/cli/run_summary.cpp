@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 namespace frontalis
 {
@@ -42,6 +44,15 @@ std::string json_number(double value)
   return text;
 }
 
+// terms of the ledger by name [J]
+std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
+{
+  return { { "initial", l.initial },     { "kinetic", l.kinetic },       { "internal", l.internal },
+           { "hourglass", l.hourglass }, { "viscous", l.viscous },       { "damping", l.damping },
+           { "friction", l.friction },   { "muscle", l.muscle },         { "load", l.load },
+           { "gravity", l.gravity },     { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+}
+
 }  // namespace
 
 void print_set_up(const Model& model, const RunSummary& summary)
@@ -69,6 +80,16 @@ void print_result(const Model& model, const RunSummary& summary)
   std::printf("hourglass share    %.3g of the elastic energy at the end\n", hourglass_share(summary.monitor));
   std::printf("worst J            %.4f at the end, %.4f in the run\n", summary.monitor.worst_jacobian,
               summary.worst_jacobian);
+  if (summary.ledger)
+  {
+    for (const auto& [name, joules] : terms_of(*summary.ledger))
+      std::printf("energy             %-10s %+.5e J\n", name, joules);
+    std::printf("energy balance     closes within %.3g %% of the largest term\n",
+                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
+  }
+  if (summary.equilibrium)
+    std::printf("equilibrium        %s: %.2e of the displacement is left\n",
+                summary.equilibrium->reached ? "reached" : "not reached", summary.equilibrium->residual);
   std::printf("simulated          %.4f s in %lld steps, %.3f us the last\n", summary.seconds,
               static_cast<long long>(summary.profile.steps), summary.time_step * 1e6);
   std::printf("wall               %.3f s: stepping %.3f, skin %.3f, energies %.3f\n", summary.wall,
@@ -116,6 +137,14 @@ std::string json_of(const Model& model, const RunSummary& summary)
   add("kinetic_over_internal", json_number(ratio(summary.monitor.kinetic, summary.monitor.internal)));
   add("peak_kinetic_over_peak_internal", json_number(ratio(summary.peak_kinetic, summary.peak_internal)));
   add("hourglass_share", json_number(hourglass_share(summary.monitor)));
+  if (summary.ledger)
+    for (const auto& [name, joules] : terms_of(*summary.ledger))
+      add(std::string("ledger_") + name + "_J", json_number(joules));
+  if (summary.equilibrium)
+  {
+    add("equilibrium_reached", summary.equilibrium->reached ? "true" : "false");
+    add("equilibrium_residual", json_number(summary.equilibrium->residual));
+  }
   add("worst_jacobian", json_number(summary.worst_jacobian));
   add("wall_s", json_number(summary.wall));
   add("stepping_s", json_number(summary.profile.stepping));

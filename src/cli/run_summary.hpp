@@ -3,6 +3,7 @@
 #include "frontalis/model/model.hpp"
 #include "frontalis/solver/solver.hpp"
 
+#include <optional>
 #include <string>
 
 namespace frontalis
@@ -22,8 +23,10 @@ struct RunSummary
   double peak_internal = 0;
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
-  SkinState rest;  ///< face frame
-  SkinState end;   ///< face frame
+  std::optional<EnergyLedger> ledger;      ///< at the end, where one was kept
+  std::optional<Equilibrium> equilibrium;  ///< where one was looked for
+  SkinState rest;                          ///< face frame
+  SkinState end;                           ///< face frame
 };
 
 /// Prints backend, voxels, nodes and time step, before the run.

@@ -8,13 +8,13 @@
 namespace frontalis
 {
 
-Equilibrium find_equilibrium(Model model, const EquilibriumSettings& settings)
+RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
 {
   const double pi = std::acos(-1.0);
   model.damping = 4 * pi / settings.period;
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
-  Equilibrium result;
+  RestState result;
   result.solver = make_solver(std::make_shared<const Model>(std::move(model)), { settings.backend, 0, 0 });
   Controls target = result.solver->controls();
   std::fill(target.activation.begin(), target.activation.end(), settings.activation);

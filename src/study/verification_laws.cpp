@@ -245,7 +245,7 @@ Finding verify_uniaxial_stretch(const VerificationSettings& settings)
     relax.backend = settings.backend;
     relax.period = 3e-3;
     relax.tolerance = 1e-6;
-    Equilibrium rest = find_equilibrium(model, relax);
+    RestState rest = find_equilibrium(model, relax);
     const double stress = internal_force(*rest.solver, end)[0] / (length * length) / shear_modulus(young, poisson);
     const double lateral = 1 + mean_displacement(rest.displacements, side)[1] / length;
     const std::string at = " at stretch " + readable(row[0]);

@@ -20,7 +20,7 @@ struct EquilibriumSettings
 };
 
 /// Model at rest under its loads.
-struct Equilibrium
+struct RestState
 {
   std::unique_ptr<Solver> solver;
   Vectors displacements;  ///< [m]
@@ -29,7 +29,7 @@ struct Equilibrium
 
 /// Lets the model come to rest by mass-proportional damping (the model's own is replaced) under slowly growing loads.
 /// Throws Error where it does not within settings.longest.
-Equilibrium find_equilibrium(Model model, const EquilibriumSettings& settings);
+RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 
 /// Mean displacement [m] of nodes, and the internal force [N] on them.
 std::array<double, 3> mean_displacement(const Vectors& displacements, const std::vector<std::int32_t>& nodes);

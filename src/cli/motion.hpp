@@ -1,0 +1,48 @@
+#pragma once
+
+#include "frontalis/solver/solver.hpp"
+
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Activations over time: linear between knots, constant after the last.
+struct ActivationCurve
+{
+  std::vector<double> time;  ///< ascending from 0 [s], on the clock on which activations are given
+  std::vector<std::vector<float>> activation;
+
+  std::vector<float> at(double seconds) const;
+};
+
+/// From rest to a target over a ramp.
+ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
+
+/// Reads a table: a header `time,MUSCLE,MUSCLE,...`, then a row a knot, times ascending; before the first row muscles
+/// go linearly from rest. Throws Error with the file's line.
+ActivationCurve read_activation_curve(const std::string& path, const Model& model);
+
+/// Plays a curve on a solver.
+class Motion
+{
+public:
+  Motion(Solver& solver, const Model& model, ActivationCurve curve)
+      : solver_(solver), scaling_(model.time_scaling), curve_(std::move(curve))
+  {
+  }
+
+  /// Advances to `time` on the activations' clock, from knot to knot.
+  void advance_to(double time);
+
+private:
+  void advance(double time);
+
+  Solver& solver_;
+  double scaling_;
+  ActivationCurve curve_;
+  double time_ = 0;
+};
+
+}  // namespace frontalis
