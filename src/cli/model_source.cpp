@@ -8,6 +8,7 @@
 #include "frontalis/model/model_file.hpp"
 #ifdef FRONTALIS_WITH_BAKE
 #include "frontalis/bake/bake.hpp"
+#include "frontalis/scene/content_hash.hpp"
 #include "frontalis/scene/read_scene.hpp"
 #endif
 
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 namespace frontalis
 {
@@ -43,6 +45,54 @@ bool is_model_file(const std::string& path)
 
 namespace
 {
+
+/// A folder that holds models by their scenes' content hashes. A fault of it never keeps a scene from being baked.
+class Cache
+{
+public:
+  Cache(const std::string& folder, const Scene& scene) : hash_(content_hash(scene.content))
+  {
+    if (!folder.empty())
+      path_ = (std::filesystem::path(folder) / (hash_ + ".vtkhdf")).string();
+  }
+
+  std::optional<Model> find(std::string& told) const
+  {
+    if (path_.empty() || !std::filesystem::exists(path_))
+      return std::nullopt;
+    try
+    {
+      Model model = read_model_of(path_, hash_);
+      told = "taken from " + path_;
+      return model;
+    }
+    catch (const Error& error)
+    {
+      told = std::string("of no use: ") + error.what() + "; ";
+      return std::nullopt;
+    }
+  }
+
+  void keep(const Model& model, std::string& told) const
+  {
+    if (path_.empty())
+      return;
+    try
+    {
+      std::filesystem::create_directories(std::filesystem::path(path_).parent_path());
+      write_model(model, path_);
+      told += "kept as " + path_;
+    }
+    catch (const std::exception& error)
+    {
+      told += std::string("not kept: ") + error.what();
+    }
+  }
+
+private:
+  std::string hash_;
+  std::string path_;
+};
 
 BakeSummary summary_of(const BakeReport& report)
 {
@@ -81,6 +131,14 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   options.voxel_quantity = source.voxel;
   const Scene scene = read_scene(source.path, options);
 
+  const Cache cache(source.cache, scene);
+  std::string of_cache;
+  if (std::optional<Model> model = cache.find(of_cache))
+  {
+    if (summary != nullptr)
+      summary->cache = of_cache;
+    return *std::move(model);
+  }
   Progress progress;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
@@ -103,8 +161,12 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   }
   if (interrupt_requested())
     throw Interrupted();
+  cache.keep(model, of_cache);
   if (summary != nullptr)
+  {
     *summary = summary_of(report);
+    summary->cache = of_cache;
+  }
   return model;
 }
 

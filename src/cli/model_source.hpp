@@ -20,12 +20,14 @@ struct ModelSource
   std::string mesh_directory;
   std::string accuracy;
   std::string voxel;
+  std::string cache;  ///< folder of models by content hash: taken from there, or left there; empty: none
 };
 
 /// What a bake told, ready to print.
 struct BakeSummary
 {
   bool whole = false;                ///< to be set before: measure the muscles too
+  std::string cache;                 ///< what became of the cache, a sentence; empty: none was asked for
   std::vector<std::string> stages;   ///< seconds, peak memory and name
   std::vector<std::string> muscles;  ///< a table of their volumes, heading first; empty: none
   std::vector<std::string> findings;

@@ -3,42 +3,51 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 
 #include <unistd.h>
 
 namespace frontalis
 {
+namespace
+{
+
+constexpr unsigned long steps = 1000;
+constexpr std::size_t name_width = 16;
+
+}  // namespace
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
-void Progress::update(const std::string& stage, double done, const std::string& remark)
+void Progress::update(const std::string& stage, double done)
 {
-  if (!terminal_)
+  if (stage != stage_)
   {
-    if (stage != stage_)
+    stage_ = stage;
+    clear();
+    if (terminal_)
+    {
+      // the name stands before the scale, the bar below it
+      const std::string space(name_width, ' ');
+      const std::string name = stage + std::string(name_width - std::min(name_width, stage.size()), ' ');
+      bar_.emplace(steps, std::cerr, space, name, space);
+    }
+    else
       std::printf("%s ...\n", stage.c_str());
     std::fflush(stdout);
-    stage_ = stage;
-    return;
   }
-  constexpr int width = 30;
-  const double share = std::isfinite(done) ? std::clamp(done, 0.0, 1.0) : 0;
-  const int full = static_cast<int>(share * width);
-  const std::string line = stage + " [" + std::string(static_cast<std::size_t>(full), '#') +
-                           std::string(static_cast<std::size_t>(width - full), ' ') + "] " +
-                           std::to_string(static_cast<int>(share * 100)) + " % " + remark;
-  if (line == shown_)
+  if (!bar_)
     return;
-  std::fprintf(stderr, "\r\033[K%s", line.c_str());
-  std::fflush(stderr);
-  shown_ = line;
+  const auto reached = static_cast<unsigned long>(steps * (std::isfinite(done) ? std::clamp(done, 0.0, 1.0) : 0));
+  if (reached > bar_->count())
+    *bar_ += reached - bar_->count();
 }
 
 void Progress::clear()
 {
-  if (!shown_.empty())
-    std::fprintf(stderr, "\r\033[K");
-  shown_.clear();
+  if (bar_ && bar_->count() < bar_->expected_count())
+    std::cerr << std::endl;
+  bar_.reset();
 }
 
 }  // namespace frontalis

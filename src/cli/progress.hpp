@@ -1,11 +1,14 @@
 #pragma once
 
+#include <boost/timer/progress_display.hpp>
+
+#include <optional>
 #include <string>
 
 namespace frontalis
 {
 
-/// Tells how far work is: one line that is written over where stderr is a terminal, else a line a stage on stdout.
+/// Tells how far work is: a bar a stage where stderr is a terminal, else a line a stage on stdout.
 class Progress
 {
 public:
@@ -14,15 +17,15 @@ public:
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` from 0 to 1; `remark` is shown behind it on a terminal.
-  void update(const std::string& stage, double done, const std::string& remark = {});
-  /// Takes the line away.
+  /// `done` from 0 to 1.
+  void update(const std::string& stage, double done);
+  /// Ends the line of a bar that is not full.
   void clear();
 
 private:
   bool terminal_;
   std::string stage_;
-  std::string shown_;
+  std::optional<boost::timer::progress_display> bar_;
 };
 
 }  // namespace frontalis

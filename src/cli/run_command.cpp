@@ -87,8 +87,7 @@ void play(Solver& solver, const Model& model, const RunOptions& options, Motion&
       folder->add(time, summary.end);
     summary.frames = frame + 1;
     summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    progress.update("running", static_cast<double>(frame) / frames,
-                    std::to_string(time) + " of " + std::to_string(options.seconds) + " s");
+    progress.update("running", static_cast<double>(frame) / frames);
     if (interrupt_requested() && frame < frames)
     {
       summary.complete = false;

@@ -21,6 +21,7 @@ namespace
 {
 
 const std::string root = "/frontalis";
+const std::string package_version = root + "/package_version";
 
 void write_whole(const Model& model, const std::string& path)
 {
@@ -30,6 +31,7 @@ void write_whole(const Model& model, const std::string& path)
   file.write_attribute(root, "model_file_version", std::vector<std::int64_t>{ model_file_version });
   ModelWriter writer(file);
   exchange_model(writer, model, root);
+  writer.value(package_version, std::string(FRONTALIS_VERSION));
   file.close();
 }
 
@@ -45,6 +47,43 @@ void synchronise(const std::string& path)
   // some file systems cannot synchronise folders
   if (result != 0 && reason != EINVAL)
     throw Error(std::string("cannot be written to the disk: ") + std::strerror(reason));
+}
+
+/// Reads a model, of one scene where `scene_hash` names it.
+Model read(const std::string& path, const std::string* scene_hash)
+{
+  try
+  {
+    const Hdf5File file = Hdf5File::open(path);
+    const std::int64_t version = file.attribute(root, "model_file_version", -1);
+    if (version < 0)
+      throw Error("is an HDF5 file, but not a model; one written by 'frontalis bake' is wanted");
+    if (version != model_file_version)
+      throw Error("has version " + std::to_string(version) + "; this program reads version " +
+                  std::to_string(model_file_version) + ": bake the scene again");
+    Model model;
+    ModelReader reader(file);
+    if (scene_hash != nullptr)
+    {
+      std::string baked_by;
+      reader.value(package_version, baked_by);
+      reader.value(root + "/scene_hash", model.scene_hash);
+      if (model.scene_hash != *scene_hash)
+        throw Error("is of another scene (content hash '" + model.scene_hash + "'; '" + *scene_hash +
+                    "' is wanted); bake the scene again");
+      if (baked_by != FRONTALIS_VERSION)
+        throw Error("was baked by version " + baked_by + " of frontalis, and this is " FRONTALIS_VERSION
+                    "; bake the scene again");
+    }
+    exchange_model(reader, model, root);
+    build_nodes(model);
+    check_model(model);
+    return model;
+  }
+  catch (const Error& error)
+  {
+    throw Error("model file " + path + ": " + error.what());
+  }
 }
 
 }  // namespace
@@ -74,28 +113,8 @@ void write_model(const Model& model, const std::string& path)
   }
 }
 
-Model read_model(const std::string& path)
-{
-  try
-  {
-    const Hdf5File file = Hdf5File::open(path);
-    const std::int64_t version = file.attribute(root, "model_file_version", -1);
-    if (version < 0)
-      throw Error("is an HDF5 file, but not a model; one written by 'frontalis bake' is wanted");
-    if (version != model_file_version)
-      throw Error("has version " + std::to_string(version) + "; this program reads version " +
-                  std::to_string(model_file_version) + ": bake the scene again");
-    Model model;
-    ModelReader reader(file);
-    exchange_model(reader, model, root);
-    build_nodes(model);
-    check_model(model);
-    return model;
-  }
-  catch (const Error& error)
-  {
-    throw Error("model file " + path + ": " + error.what());
-  }
-}
+Model read_model(const std::string& path) { return read(path, nullptr); }
+
+Model read_model_of(const std::string& path, const std::string& scene_hash) { return read(path, &scene_hash); }
 
 }  // namespace frontalis

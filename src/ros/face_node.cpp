@@ -82,6 +82,7 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
     request.scene = parameters.scene;
     request.mesh_directory = parameters.mesh_directory;
     request.accuracy = parameters.accuracy;
+    request.cache = parameters.cache;
     ROS_INFO_STREAM(name_ << ": baking " << request.scene << " with " << request.program);
     const auto log = [this](const std::string& line)
     {

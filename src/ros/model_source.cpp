@@ -242,6 +242,14 @@ std::string find_program(const std::string& wanted)
   throw Error("the program frontalis was not found; set ~program to its path. Tried:" + tried);
 }
 
+std::string default_cache()
+{
+  if (const char* const ros_home = std::getenv("ROS_HOME"))
+    return std::string(ros_home) + "/frontalis";
+  const char* const home = std::getenv("HOME");
+  return home != nullptr ? std::string(home) + "/.ros/frontalis" : "";
+}
+
 Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled)
 {
   const TemporaryFolder folder;
@@ -251,6 +259,8 @@ Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std:
     arguments.insert(arguments.end(), { "--mesh-dir", request.mesh_directory });
   if (!request.accuracy.empty())
     arguments.insert(arguments.end(), { "--accuracy", request.accuracy });
+  if (!request.cache.empty())
+    arguments.insert(arguments.end(), { "--cache", request.cache });
   run(arguments, log, cancelled);
   return read_model(file);
 }

@@ -1,6 +1,7 @@
 #include "frontalis/ros/parameters.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/ros/model_source.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -87,6 +88,7 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
                "either ~scene (a scene file) or ~model (a baked model)");
   out.mesh_directory = reader.text("mesh_dir", "");
   out.accuracy = reader.text("accuracy", "");
+  out.cache = reader.text("cache", default_cache());
   out.program = reader.text("program", "");
 
   const std::string backend = reader.text("backend", "auto");

@@ -47,5 +47,22 @@ INSTANTIATE_TEST_SUITE_P(inputs, BadInput, testing::ValuesIn(bad_inputs()),
 
 TEST(BadInputs, are_many) { EXPECT_GE(bad_inputs().size(), 15u); }
 
+TEST(Bake, interrupted_leaves_no_file_and_130)
+{
+  // many voxels, so that the interrupt comes while they are made: the line of that stage is there by then
+  const TemporaryFolder folder;
+  const std::string scene = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/config/forehead.yaml";
+  const std::string model = folder / "model.vtkhdf";
+  const std::string log = folder / "log";
+  const std::string line = "stdbuf -o0 '" FRONTALIS_PROGRAM "' bake '" + scene + "' --voxel 0.4 -o '" + model + "' > '" +
+                           log + "' 2>&1 & pid=$!; until grep -q voxels '" + log +
+                           "'; do sleep 0.02; done; kill -INT $pid; wait $pid; echo $? > '" + log + ".code'";
+  ASSERT_EQ(std::system(("bash -c \"set -m; " + line + "\"").c_str()), 0);
+  EXPECT_EQ(text_of(log + ".code"), "130\n");
+  expect_contains(text_of(log), "interrupted\n");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    EXPECT_EQ(entry.path().string().find("vtkhdf"), std::string::npos) << entry.path();
+}
+
 }  // namespace
 }  // namespace frontalis

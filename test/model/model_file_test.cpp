@@ -171,6 +171,39 @@ TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
   EXPECT_NE(fault.find("reads version " + std::to_string(model_file_version)), std::string::npos) << fault;
 }
 
+TEST_F(ModelFile, AnotherSceneOrPackageIsRefusedWhereOneIsAskedFor)
+{
+  Model model = full_block(2, 2, 2);
+  model.scene_hash = "0123456789abcdef";
+  write_model(model, path("a.vtkhdf"));
+  EXPECT_EQ(read_model_of(path("a.vtkhdf"), "0123456789abcdef").voxels.size(), 8u);
+  const auto fault = [&](const std::string& hash)
+  {
+    try
+    {
+      read_model_of(path("a.vtkhdf"), hash);
+    }
+    catch (const Error& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string other = fault("fedcba9876543210");
+  EXPECT_NE(other.find("is of another scene"), std::string::npos) << other;
+  EXPECT_NE(other.find("fedcba9876543210"), std::string::npos) << other;
+  // the package's version is a short text near its name
+  std::string content = bytes(path("a.vtkhdf"));
+  const Model again = read_model(path("a.vtkhdf"));
+  EXPECT_EQ(again.scene_hash, model.scene_hash);
+  const std::size_t version = content.find(FRONTALIS_VERSION);
+  ASSERT_NE(version, std::string::npos);
+  content[version] = '9';
+  std::ofstream(path("a.vtkhdf"), std::ios::binary) << content;
+  const std::string foreign = fault("0123456789abcdef");
+  EXPECT_NE(foreign.find("was baked by version 9"), std::string::npos) << foreign;
+}
+
 TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
 {
   Model bad = full_block(2, 2, 2);

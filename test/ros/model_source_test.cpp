@@ -89,6 +89,31 @@ TEST_F(ModelSource, BakesASmallScene)
   EXPECT_TRUE(left_nothing());
 }
 
+TEST_F(ModelSource, TakesWhatWasBakedBeforeFromTheCache)
+{
+  BakeRequest request;
+  request.program = FRONTALIS_PROGRAM;
+  request.scene = FRONTALIS_SOURCE_DIRECTORY "/test/ros/small.yaml";
+  request.cache = (folder_ / "cache").string();
+  const auto bake = [&]
+  {
+    log_.clear();
+    bake_in_process(
+        request, [this](const std::string& line) { log_.push_back(line); }, cancelled_);
+    for (const std::string& line : log_)
+    {
+      if (line.compare(0, 9, "cache    ") == 0)
+        return line;
+    }
+    return std::string();
+  };
+  EXPECT_NE(bake().find("kept as " + request.cache), std::string::npos);
+  EXPECT_NE(bake().find("taken from " + request.cache), std::string::npos);
+  setenv("ROS_HOME", "/somewhere", 1);
+  EXPECT_EQ(default_cache(), "/somewhere/frontalis");
+  unsetenv("ROS_HOME");
+}
+
 TEST_F(ModelSource, HandsOnArgumentsWithoutAShell)
 {
   BakeRequest request;

@@ -16,6 +16,7 @@ struct FaceParameters
   std::string model;                      ///< baked model file
   std::string mesh_directory;             ///< ~mesh_dir; empty: as the scene says
   std::string accuracy;                   ///< profile of the scene; empty: the scene's default
+  std::string cache;                      ///< folder of models baked before; empty: none is kept
   std::string program;                    ///< the program `frontalis`; empty: looked for (see find_program)
   RunnerSettings runner;                  ///< ~backend, ~threads, ~pace, ~frame_rate
   std::string face_id;                    ///< frame is face_<id>; empty: the model's frame
