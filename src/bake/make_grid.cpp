@@ -15,8 +15,8 @@ namespace
 
 constexpr double least_voxels = 8;
 constexpr double most_voxels = 2.5e8;  // eight numbers a voxel, counted in 32 bits
-// peak of a bake, measured on models of 0.1 to 4 million voxels (doc/performance.md)
-constexpr double bytes_a_voxel = 700;
+// a bake of 0.93 million voxels peaks 231 bytes a voxel above its meshes (doc/performance.md); more muscles take more
+constexpr double bytes_a_voxel = 400;
 constexpr double bytes_a_cell = 0.15;
 constexpr int samples = 2000;
 

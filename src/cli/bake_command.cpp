@@ -79,8 +79,9 @@ void add_bake_command(CLI::App& app, Action& action)
   command->add_option("SCENE", options->source.path, "scene file (YAML)")->required();
   command->add_option("-o,--output", options->output, "model file to write (.vtkhdf)")->required();
   command->add_flag("--report", options->report, "print the time of each stage and all that was found");
-  command->add_option("--cache", options->source.cache,
-                      "folder of models by their scenes' content: the model is taken from there, or baked and left there");
+  command->add_option(
+      "--cache", options->source.cache,
+      "folder of models by their scenes' content: the model is taken from there, or baked and left there");
   add_scene_options(*command, options->source);
   command->callback([&action, options] { action = [options] { bake_to_file(*options); }; });
 }

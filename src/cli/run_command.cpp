@@ -114,7 +114,7 @@ void settle(Solver& solver, const Model& model, const RunOptions& options, const
   {
     found = solver.settle(controls, options.tolerance, slice);
     time += found.seconds * model.time_scaling;
-    progress.update("relaxing", part / 200.0, std::to_string(found.residual) + " left");
+    progress.update("relaxing", part / 200.0);
   }
   look(solver, model, time, summary);
   summary.frames = 1;

@@ -72,8 +72,8 @@ Model read(const std::string& path, const std::string* scene_hash)
         throw Error("is of another scene (content hash '" + model.scene_hash + "'; '" + *scene_hash +
                     "' is wanted); bake the scene again");
       if (baked_by != FRONTALIS_VERSION)
-        throw Error("was baked by version " + baked_by + " of frontalis, and this is " FRONTALIS_VERSION
-                    "; bake the scene again");
+        throw Error("was baked by version " + baked_by +
+                    " of frontalis, and this is " FRONTALIS_VERSION "; bake the scene again");
     }
     exchange_model(reader, model, root);
     build_nodes(model);

@@ -54,10 +54,12 @@ TEST(Bake, interrupted_leaves_no_file_and_130)
   const std::string scene = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/config/forehead.yaml";
   const std::string model = folder / "model.vtkhdf";
   const std::string log = folder / "log";
-  const std::string line = "stdbuf -o0 '" FRONTALIS_PROGRAM "' bake '" + scene + "' --voxel 0.4 -o '" + model + "' > '" +
-                           log + "' 2>&1 & pid=$!; until grep -q voxels '" + log +
-                           "'; do sleep 0.02; done; kill -INT $pid; wait $pid; echo $? > '" + log + ".code'";
-  ASSERT_EQ(std::system(("bash -c \"set -m; " + line + "\"").c_str()), 0);
+  const std::string script = folder / "script";
+  // job control, since a shell's background processes otherwise ignore interrupts
+  std::ofstream(script) << "set -m\nstdbuf -o0 '" << FRONTALIS_PROGRAM << "' bake '" << scene << "' --voxel 0.4 -o '"
+                        << model << "' > '" << log << "' 2>&1 &\npid=$!\nuntil grep -q voxels '" << log
+                        << "'; do sleep 0.02; done\nkill -INT $pid\nwait $pid\necho $? > '" << log << ".code'\n";
+  ASSERT_EQ(std::system(("bash '" + script + "'").c_str()), 0);
   EXPECT_EQ(text_of(log + ".code"), "130\n");
   expect_contains(text_of(log), "interrupted\n");
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
