@@ -82,9 +82,11 @@ public:
                 " of its surface inside its crop; check the surface, the crop and 'within'");
   }
 
-  /// The part of a surface that the model can touch, in local coordinates.
-  TriangleMesh local_mesh(const PreparedSurface& surface) const
+  /// The part of a surface that the model can touch, all of one that moves, in local coordinates.
+  TriangleMesh local_mesh(const PreparedSurface& surface, bool moves) const
   {
+    if (moves)
+      return frame_.to_local(surface.mesh());
     constexpr double margin = 30e-3;
     Box box;
     for (const Vector3& p : positions_)
@@ -167,6 +169,18 @@ private:
   std::map<const PreparedSurface*, double> side_;
 };
 
+/// Index of the constraint's bone, which becomes one of the model's; -1: none.
+std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
+{
+  if (constraint.bone.empty())
+    return -1;
+  const auto known = std::find(model.bones.begin(), model.bones.end(), constraint.bone);
+  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
+  if (known == model.bones.end())
+    model.bones.push_back(constraint.bone);
+  return bone;
+}
+
 }  // namespace
 
 void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
@@ -190,14 +204,7 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
   {
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
-    std::int32_t bone = -1;
-    if (!constraint.bone.empty())
-    {
-      const auto known = std::find(model.bones.begin(), model.bones.end(), constraint.bone);
-      bone = static_cast<std::int32_t>(known - model.bones.begin());
-      if (known == model.bones.end())
-        model.bones.push_back(constraint.bone);
-    }
+    const std::int32_t bone = bone_of(constraint, model);
     const std::string place = catcher.place("constraint", constraint.name, constraint.line);
     std::size_t count = 0;
     for (const std::string& name : constraint.surfaces)
@@ -232,11 +239,11 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
     }
   }
 
-  std::vector<std::string> names;
   for (const SceneConstraint& constraint : scene.constraints)
   {
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
+    const std::int32_t bone = bone_of(constraint, model);
     const std::string place = catcher.place("constraint", constraint.name, constraint.line);
     std::size_t count = 0;
     for (const std::string& name : constraint.surfaces)
@@ -246,13 +253,14 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
       count += found;
       if (found == 0)
         continue;
-      const auto known = std::find(names.begin(), names.end(), name);
-      const auto index = static_cast<std::int32_t>(known - names.begin());
-      if (known == names.end())
-      {
-        names.push_back(name);
-        model.constraint_surfaces.push_back({ name, catcher.local_mesh(surface) });
-      }
+      const auto known =
+          std::find_if(model.constraint_surfaces.begin(), model.constraint_surfaces.end(),
+                       [&](const ConstraintSurface& other)
+                       { return other.name == name && other.bone == bone && other.friction == constraint.friction; });
+      const auto index = static_cast<std::int32_t>(known - model.constraint_surfaces.begin());
+      if (known == model.constraint_surfaces.end())
+        model.constraint_surfaces.push_back(
+            { name, catcher.local_mesh(surface, bone >= 0), bone, constraint.friction });
       for (std::size_t n = 0; n < nodes; ++n)
       {
         if (std::isnan(caught[n]) || kind[n] > Kind::sliding ||

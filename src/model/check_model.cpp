@@ -193,7 +193,13 @@ void check_fibres(const Model& model)
 void check_constraints(const Model& model)
 {
   for (const ConstraintSurface& surface : model.constraint_surfaces)
-    check_mesh("constraint_surfaces '" + surface.name + "'", surface.mesh);
+  {
+    const std::string name = "constraint_surfaces '" + surface.name + "'";
+    check_mesh(name, surface.mesh);
+    check_index(name + " (bone)", 0, surface.bone, model.bones.size(), -1);
+    if (!(surface.friction >= 0) || !std::isfinite(surface.friction))
+      fail(name, "friction is " + std::to_string(surface.friction) + "; allowed are finite numbers from 0");
+  }
   for (std::size_t n = 0; n < model.rigid.size(); ++n)
   {
     check_index("rigid (node)", n, model.rigid[n].node, model.nodes.size());

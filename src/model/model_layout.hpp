@@ -59,6 +59,8 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.strings(in("bones"), model.bones);
   archive.group(in("constraint_surfaces"));
   archive.column(in("constraint_surfaces/name"), model.constraint_surfaces, &ConstraintSurface::name);
+  archive.column(in("constraint_surfaces/bone"), model.constraint_surfaces, &ConstraintSurface::bone);
+  archive.column(in("constraint_surfaces/friction"), model.constraint_surfaces, &ConstraintSurface::friction);
   for (std::size_t s = 0; s < model.constraint_surfaces.size(); ++s)
   {
     const std::string path = in("constraint_surfaces/" + std::to_string(s));

@@ -52,8 +52,9 @@ void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
     constraint.surfaces = mapping.optional(kind).references(names.surfaces);
     constraint.within = read_within(mapping.optional("within"), constraint.within);
     constraint.crop = read_region(mapping.optional("crop"));
-    if (constraint.kind == SceneConstraint::Kind::rigid)
-      constraint.bone = mapping.optional("bone").name();
+    constraint.bone = mapping.optional("bone").name();
+    if (constraint.kind == SceneConstraint::Kind::sliding)
+      constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
     scene.constraints.push_back(constraint);
   }
 }

@@ -44,6 +44,10 @@ std::string missing_gpu(const Model& model)
       return "it has no viscosity, and material " + material.name + " has it";
   if (model.integration != Integration::one_point)
     return "it has no selective reduced integration";
+  for (const auto& surface : model.constraint_surfaces)
+    if (surface.bone >= 0 || surface.friction > 0)
+      return "its nodes slide only on surfaces that stand still and have no friction, and " + surface.name +
+             (surface.bone >= 0 ? " follows a bone" : " has friction");
 #if defined(FRONTALIS_WITH_CUDA)
   return missing_cuda_device();
 #else

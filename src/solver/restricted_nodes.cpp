@@ -1,5 +1,7 @@
 #include "restricted_nodes.hpp"
 
+#include "frontalis/physics/sliding.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -90,7 +92,28 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
   sort_by_node(sliding);
-  make_blocks(sliding);
+  const auto plain = std::stable_partition(sliding.begin(), sliding.end(),
+                                           [&](const SlidingNode& node)
+                                           {
+                                             const auto& surface = model.constraint_surfaces[node.surface];
+                                             return surface.bone >= 0 || surface.friction > 0;
+                                           });
+  for (auto node = sliding.begin(); node != plain; ++node)
+  {
+    const auto rest = rest_position(model, node->node);
+    const auto& surface = model.constraint_surfaces[node->surface];
+    gliding_.add({ node->node,
+                   surface.bone,
+                   surface.friction,
+                   { rest[0], rest[1], rest[2] },
+                   { *trees_[node->surface], node->distance },
+                   {},
+                   {},
+                   0,
+                   {},
+                   {} });
+  }
+  make_blocks({ plain, sliding.end() });
   reset();
 }
 
@@ -129,6 +152,7 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 template <class Real>
 void RestrictedNodes<Real>::reset()
 {
+  gliding_.reset();
   for (auto& sliding : sliding_)
     sliding.contact.forget();
   blocks_.assign(block_node_.size(), {});
@@ -138,15 +162,19 @@ void RestrictedNodes<Real>::reset()
 }
 
 template <class Real>
-void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3])
+void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3])
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   Sliding& s = nodes.sliding_[nodes.block_sliding_[block][lane]];
   Block& b = nodes.blocks_[block];
   const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
+  const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
+                                                     plane.normal, { v[0], v[1], v[2] });
   const double normal[3] = { plane.normal.x, plane.normal.y, plane.normal.z };
+  const double turned[3] = { velocity.x, velocity.y, velocity.z };
   for (int axis = 0; axis < 3; ++axis)
   {
+    v[axis] = static_cast<Real>(turned[axis]);
     b.normal[axis][lane] = static_cast<Real>(normal[axis]);
     b.reference[axis][lane] = u[axis];
   }
@@ -171,6 +199,7 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
             renew,
             this },
           block_of(first), block_of(last));
+  gliding_.apply(first, last, u, v, drive);
 
   const auto prescriptions = range(prescribed_, first, last);
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)
@@ -205,6 +234,75 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
       v[axis][r->node] = (u[axis][r->node] - before[axis][r->node]) / static_cast<Real>(drive.dt);
     }
   }
+}
+
+// a range of nodes after the update, before constraints
+template <class Real>
+struct RestrictedNodes<Real>::Unconstrained
+{
+  Unconstrained(std::int32_t first_node, std::int32_t last_node, const Real* const v[3]) : first(first_node)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+      velocity[axis].assign(v[axis] + first_node, v[axis] + last_node);
+  }
+
+  std::int32_t first;
+  std::vector<Real> velocity[3];
+};
+
+template <class Real>
+void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                  const Real* const before[3], const Drive& drive, ConstraintWork<Real>& work)
+{
+  const Unconstrained free(first, last, v);
+  apply(first, last, u, v, before, drive);
+
+  Point impulse{}, mean{};
+  const auto work_on = [&](std::int32_t n)
+  {
+    double change[3], middle[3], without_impulse = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double after = v[axis][n], old = work.velocity_before[axis][n], star = free.velocity[axis][n - first];
+      change[axis] = work.mass[n] * drive.dt / work.gain * (after - star);
+      middle[axis] = 0.5 * (old + after);
+      const double displaced = double(u[axis][n]) - before[axis][n] - drive.dt * after;
+      without_impulse += work.mass[n] / work.gain * (star - work.keep * old) * displaced;
+    }
+    impulse = { change[0], change[1], change[2] };
+    mean = { middle[0], middle[1], middle[2] };
+    return dot(impulse, mean) - without_impulse;
+  };
+  const auto in = [](auto& entries, std::int32_t n)
+  {
+    const auto found = range(entries, n, n + 1);
+    return found.first != found.second;
+  };
+  const auto rigids = range(rigid_, first, last);
+  for (auto r = rigids.first; r != rigids.second; ++r)
+    if (r->bone >= 0)
+      work.bones += work_on(r->node);
+  const auto prescriptions = range(prescribed_, first, last);
+  for (auto p = prescriptions.first; p != prescriptions.second; ++p)
+    if (!in(rigid_, p->node) && (p == prescribed_.begin() || (p - 1)->node != p->node))
+      work.loads += work_on(p->node);
+  for (std::size_t block = 0; block < blocks_.size(); ++block)
+    for (std::int32_t lane = 0; lane < block_count_[block]; ++lane)
+    {
+      const auto n = block_node_[block] + lane;
+      if (n >= first && n < last && block_sliding_[block][lane] >= 0 && !in(rigid_, n) && !in(prescribed_, n))
+        work.sliding += work_on(n);
+    }
+  const auto gliding = gliding_.range(first, last);
+  for (auto g = gliding.first; g != gliding.second; ++g)
+    if (!in(rigid_, g->node) && !in(prescribed_, g->node))
+    {
+      const double all = work_on(g->node);
+      const Point tangential = impulse - dot(impulse, g->normal) * g->normal;
+      const double lost = g->friction > 0 ? -dot(tangential, mean - g->surface_velocity) : 0.0;
+      work.friction += lost;
+      (g->bone < 0 ? work.sliding : work.bones) += all + lost;
+    }
 }
 
 template class RestrictedNodes<float>;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "gliding_nodes.hpp"
 #include "slide_kernel.hpp"
-#include "surface_contact.hpp"
 
 #include <memory>
 #include <vector>
@@ -13,12 +13,21 @@ namespace frontalis
 /// Rotation (as a rotation vector) and translation at a fraction of the way between two poses.
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction);
 
-/// What drives restricted nodes in one step.
-struct Drive
+/// What constraints did in some steps [J], and what it takes to say so. A step takes a node's velocity from v- to v+
+/// and would have taken it to v* without them: their impulse is I = (dt / gain) m (v+ - v*), its work I . (v- + v+) /
+/// 2, which is the change of m v- . v+ / 2 in central differences. Where they moved the node by d other than dt v+
+/// says, the other forces, m (v* - keep v-) / gain, worked along d too: that is taken away. Added up node after node.
+template <class Real>
+struct ConstraintWork
 {
-  double time = 0;  ///< at the end of the step [s]
-  double dt = 0;
-  std::vector<RigidTransform> bone;  ///< at the end of the step
+  const Real* velocity_before[3];  ///< v- of all nodes [m/s]
+  const double* mass;              ///< of all nodes [kg]
+  double keep, gain;               ///< of the update v* = keep v- + gain force / mass
+
+  double bones = 0;     ///< by nodes and surfaces that follow bones
+  double loads = 0;     ///< by prescribed displacements
+  double sliding = 0;   ///< by surfaces that stand still: what their constraint errs by
+  double friction = 0;  ///< lost to it
 };
 
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
@@ -35,7 +44,10 @@ public:
   /// those before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
              const Drive& drive);
-  bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty(); }
+  /// The same, and adds to `work`.
+  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
+             const Drive& drive, ConstraintWork<Real>& work);
+  bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty() && gliding_.empty(); }
 
 private:
   using Block = SlidingBlock<Real>;
@@ -46,14 +58,17 @@ private:
   };
 
   void make_blocks(const std::vector<SlidingNode>& nodes);
-  static void renew(void* self, std::int32_t block, int lane, const Real u[3]);
+  static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
+
+  struct Unconstrained;
 
   const Model& model_;
   SlideKernel<Real> kernel_;
   std::vector<std::unique_ptr<SurfaceTree>> trees_;
   std::vector<RigidNode> rigid_;  // all lists sorted by node
   std::vector<PrescribedNode> prescribed_;
-  std::vector<Sliding> sliding_;
+  GlidingNodes<Real> gliding_;
+  std::vector<Sliding> sliding_;  // the others: surfaces that stand still and have no friction
   std::vector<Block> blocks_;
   std::vector<std::int32_t> block_node_, block_count_;
   std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into sliding_; -1: does not slide

@@ -20,7 +20,9 @@ void slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32
       if (dot(slip, slip) > b.slip_squared[l])
       {
         const Real at[3] = { u.x, u.y, u.z };
-        g.renew(g.context, block, l, at);
+        Real with[3] = { v.x, v.y, v.z };
+        g.renew(g.context, block, l, at, with);
+        v = { with[0], with[1], with[2] };
       }
       physics::slide({ b.normal[0][l], b.normal[1][l], b.normal[2][l] }, b.offset[l], u, v);
       const Real moved[3] = { u.x, u.y, u.z }, velocity[3] = { v.x, v.y, v.z };

@@ -27,8 +27,8 @@ struct SlideArguments
   const std::int32_t* count;  ///< nodes of a block
   Real* u[3];
   Real* v[3];
-  /// Finds the plane of one node of a block anew, at displacement u.
-  void (*renew)(void* context, std::int32_t block, int lane, const Real u[3]);
+  /// Finds the plane of one node of a block anew, at displacement u; turns its velocity with the plane.
+  void (*renew)(void* context, std::int32_t block, int lane, const Real u[3], Real v[3]);
   void* context;
 };
 template <class Real>

@@ -24,7 +24,7 @@ struct SlideKernelBody
   }
 
   static void renew(const SlideArguments<float>& g, std::int32_t block, int offset, float* const u[3],
-                    const Batch& excess)
+                    float* const v[3], const Batch& excess)
   {
     float lane[lanes];
     excess.store_unaligned(lane);
@@ -32,7 +32,10 @@ struct SlideKernelBody
       if (lane[l] > 0)
       {
         const float at[3] = { u[0][offset + l], u[1][offset + l], u[2][offset + l] };
-        g.renew(g.context, block, offset + l, at);
+        float with[3] = { v[0][offset + l], v[1][offset + l], v[2][offset + l] };
+        g.renew(g.context, block, offset + l, at, with);
+        for (int axis = 0; axis < 3; ++axis)
+          v[axis][offset + l] = with[axis];
       }
   }
 
@@ -45,7 +48,7 @@ struct SlideKernelBody
       const Vector slip = at - load(b.reference[0] + l, b.reference[1] + l, b.reference[2] + l);
       const Batch excess = dot(slip, slip) - load(b.slip_squared + l);
       if (xsimd::any(excess > Batch(0.0f)))
-        renew(g, block, l, u, excess);
+        renew(g, block, l, u, v, excess);
       Vector velocity = load(v[0] + l, v[1] + l, v[2] + l);
       physics::slide(load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l), load(b.offset + l), at, velocity);
       at.x.store_unaligned(u[0] + l);

@@ -46,9 +46,12 @@ void StepPlan::activation(int step, float* out) const
 
 Drive StepPlan::drive(int step) const
 {
-  Drive drive{ time + (step + 1) * dt, dt, {} };
+  Drive drive{ time + (step + 1) * dt, dt, {}, {} };
   for (std::size_t b = 0; b < begin.bone.size(); ++b)
+  {
     drive.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
+    drive.bone_before.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step - 1)));
+  }
   return drive;
 }
 

@@ -90,6 +90,8 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(a.bones, b.bones);
   ASSERT_EQ(b.constraint_surfaces.size(), 1u);
   EXPECT_EQ(a.constraint_surfaces[0].mesh.vertices, b.constraint_surfaces[0].mesh.vertices);
+  EXPECT_EQ(b.constraint_surfaces[0].bone, 1);
+  EXPECT_EQ(b.constraint_surfaces[0].friction, 0.25);
   ASSERT_EQ(b.rigid.size(), 2u);
   EXPECT_EQ(b.rigid[1].bone, 1);
   ASSERT_EQ(b.sliding.size(), 1u);

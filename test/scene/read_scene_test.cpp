@@ -200,6 +200,8 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[0].bone, "skull");
   EXPECT_EQ(scene.constraints[1].kind, SceneConstraint::Kind::sliding);
   EXPECT_LT(scene.constraints[1].within, 0);
+  EXPECT_EQ(scene.constraints[1].bone, "mandible");
+  EXPECT_EQ(scene.constraints[1].friction, 0.2);
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);

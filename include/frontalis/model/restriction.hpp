@@ -13,6 +13,8 @@ struct ConstraintSurface
 {
   std::string name;
   TriangleMesh mesh;
+  std::int32_t bone = -1;  ///< index into Model::bones: moves with it; -1: still
+  double friction = 0;     ///< Coulomb's coefficient
 };
 
 struct RigidNode

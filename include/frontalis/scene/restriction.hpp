@@ -21,7 +21,8 @@ struct SceneConstraint
   std::vector<std::string> surfaces;
   double within = -1;  ///< tissue nodes no farther out of the surface than this are restricted [m]; < 0: 0.75 voxel
   Region crop;
-  std::string bone;  ///< rigid nodes follow this bone's pose; empty: still
+  std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone's pose; empty: still
+  double friction = 0;  ///< sliding: Coulomb's coefficient
   int line = 0;
 };
 

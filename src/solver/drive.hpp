@@ -1,0 +1,19 @@
+#pragma once
+
+#include "frontalis/model/surface.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+
+/// What drives restricted nodes in one step.
+struct Drive
+{
+  double time = 0;  ///< at the end of the step [s]
+  double dt = 0;
+  std::vector<RigidTransform> bone;         ///< at the end of the step
+  std::vector<RigidTransform> bone_before;  ///< at its begin
+};
+
+}  // namespace frontalis

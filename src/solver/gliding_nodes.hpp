@@ -1,0 +1,44 @@
+#pragma once
+
+#include "drive.hpp"
+#include "surface_contact.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Sliding nodes whose surface follows a bone or has friction: one after the other, in double. A node's contact lives
+/// in the frame of the bone.
+template <class Real>
+class GlidingNodes
+{
+public:
+  struct Node
+  {
+    std::int32_t node;
+    std::int32_t bone;  // -1: still
+    double friction;
+    SurfaceContact::Point rest;
+    SurfaceContact contact;
+    ContactPlane plane;
+    SurfaceContact::Point reference;  // where the plane was found
+    double pressing;                  // reaction over mass that friction knows of [m/s2]
+    // in the latest step
+    SurfaceContact::Point normal;            // outwards
+    SurfaceContact::Point surface_velocity;  // [m/s]
+  };
+
+  void add(Node node) { nodes_.push_back(std::move(node)); }
+  void reset();
+  bool empty() const { return nodes_.empty(); }
+  /// Those in [first, last), by node; they were added in the order of their nodes.
+  std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
+  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Drive& drive);
+
+private:
+  std::vector<Node> nodes_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,275 @@
+#include "../../src/solver/restricted_nodes.hpp"
+#include "backends.hpp"
+#include "block_model.hpp"
+#include "sphere_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace frontalis;
+using Vectors = std::vector<std::array<double, 3>>;
+using Point = SurfaceTree::Point;
+
+namespace
+{
+
+constexpr double gravity = 9.81;
+
+RigidTransform turned_about_z(double angle, const std::array<double, 3>& centre, const std::array<double, 3>& shift)
+{
+  const double c = std::cos(angle), s = std::sin(angle);
+  RigidTransform pose;
+  pose.rotation = { { c, -s, 0, s, c, 0, 0, 0, 1 } };
+  pose.translation = { { centre[0] - c * centre[0] + s * centre[1] + shift[0],
+                         centre[1] - s * centre[0] - c * centre[1] + shift[1], shift[2] } };
+  return pose;
+}
+
+// a closed shell around a ball that is a bone
+Model shell(const std::array<double, 3>& centre, double friction, int divisions = 64)
+{
+  const double radius = 4.8e-3;
+  test::BlockSettings s;
+  s.voxels = { { 14, 14, 14 } };
+  s.damping = 20;
+  const auto from_centre = [&](double i, double j, double k)
+  { return std::hypot(1e-3 * i - centre[0], 1e-3 * j - centre[1], 1e-3 * k - centre[2]); };
+  s.keep = [&](std::int32_t i, std::int32_t j, std::int32_t k)
+  {
+    const double r = from_centre(i + 0.5, j + 0.5, k + 0.5);
+    return r > radius && r < radius + 1.7e-3;
+  };
+  Model model = test::block_model(s);
+  model.bones = { "other", "ball" };
+  model.constraint_surfaces.push_back({ "ball", test::sphere(radius, centre, divisions), 1, friction });
+  const SurfaceTree tree(model.constraint_surfaces[0].mesh);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    const auto p = test::rest(model, n);
+    const auto closest = tree.closest({ p[0], p[1], p[2] }, 1);
+    const double distance = std::sqrt(closest.squared_distance);
+    if (distance < 0.6e-3)
+      model.sliding.push_back(
+          { static_cast<std::int32_t>(n), 0,
+            from_centre(model.nodes[n][0], model.nodes[n][1], model.nodes[n][2]) > radius ? distance : -distance });
+  }
+  return model;
+}
+
+// mean rotation about the ball's axis, of nodes away from it [rad]
+double spin(const Model& model, const Vectors& u, const std::array<double, 3>& centre,
+            const std::array<double, 3>& shift)
+{
+  double angle = 0, weight = 0;
+  for (std::size_t n = 0; n < u.size(); ++n)
+  {
+    const auto p = test::rest(model, n);
+    const double x = p[0] - centre[0], y = p[1] - centre[1];
+    angle += x * (u[n][1] - shift[1]) - y * (u[n][0] - shift[0]);
+    weight += x * x + y * y;
+  }
+  return angle / weight;
+}
+
+// a block on a plane, seen in the plane's frame
+Model block_on_plane(double degrees, double friction)
+{
+  test::BlockSettings s;
+  s.voxels = { { 6, 4, 2 } };
+  s.damping = 50;
+  Model model = test::block_model(s);
+  TriangleMesh plane;
+  plane.vertices = { { { -1, -1, -1e-4 } }, { { 1, -1, -1e-4 } }, { { 1, 1, -1e-4 } }, { { -1, 1, -1e-4 } } };
+  plane.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
+  model.constraint_surfaces.push_back({ "plane", plane, -1, friction });
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] == 0)
+      model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 1e-4 });
+  const double angle = degrees * 3.14159265358979 / 180;
+  model.gravity = { { gravity * std::sin(angle), 0, -gravity * std::cos(angle) } };
+  return model;
+}
+
+double mean_x(const Vectors& u)
+{
+  double sum = 0;
+  for (const auto& moved : u)
+    sum += moved[0];
+  return sum / static_cast<double>(u.size());
+}
+
+}  // namespace
+
+class Gliding : public testing::TestWithParam<Backend>
+{
+protected:
+  std::unique_ptr<Solver> solver(const Model& model, int threads = 0) const
+  {
+    return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, 0 });
+  }
+};
+
+TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
+{
+  const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } }, shift{ { 2e-3, -1e-3, 1.5e-3 } };
+  const double angle = 1.2;
+  for (const double friction : { 0.0, 20.0 })
+  {
+    const Model model = shell(centre, friction);
+    const SurfaceTree tree(model.constraint_surfaces[0].mesh);
+    const auto solver_ = solver(model);
+    Controls controls = solver_->controls();
+    Vectors u;
+    double worst = 0;
+    for (int frame = 1; frame <= 10; ++frame)
+    {
+      const double part = frame / 10.0;
+      controls.bone[1] =
+          turned_about_z(part * angle, centre, { { part * shift[0], part * shift[1], part * shift[2] } });
+      solver_->advance(4e-3, controls);
+      solver_->displacements(u);
+      const auto& r = controls.bone[1].rotation;
+      for (const auto& node : model.sliding)
+      {
+        double moved[3], p[3];
+        for (int i = 0; i < 3; ++i)
+          moved[i] = test::rest(model, node.node)[i] + u[node.node][i] - controls.bone[1].translation[i];
+        for (int i = 0; i < 3; ++i)
+          p[i] = r[i] * moved[0] + r[3 + i] * moved[1] + r[6 + i] * moved[2];
+        const double now = std::sqrt(tree.closest({ p[0], p[1], p[2] }, 1).squared_distance);
+        worst = std::max(worst, std::abs(now - std::abs(node.distance)));
+      }
+    }
+    EXPECT_LT(worst, 10e-6);
+    // carried along as a whole; what the edges between triangles drag with them is little
+    EXPECT_NEAR(mean_x(u), shift[0], 0.05e-3 + (friction > 0 ? 0.1e-3 : 0));
+    if (friction > 0)
+      EXPECT_GT(spin(model, u, centre, shift), 0.5 * std::sin(angle));
+    else
+      EXPECT_LT(std::abs(spin(model, u, centre, shift)), 0.01 * angle);
+  }
+}
+
+TEST_P(Gliding, ABlockSticksBelowTheAngleOfFrictionAndSlidesAboveIt)
+{
+  const double friction = 0.5, settling = 0.05, time = 0.15, damping = 50;  // the angle is 26.6 degrees
+  Vectors u;
+  auto solver_ = solver(block_on_plane(22, friction));
+  solver_->advance(time, {});
+  solver_->displacements(u);
+  double sticking = 0;
+  for (std::size_t n = 0; n < 35; ++n)  // the lowest plane of nodes
+    sticking = std::max(sticking, std::abs(u[n][0]));
+  EXPECT_LT(sticking, 20e-6);
+  for (const double degrees : { 35.0, 60.0 })
+  {
+    const double angle = degrees * 3.14159265358979 / 180;
+    const double acceleration = gravity * (std::sin(angle) - friction * std::cos(angle));
+    const auto travelled = [&](double t)
+    { return acceleration / damping * (t - (1 - std::exp(-damping * t)) / damping); };
+    const double expected = travelled(time) - travelled(settling);
+    solver_ = solver(block_on_plane(degrees, friction));
+    solver_->advance(settling, {});
+    Vectors settled;
+    solver_->displacements(settled);
+    solver_->advance(time - settling, {});
+    solver_->displacements(u);
+    EXPECT_NEAR(mean_x(u) - mean_x(settled), expected, 0.01 * expected) << degrees;
+  }
+}
+
+TEST_P(Gliding, SameInputSameBits)
+{
+  if (GetParam() == Backend::reference)
+    GTEST_SKIP() << "has one thread";
+  const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
+  const Model model = shell(centre, 0.3);
+  Vectors first, u;
+  for (const int threads : { 1, 2, 4, 1 })
+  {
+    const auto solver_ = solver(model, threads);
+    Controls controls = solver_->controls();
+    controls.bone[1] = turned_about_z(0.3, centre, { { 1e-3, 0, 0 } });
+    solver_->advance(5e-3, controls);
+    solver_->displacements(u);
+    if (first.empty())
+      first = u;
+    EXPECT_EQ(u, first) << threads << " threads";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, Gliding, testing::Values(Backend::reference, Backend::cpu), test::backend_name);
+
+// masses on springs that reach to their rest positions, on a ball that turns and travels, with friction: what the
+// constraints say that they did is what the masses have and have lost
+TEST(ConstraintWork, ClosesTheBalance)
+{
+  const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
+  for (const double friction : { 0.0, 0.4 })
+  {
+    Model model = shell(centre, friction);
+    const std::size_t count = model.nodes.size();
+    // some follow another bone
+    for (std::int32_t n = 0; n < 20; ++n)
+      model.rigid.push_back({ n, 0 });
+    RestrictedNodes<double> nodes(model);
+    const double stiffness = 50, dt = 20e-6, damping = 30;
+    const std::vector<double> mass(count, 1e-6);
+    std::vector<double> u[3], v[3], before[3], velocity_before[3];
+    for (int axis = 0; axis < 3; ++axis)
+      u[axis] = v[axis] = std::vector<double>(count, 0.0);
+    const double keep = (1 - 0.5 * damping * dt) / (1 + 0.5 * damping * dt), gain = dt / (1 + 0.5 * damping * dt);
+    ConstraintWork<double> work{};
+    work.mass = mass.data();
+    work.keep = keep;
+    work.gain = gain;
+    double damped = 0;
+    const int steps = 2000;
+    const auto pose = [&](int step)
+    {
+      const double part = static_cast<double>(step) / steps;
+      return std::vector<RigidTransform>{ turned_about_z(-0.3 * part, centre, { { 0, 0, 1e-3 * part } }),
+                                          turned_about_z(part, centre, { { 1e-3 * part, 0, 0 } }) };
+    };
+    for (int step = 0; step < steps; ++step)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        before[axis] = u[axis];
+        velocity_before[axis] = v[axis];
+        work.velocity_before[axis] = velocity_before[axis].data();
+        for (std::size_t n = 0; n < count; ++n)
+        {
+          v[axis][n] = keep * v[axis][n] - gain * stiffness * u[axis][n] / mass[n];
+          u[axis][n] += dt * v[axis][n];
+        }
+      }
+      const Drive drive{ (step + 1) * dt, dt, pose(step + 1), pose(step) };
+      double* const moved[3] = { u[0].data(), u[1].data(), u[2].data() };
+      double* const velocity[3] = { v[0].data(), v[1].data(), v[2].data() };
+      const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
+      nodes.apply(0, static_cast<std::int32_t>(count), moved, velocity, old, drive, work);
+      for (int axis = 0; axis < 3; ++axis)
+        for (std::size_t n = 0; n < count; ++n)
+        {
+          const double mean = 0.5 * (v[axis][n] + velocity_before[axis][n]);
+          damped += damping * mass[n] * mean * mean * dt;
+        }
+    }
+    double kinetic = 0, elastic = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::size_t n = 0; n < count; ++n)
+      {
+        kinetic += 0.5 * mass[n] * v[axis][n] * v[axis][n];
+        elastic += 0.5 * stiffness * u[axis][n] * u[axis][n];
+      }
+    const double given = work.bones + work.sliding;
+    EXPECT_GT(work.bones, 0);
+    EXPECT_EQ(work.sliding, 0);
+    if (friction > 0)
+      EXPECT_GT(work.friction, 0.02 * given);
+    else
+      EXPECT_EQ(work.friction, 0);
+    EXPECT_NEAR(given, kinetic + elastic + damped + work.friction, 0.01 * given) << friction;
+  }
+}
