@@ -2,9 +2,11 @@
 
 #include "command.hpp"
 
-#include "frontalis/error.hpp"
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstddef>
 
@@ -12,15 +14,6 @@ namespace frontalis
 {
 namespace
 {
-
-template <class Named>
-std::string names_of(const std::vector<Named>& all)
-{
-  std::string text;
-  for (const Named& one : all)
-    text += (text.empty() ? "" : ", ") + one.name;
-  return text.empty() ? "none" : text;
-}
 
 double parse_value(const std::string& entry, const std::string& text)
 {
@@ -30,20 +23,6 @@ double parse_value(const std::string& entry, const std::string& text)
   if (result.ec != std::errc() || result.ptr != end)
     throw WrongUsage("--activate: '" + entry + "' has no number behind '='; write MUSCLE=VALUE,MUSCLE=VALUE");
   return value;
-}
-
-void apply_expression(const Model& model, const std::string& name, std::vector<float>& activation)
-{
-  if (name.empty() || name == "relax")
-    return;
-  for (const Model::Expression& expression : model.expressions)
-    if (expression.name == name)
-    {
-      for (const auto& [muscle, value] : expression.activation)
-        activation[static_cast<std::size_t>(muscle)] = value;
-      return;
-    }
-  throw Error("no expression is called '" + name + "'; there is relax, " + names_of(model.expressions));
 }
 
 }  // namespace
@@ -70,24 +49,36 @@ std::map<std::string, double> parse_activation_list(const std::string& text)
 std::vector<float> target_activation(const Model& model, const std::string& expression,
                                      const std::map<std::string, double>& listed)
 {
-  std::vector<float> activation(model.muscles.size(), 0);
-  apply_expression(model, expression, activation);
-
-  std::string unknown;
-  for (const auto& [name, value] : listed)
-  {
-    const auto muscle = std::find_if(model.muscles.begin(), model.muscles.end(),
-                                     [&wanted = name](const Muscle& candidate) { return candidate.name == wanted; });
-    if (muscle == model.muscles.end())
-      unknown += (unknown.empty() ? "'" : ", '") + name + "'";
-    else if (!(value >= 0 && value <= 1))
-      throw Error("activation of '" + name + "' is " + std::to_string(value) + "; must be from 0 to 1");
-    else
-      activation[static_cast<std::size_t>(muscle - model.muscles.begin())] = static_cast<float>(value);
-  }
-  if (!unknown.empty())
-    throw Error("no muscle is called " + unknown + "; the muscles are " + names_of(model.muscles));
+  std::vector<float> activation = expression_activation(model, expression.empty() ? "relax" : expression);
+  set_activations(model, listed, activation);
   return activation;
+}
+
+std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts)
+{
+  std::vector<RigidTransform> bones(model.bones.size());
+  for (const std::string& text : texts)
+  {
+    const std::size_t equals = text.find('=');
+    std::array<double, 6> values{};
+    std::size_t count = 0, begin = equals == std::string::npos ? text.size() : equals + 1;
+    for (; count < 6 && begin < text.size(); ++count)
+    {
+      const std::size_t end = std::min(text.find(',', begin), text.size());
+      const auto [stopped, fault] = std::from_chars(text.data() + begin, text.data() + end, values[count]);
+      if (fault != std::errc() || stopped != text.data() + end)
+        break;
+      begin = end + 1;
+    }
+    if (count != 6 || begin <= text.size() || equals == 0)
+      throw WrongUsage("--bone: '" + text + "' is not written NAME=X,Y,Z,RX,RY,RZ (mm, degrees)");
+    constexpr double degree = 3.14159265358979323846 / 180;
+    set_bone_motion(model, text.substr(0, equals),
+                    rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
+                                 { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } }),
+                    bones);
+  }
+  return bones;
 }
 
 }  // namespace frontalis

@@ -17,4 +17,9 @@ std::map<std::string, double> parse_activation_list(const std::string& text);
 std::vector<float> target_activation(const Model& model, const std::string& expression,
                                      const std::map<std::string, double>& listed);
 
+/// Reads "jaw=0,0,-2,0,10,0", one a bone: shift along x, y, z [mm], and rotation vector [degrees] about the origin,
+/// both in the face frame. Returns one motion a bone of the model, in the local frame. Throws WrongUsage where it is
+/// not written so, and Error on unknown bones and motions that are not finite.
+std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
+
 }  // namespace frontalis

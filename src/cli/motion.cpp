@@ -1,6 +1,7 @@
 #include "motion.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -122,6 +123,8 @@ void Motion::advance_to(double time)
   for (const double knot : curve_.time)
     if (time_ < knot && knot < time)
       advance(knot);
+  if (time_ < ramp_ && ramp_ < time)
+    advance(ramp_);
   advance(time);
 }
 
@@ -129,6 +132,8 @@ void Motion::advance(double time)
 {
   Controls controls = solver_.controls();
   controls.activation = curve_.at(time);
+  for (std::size_t b = 0; b < bones_.size(); ++b)
+    controls.bone[b] = time < ramp_ ? interpolate({}, bones_[b], time / ramp_) : bones_[b];
   solver_.advance((time - time_) / scaling_, controls);
   time_ = time;
 }

@@ -24,12 +24,12 @@ ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
 /// go linearly from rest. Throws Error with the file's line.
 ActivationCurve read_activation_curve(const std::string& path, const Model& model);
 
-/// Plays a curve on a solver.
+/// Plays a curve on a solver, and takes bones to their place over the first `ramp` seconds.
 class Motion
 {
 public:
-  Motion(Solver& solver, const Model& model, ActivationCurve curve)
-      : solver_(solver), scaling_(model.time_scaling), curve_(std::move(curve))
+  Motion(Solver& solver, const Model& model, ActivationCurve curve, std::vector<RigidTransform> bones, double ramp)
+      : solver_(solver), scaling_(model.time_scaling), curve_(std::move(curve)), bones_(std::move(bones)), ramp_(ramp)
   {
   }
 
@@ -42,6 +42,8 @@ private:
   Solver& solver_;
   double scaling_;
   ActivationCurve curve_;
+  std::vector<RigidTransform> bones_;
+  double ramp_;
   double time_ = 0;
 };
 

@@ -1,6 +1,5 @@
 #include "activation_list.hpp"
 #include "command.hpp"
-#include "face_skin.hpp"
 #include "frame_folder.hpp"
 #include "interrupt.hpp"
 #include "model_source.hpp"
@@ -9,6 +8,7 @@
 #include "run_summary.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <CLI/CLI.hpp>
@@ -31,6 +31,7 @@ struct RunOptions
   std::string activation;
   std::string expression;
   std::string activation_file;
+  std::vector<std::string> bones;
   bool to_equilibrium = false;
   double tolerance = 1e-3;
   bool ledger = false;
@@ -97,14 +98,12 @@ void play(Solver& solver, const Model& model, const RunOptions& options, Motion&
 }
 
 // relaxes to equilibrium, the activations at once where they end
-void settle(Solver& solver, const Model& model, const RunOptions& options, const std::vector<float>& target,
+void settle(Solver& solver, const Model& model, const RunOptions& options, const Controls& target,
             std::optional<FrameFolder>& folder, RunSummary& summary)
 {
   const auto begin = std::chrono::steady_clock::now();
   look(solver, model, 0, summary);
   summary.rest = summary.end;
-  Controls controls = solver.controls();
-  controls.activation = target;
   const double slice = options.seconds / 200 / model.time_scaling;
   Progress progress;
   // in slices, so that Ctrl-C is heard; the damping found is lost between them, so they are long
@@ -112,7 +111,7 @@ void settle(Solver& solver, const Model& model, const RunOptions& options, const
   double time = 0;
   for (int part = 0; part < 200 && !found.reached && !interrupt_requested(); ++part)
   {
-    found = solver.settle(controls, options.tolerance, slice);
+    found = solver.settle(target, options.tolerance, slice);
     time += found.seconds * model.time_scaling;
     progress.update("relaxing", part / 200.0);
   }
@@ -155,6 +154,7 @@ void run(const RunOptions& options)
   const ActivationCurve curve = options.activation_file.empty()
                                     ? ramp_to(target_activation(*model, options.expression, listed), ramp)
                                     : read_activation_curve(options.activation_file, *model);
+  const std::vector<RigidTransform> bones = parse_bone_motions(*model, options.bones);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
     folder.emplace(options.frames, *model);
@@ -168,10 +168,10 @@ void run(const RunOptions& options)
   print_set_up(*model, summary);
 
   if (options.to_equilibrium)
-    settle(*solver, *model, options, curve.activation.back(), folder, summary);
+    settle(*solver, *model, options, { curve.activation.back(), bones }, folder, summary);
   else
   {
-    Motion motion(*solver, *model, curve);
+    Motion motion(*solver, *model, curve, bones, ramp);
     play(*solver, *model, options, motion, folder, summary);
   }
   if (folder)
@@ -201,7 +201,12 @@ void add_run_command(CLI::App& app, Action& action)
   command->add_option("--tolerance", options->tolerance, "of equilibrium: motion left over displacement (0.001)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--ledger", options->ledger, "keep account of energies and print it");
-  command->add_option("--ramp", options->ramp, "activations grow linearly over so many seconds (0.1, or half the run)")
+  command->add_option("--bone", options->bones,
+                      "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
+                      "the origin [degrees]; once a bone");
+  command
+      ->add_option("--ramp", options->ramp,
+                   "activations and bones move linearly over so many seconds (0.1, or half the run)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
   command->add_option("--frames", options->frames,

@@ -1,5 +1,7 @@
 #include "frontalis/ros/conversions.hpp"
 
+#include "frontalis/error.hpp"
+
 #include <cmath>
 #include <cstring>
 
@@ -179,6 +181,21 @@ void to_state(const Model& model, const Frame& frame, SimulationState& out)
   out.voxels = static_cast<std::uint32_t>(model.voxels.size());
   out.nodes = static_cast<std::uint32_t>(model.nodes.size());
   out.skin_vertices = static_cast<std::uint32_t>(model.skin.vertices.size());
+}
+
+RigidTransform to_motion(const geometry_msgs::Transform& transform)
+{
+  const auto& q = transform.rotation;
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(length - 1) < 1e-3))
+    throw Error("rotation is a quaternion of length " + std::to_string(length) + "; must be 1");
+  const double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
+  RigidTransform motion;
+  motion.rotation = { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+                        1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+                        1 - 2 * (x * x + y * y) } };
+  motion.translation = { { transform.translation.x, transform.translation.y, transform.translation.z } };
+  return motion;
 }
 
 }  // namespace frontalis

@@ -1,6 +1,7 @@
 #include "frontalis/ros/face_node.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/ros/conversions.hpp"
 
 #include <cmath>
 
@@ -89,6 +90,22 @@ void FaceNode::on_expression(const std_msgs::String& message)
   catch (const Error& error)
   {
     refuse("expression", error.what());
+  }
+}
+
+void FaceNode::on_bone_pose(const geometry_msgs::TransformStamped& message)
+{
+  std::string why;
+  const auto running = runner(&why);
+  if (!running)
+    return refuse("bone_pose", why);
+  try
+  {
+    running->set_bone(message.child_frame_id, to_motion(message.transform));
+  }
+  catch (const Error& error)
+  {
+    refuse("bone_pose", error.what());
   }
 }
 

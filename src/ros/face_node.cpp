@@ -37,6 +37,8 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       "joint_states", 10, [this](const sensor_msgs::JointState::ConstPtr& message) { on_joint_states(*message); }));
   subscribers_.push_back(private_handle_.subscribe<std_msgs::String>(
       "expression", 10, [this](const std_msgs::String::ConstPtr& message) { on_expression(*message); }));
+  subscribers_.push_back(private_handle_.subscribe<geometry_msgs::TransformStamped>(
+      "bone_pose", 10, [this](const geometry_msgs::TransformStamped::ConstPtr& message) { on_bone_pose(*message); }));
   services_.push_back(private_handle_.advertiseService("reset", &FaceNode::on_reset, this));
   services_.push_back(private_handle_.advertiseService("pause", &FaceNode::on_pause, this));
   services_.push_back(private_handle_.advertiseService("step", &FaceNode::on_step, this));

@@ -1,8 +1,10 @@
 #include "frontalis/runner/runner.hpp"
 
-#include "face_points.hpp"
 #include "frame_clock.hpp"
 #include "frontalis/error.hpp"
+#include "frontalis/runner/face_frame.hpp"
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +22,14 @@ using Clock = std::chrono::steady_clock;
 
 // time steps between two looks at the wall clock
 constexpr int steps_a_slice = 32;
+
+// too close for the difference to be seen
+bool close(const RigidTransform& a, const RigidTransform& b)
+{
+  const auto near = [](double within) { return [within](double x, double y) { return std::abs(x - y) < within; }; };
+  return std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), near(1e-5)) &&
+         std::equal(a.translation.begin(), a.translation.end(), b.translation.begin(), near(1e-6));
+}
 
 }  // namespace
 
@@ -91,11 +101,9 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   {
     SkinState skin;
     solver->skin(skin);
-    if (finite(skin.vertices) && finite(skin.normals) && finite(skin.landmarks))
+    if (is_finite(skin))
     {
-      transform(model->to_face, true, skin.vertices);
-      transform(model->to_face, false, skin.normals);
-      transform(model->to_face, true, skin.landmarks);
+      to_face_frame(*model, skin);
       frame.skin = std::move(skin);
     }
     else
@@ -143,7 +151,7 @@ void Runner::Implementation::run_frame()
         return;
       to = target;
     }
-    // activations reach their target within a frame's time, not in one step
+    // controls reach their target within a frame's time, not in one step
     const double slice = std::min(end - time(), steps_a_slice * solver->time_step() * model->time_scaling);
     const auto part = static_cast<float>(std::min(1.0, slice / period()));
     const Controls& now = solver->controls();
@@ -152,6 +160,9 @@ void Runner::Implementation::run_frame()
       const float way = to.activation[m] - now.activation[m];
       to.activation[m] = std::abs(way) < 1e-4f ? to.activation[m] : now.activation[m] + way * std::min(1.0f, 3 * part);
     }
+    for (std::size_t b = 0; b < to.bone.size(); ++b)
+      if (!close(now.bone[b], to.bone[b]))
+        to.bone[b] = interpolate(now.bone[b], to.bone[b], std::min(1.0f, 3 * part));
     advance(slice, to);
   }
   publish();
@@ -180,6 +191,8 @@ void Runner::Implementation::serve_step(StepRequest& request)
     Controls on_the_way = to;
     for (std::size_t m = 0; m < to.activation.size(); ++m)
       on_the_way.activation[m] = from.activation[m] + part * (to.activation[m] - from.activation[m]);
+    for (std::size_t b = 0; b < to.bone.size(); ++b)
+      on_the_way.bone[b] = interpolate(from.bone[b], to.bone[b], std::min(1.0, done / request.seconds));
     advance(slice, on_the_way);
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
@@ -298,52 +311,21 @@ Runner::~Runner()
 
 void Runner::set_activation(const std::map<std::string, double>& activation)
 {
-  const auto& muscles = self_->model->muscles;
-  std::vector<std::pair<std::size_t, float>> changes;
-  std::string faults;
-  for (const auto& entry : activation)
-  {
-    const auto muscle =
-        std::find_if(muscles.begin(), muscles.end(), [&](const Muscle& m) { return m.name == entry.first; });
-    if (muscle == muscles.end())
-    {
-      faults += "unknown muscle \"" + entry.first + "\"; known are";
-      for (const auto& m : muscles)
-        faults += " " + m.name;
-      faults += ". ";
-    }
-    else if (!(entry.second >= 0 && entry.second <= 1))
-      faults += "activation of " + entry.first + " is " + std::to_string(entry.second) + "; allowed is 0 to 1. ";
-    else
-      changes.emplace_back(muscle - muscles.begin(), static_cast<float>(entry.second));
-  }
-  if (!faults.empty())
-    throw Error(faults.substr(0, faults.size() - 1));
   const std::lock_guard<std::mutex> lock(self_->mutex);
-  for (const auto& change : changes)
-    self_->target.activation[change.first] = change.second;
+  set_activations(*self_->model, activation, self_->target.activation);
 }
 
 void Runner::set_expression(const std::string& name)
 {
-  const auto& expressions = self_->model->expressions;
-  std::vector<float> activation(self_->model->muscles.size(), 0);
-  if (name != "relax")
-  {
-    const auto expression =
-        std::find_if(expressions.begin(), expressions.end(), [&](const auto& e) { return e.name == name; });
-    if (expression == expressions.end())
-    {
-      std::string known = "relax";
-      for (const auto& e : expressions)
-        known += " " + e.name;
-      throw Error("unknown expression \"" + name + "\"; known are " + known);
-    }
-    for (const auto& entry : expression->activation)
-      activation[entry.first] = entry.second;
-  }
+  const std::vector<float> activation = expression_activation(*self_->model, name);
   const std::lock_guard<std::mutex> lock(self_->mutex);
   self_->target.activation = activation;
+}
+
+void Runner::set_bone(const std::string& name, const RigidTransform& motion)
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  set_bone_motion(*self_->model, name, motion, self_->target.bone);
 }
 
 void Runner::pause(bool paused)
@@ -365,6 +347,7 @@ void Runner::reset()
 {
   std::unique_lock<std::mutex> lock(self_->mutex);
   std::fill(self_->target.activation.begin(), self_->target.activation.end(), 0.0f);
+  std::fill(self_->target.bone.begin(), self_->target.bone.end(), RigidTransform{});
   self_->reset_wanted = true;
   self_->wake.notify_all();
   const auto before = self_->resets_done;

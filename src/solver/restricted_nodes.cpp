@@ -35,53 +35,6 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node)
 
 }  // namespace
 
-RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
-{
-  // rotation from `from` to `to` as axis and angle, then Rodrigues' formula for the part of it
-  const auto& a = from.rotation;
-  const auto& b = to.rotation;
-  double r[3][3];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      r[i][j] = b[3 * i] * a[3 * j] + b[3 * i + 1] * a[3 * j + 1] + b[3 * i + 2] * a[3 * j + 2];
-  const double sine[3] = { r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1] };
-  const double twice_sine = std::sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]);
-  const double angle = std::atan2(twice_sine, r[0][0] + r[1][1] + r[2][2] - 1);
-  RigidTransform result;
-  double axis[3] = { 1, 0, 0 };
-  if (twice_sine > 1e-12)
-    for (int i = 0; i < 3; ++i)
-      axis[i] = sine[i] / twice_sine;
-  else if (angle > 1)
-  {
-    // half a turn: the axis is a column of r + 1
-    int k = 0;
-    for (int i = 1; i < 3; ++i)
-      k = r[i][i] > r[k][k] ? i : k;
-    double length = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-      axis[i] = r[i][k] + (i == k ? 1 : 0);
-      length += axis[i] * axis[i];
-    }
-    for (double& x : axis)
-      x /= std::sqrt(length);
-  }
-  const double part = angle * fraction, c = std::cos(part), s = std::sin(part);
-  const double cross[3][3] = { { 0, -axis[2], axis[1] }, { axis[2], 0, -axis[0] }, { -axis[1], axis[0], 0 } };
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-    {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k)
-        sum += (c * (i == k) + s * cross[i][k] + (1 - c) * axis[i] * axis[k]) * a[3 * k + j];
-      result.rotation[3 * i + j] = sum;
-    }
-  for (int i = 0; i < 3; ++i)
-    result.translation[i] = from.translation[i] + fraction * (to.translation[i] - from.translation[i]);
-  return result;
-}
-
 template <class Real>
 RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
     : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)

@@ -10,9 +10,6 @@
 namespace frontalis
 {
 
-/// Rotation (as a rotation vector) and translation at a fraction of the way between two poses.
-RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction);
-
 /// What constraints did in some steps [J], and what it takes to say so. A step takes a node's velocity from v- to v+
 /// and would have taken it to v* without them: their impulse is I = (dt / gain) m (v+ - v*), its work I . (v- + v+) /
 /// 2, which is the change of m v- . v+ / 2 in central differences. Where they moved the node by d other than dt v+

@@ -1,6 +1,7 @@
 #include "stepping_solver.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "voxel_monitor.hpp"
 
 #include <chrono>
@@ -15,19 +16,6 @@ namespace
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-bool is_rotation(const RigidTransform& pose)
-{
-  const auto& r = pose.rotation;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-    {
-      const double product = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
-      if (!(std::abs(product - (i == j)) < 1e-6) || !std::isfinite(pose.translation[i]))
-        return false;
-    }
-  return true;
 }
 
 }  // namespace
@@ -133,7 +121,7 @@ void SteppingSolver::check(double seconds, const Controls& target) const
       throw Error("activation of " + model_->muscles[m].name + " is " + std::to_string(target.activation[m]) +
                   "; allowed is 0 to 1");
   for (std::size_t b = 0; b < target.bone.size(); ++b)
-    if (!is_rotation(target.bone[b]))
+    if (!is_rigid_motion(target.bone[b]))
       throw Error("pose of bone " + model_->bones[b] + " is not a finite rigid motion");
   if (failed_)
     throw Error("the motion has diverged earlier: reset the solver first");

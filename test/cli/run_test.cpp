@@ -205,6 +205,31 @@ TEST_F(RunModel, unknown_muscles_and_expressions_are_told_with_those_that_exist)
   }
 }
 
+TEST_F(RunModel, bones_are_moved_and_bad_motions_refused)
+{
+  Model held = bar_model();
+  held.bones = { "jaw" };
+  for (RigidNode& node : held.rigid)
+    node.bone = 0;
+  const std::string path = folder / "held.vtkhdf";
+  write_model(held, path);
+  ProgramResult result =
+      run_program({ "run", path, "--seconds", "0.2", "--bone", "jaw=0,0,3,0,10,0", "--frames", frames });
+  EXPECT_EQ(result.code, 0) << result.errors;
+  const std::string moved = text_of(frames + "/landmarks.csv");
+  result = run_program({ "run", path, "--seconds", "0.2", "--frames", frames });
+  EXPECT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(moved, text_of(frames + "/landmarks.csv"));
+  for (const char* text : { "jaw", "jaw=1,2,3", "jaw=0,0,0,0,0,x", "jaw=0,0,0,0,0,0,0", "=0,0,0,0,0,0" })
+    EXPECT_EQ(run_program({ "run", path, "--bone", text }).code, 2) << text;
+  result = run_program({ "run", path, "--bone", "skull=0,0,0,0,0,0" });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.errors, "no bone is called 'skull'; the bones are jaw\n");
+  result = run_program({ "run", path, "--bone", "jaw=nan,0,0,0,0,0" });
+  EXPECT_EQ(result.code, 1);
+  expect_contains(result.errors, "must be finite and rigid");
+}
+
 TEST_F(RunModel, a_motion_that_diverges_ends_with_an_error_and_no_frame_of_it)
 {
   Model pulled = bar_model();

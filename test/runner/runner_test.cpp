@@ -29,7 +29,8 @@ std::shared_ptr<const Model> bar()
   test::add_muscle(model, { { 1, 0, 0 } }, muscle);
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  model.bones = { "jaw" };
   model.skin.vertices = { { { 6e-3, 0, 0 } }, { { 6e-3, 2e-3, 0 } }, { { 6e-3, 2e-3, 2e-3 } } };
   model.skin.triangles = { { { 0, 1, 2 } } };
   model.skin_binding.voxel = { 5, 11, 23 };
@@ -69,6 +70,45 @@ TEST(Runner, LockStepAdvancesExactlyAndComesBack)
   runner.set_expression("relax");
   runner.step(0.02);
   EXPECT_NEAR(tip(runner.step(0.2)), 6e-3, 2e-5);
+}
+
+TEST(Runner, BonesMoveInTheFaceFrame)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  // local x is the face's z, y its x: a quarter turn about the face's y axis through its origin takes z to x
+  RigidTransform motion;
+  motion.rotation = { { 0, 0, 1, 0, 1, 0, -1, 0, 0 } };
+  motion.translation = { { 0, 2e-3, 0 } };
+  runner.set_bone("jaw", motion);
+  runner.step(0.3);
+  const Frame frame = runner.step(0.5);  // it swings a while
+  const auto& tip_now = frame.skin.landmarks[0];
+  EXPECT_NEAR(tip_now[0], 1.006, 1e-3);
+  EXPECT_NEAR(tip_now[1], 2e-3, 1e-3);
+  EXPECT_NEAR(tip_now[2], 0, 1e-3);
+  runner.reset();
+  EXPECT_NEAR(tip(runner.step(0.01)), 6e-3, 1e-5);
+}
+
+TEST(Runner, RefusesBadBoneMotionsAndKeepsItsState)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  RigidTransform infinite, scaled, mirror;
+  infinite.translation[1] = std::nan("");
+  scaled.rotation[0] = 1.1;
+  mirror.rotation[8] = -1;
+  for (const RigidTransform& motion : { infinite, scaled, mirror })
+    EXPECT_THROW(runner.set_bone("jaw", motion), Error);
+  try
+  {
+    runner.set_bone("skull", {});
+    FAIL();
+  }
+  catch (const Error& error)
+  {
+    EXPECT_STREQ(error.what(), "no bone is called 'skull'; the bones are jaw");
+  }
+  EXPECT_NEAR(tip(runner.step(0.01)), 6e-3, 1e-6);
 }
 
 TEST(Runner, LockStepIsRepeatable)
@@ -152,7 +192,7 @@ TEST(Runner, BadInputIsRefusedWhole)
   }
   catch (const Error& error)
   {
-    EXPECT_NE(std::string(error.what()).find("relax pull"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("relax, pull"), std::string::npos);
   }
 }
 

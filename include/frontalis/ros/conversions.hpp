@@ -40,6 +40,9 @@ void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out);
 void to_transforms(const Model& model, const SkinState& skin, const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
 
+/// Rotation and translation of a transform. Throws Error where its quaternion does not have length 1, to within 1e-3.
+RigidTransform to_motion(const geometry_msgs::Transform& transform);
+
 /// Fills all but the header, `paused` and `backend`.
 void to_state(const Model& model, const Frame& frame, SimulationState& out);
 

@@ -9,6 +9,7 @@
 #include <frontalis/ListMuscles.h>
 #include <frontalis/MuscleActivation.h>
 #include <frontalis/Step.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
@@ -50,6 +51,7 @@ private:
   void on_muscle_activation(const MuscleActivation& message);
   void on_joint_states(const sensor_msgs::JointState& message);
   void on_expression(const std_msgs::String& message);
+  void on_bone_pose(const geometry_msgs::TransformStamped& message);
   void command(const char* topic, const std::vector<std::string>& names, const std::vector<double>& values);
   void refuse(const char* topic, const std::string& fault);
   void end_demo(const char* topic);

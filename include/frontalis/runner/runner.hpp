@@ -59,9 +59,14 @@ public:
   /// A named preset of the model; muscles that it does not name go to 0. Throws Error listing those that exist.
   void set_expression(const std::string& name);
 
+  /// Motion of a bone from its rest pose, in the face frame; reached within a frame, as activations are. Throws Error
+  /// where there is no such bone or the motion is not finite and rigid; nothing is changed then.
+  void set_bone(const std::string& name, const RigidTransform& motion);
+
   void pause(bool paused);
   bool paused() const;
-  /// Back to rest and zero activation; clears a failure, ends a step under way. Returns when it is done.
+  /// Back to rest, zero activation and bones in place; clears a failure, ends a step under way. Returns when it is
+  /// done.
   void reset();
   /// Ends a step under way: its caller gets an Error.
   void cancel_step();

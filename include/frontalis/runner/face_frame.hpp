@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
 #include "frontalis/solver/solver.hpp"
 
 namespace frontalis

@@ -1,4 +1,4 @@
-#include "face_skin.hpp"
+#include "frontalis/runner/face_frame.hpp"
 
 #include <algorithm>
 #include <cmath>

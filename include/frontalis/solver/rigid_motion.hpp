@@ -1,0 +1,21 @@
+#pragma once
+
+#include "frontalis/model/surface.hpp"
+
+namespace frontalis
+{
+
+/// Whether all numbers are finite and the rotation is one (no mirror, no scaling), to within 1e-6.
+bool is_rigid_motion(const RigidTransform& pose);
+
+/// Rotation (as a rotation vector) and translation at a fraction of the way between two poses.
+RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction);
+
+/// The map that does `first`, then `then`.
+RigidTransform composed(const RigidTransform& then, const RigidTransform& first);
+RigidTransform inverse(const RigidTransform& pose);
+
+/// Rotation by a rotation vector (axis times angle [rad]) about the origin, then a translation [m].
+RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation);
+
+}  // namespace frontalis

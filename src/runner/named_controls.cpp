@@ -1,0 +1,85 @@
+#include "frontalis/runner/named_controls.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+const std::string& name_of(const std::string& name) { return name; }
+template <class Named>
+const std::string& name_of(const Named& one)
+{
+  return one.name;
+}
+
+template <class Named>
+std::string names_of(const std::vector<Named>& all)
+{
+  std::string text;
+  for (const Named& one : all)
+    text += (text.empty() ? "" : ", ") + name_of(one);
+  return text.empty() ? "none" : text;
+}
+
+template <class Named>
+std::size_t index_of(const std::vector<Named>& all, const std::string& name)
+{
+  return static_cast<std::size_t>(
+      std::find_if(all.begin(), all.end(), [&](const Named& one) { return name_of(one) == name; }) - all.begin());
+}
+
+}  // namespace
+
+void set_activations(const Model& model, const std::map<std::string, double>& named, std::vector<float>& activation)
+{
+  std::vector<float> changed = activation;
+  std::string unknown, faults;
+  for (const auto& [name, value] : named)
+  {
+    const std::size_t muscle = index_of(model.muscles, name);
+    if (muscle == model.muscles.size())
+      unknown += (unknown.empty() ? "'" : ", '") + name + "'";
+    else if (!(value >= 0 && value <= 1))
+      faults += (faults.empty() ? "activation of '" : "; activation of '") + name + "' is " + std::to_string(value) +
+                "; must be from 0 to 1";
+    else
+      changed[muscle] = static_cast<float>(value);
+  }
+  if (!unknown.empty())
+    faults = "no muscle is called " + unknown + "; the muscles are " + names_of(model.muscles) +
+             (faults.empty() ? "" : "; ") + faults;
+  if (!faults.empty())
+    throw Error(faults);
+  activation = changed;
+}
+
+std::vector<float> expression_activation(const Model& model, const std::string& name)
+{
+  std::vector<float> activation(model.muscles.size(), 0);
+  if (name == "relax")
+    return activation;
+  const std::size_t expression = index_of(model.expressions, name);
+  if (expression == model.expressions.size())
+    throw Error("no expression is called '" + name + "'; there is relax, " + names_of(model.expressions));
+  for (const auto& [muscle, value] : model.expressions[expression].activation)
+    activation[static_cast<std::size_t>(muscle)] = value;
+  return activation;
+}
+
+void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
+                     std::vector<RigidTransform>& bones)
+{
+  const std::size_t bone = index_of(model.bones, name);
+  if (bone == model.bones.size())
+    throw Error("no bone is called '" + name + "'; the bones are " + names_of(model.bones));
+  if (!is_rigid_motion(motion))
+    throw Error("motion of bone '" + name + "' must be finite and rigid: a rotation and a translation");
+  bones[bone] = composed(inverse(model.to_face), composed(motion, model.to_face));
+}
+
+}  // namespace frontalis

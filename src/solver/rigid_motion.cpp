@@ -1,0 +1,117 @@
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <cmath>
+
+namespace frontalis
+{
+
+bool is_rigid_motion(const RigidTransform& pose)
+{
+  const auto& r = pose.rotation;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      const double product = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
+      if (!(std::abs(product - (i == j)) < 1e-6) || !std::isfinite(pose.translation[i]))
+        return false;
+    }
+  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]) >
+         0;
+}
+
+RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
+{
+  // rotation from `from` to `to` as axis and angle, then Rodrigues' formula for the part of it
+  const auto& a = from.rotation;
+  const auto& b = to.rotation;
+  double r[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      r[i][j] = b[3 * i] * a[3 * j] + b[3 * i + 1] * a[3 * j + 1] + b[3 * i + 2] * a[3 * j + 2];
+  const double sine[3] = { r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1] };
+  const double twice_sine = std::sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]);
+  const double angle = std::atan2(twice_sine, r[0][0] + r[1][1] + r[2][2] - 1);
+  RigidTransform result;
+  double axis[3] = { 1, 0, 0 };
+  if (twice_sine > 1e-12)
+    for (int i = 0; i < 3; ++i)
+      axis[i] = sine[i] / twice_sine;
+  else if (angle > 1)
+  {
+    // half a turn: the axis is a column of r + 1
+    int k = 0;
+    for (int i = 1; i < 3; ++i)
+      k = r[i][i] > r[k][k] ? i : k;
+    double length = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      axis[i] = r[i][k] + (i == k ? 1 : 0);
+      length += axis[i] * axis[i];
+    }
+    for (double& x : axis)
+      x /= std::sqrt(length);
+  }
+  const double part = angle * fraction, c = std::cos(part), s = std::sin(part);
+  const double cross[3][3] = { { 0, -axis[2], axis[1] }, { axis[2], 0, -axis[0] }, { -axis[1], axis[0], 0 } };
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      double sum = 0;
+      for (int k = 0; k < 3; ++k)
+        sum += (c * (i == k) + s * cross[i][k] + (1 - c) * axis[i] * axis[k]) * a[3 * k + j];
+      result.rotation[3 * i + j] = sum;
+    }
+  for (int i = 0; i < 3; ++i)
+    result.translation[i] = from.translation[i] + fraction * (to.translation[i] - from.translation[i]);
+  return result;
+}
+
+RigidTransform composed(const RigidTransform& then, const RigidTransform& first)
+{
+  RigidTransform both;
+  for (int i = 0; i < 3; ++i)
+  {
+    both.translation[i] = then.translation[i];
+    for (int k = 0; k < 3; ++k)
+      both.translation[i] += then.rotation[3 * i + k] * first.translation[k];
+    for (int j = 0; j < 3; ++j)
+    {
+      both.rotation[3 * i + j] = 0;
+      for (int k = 0; k < 3; ++k)
+        both.rotation[3 * i + j] += then.rotation[3 * i + k] * first.rotation[3 * k + j];
+    }
+  }
+  return both;
+}
+
+RigidTransform inverse(const RigidTransform& pose)
+{
+  RigidTransform back;
+  for (int i = 0; i < 3; ++i)
+  {
+    back.translation[i] = 0;
+    for (int j = 0; j < 3; ++j)
+    {
+      back.rotation[3 * i + j] = pose.rotation[3 * j + i];
+      back.translation[i] -= pose.rotation[3 * j + i] * pose.translation[j];
+    }
+  }
+  return back;
+}
+
+RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation)
+{
+  // Rodrigues' formula
+  const double angle = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]);
+  RigidTransform motion;
+  motion.translation = translation;
+  if (!(angle > 0))
+    return motion;
+  const double x = rotation[0] / angle, y = rotation[1] / angle, z = rotation[2] / angle;
+  const double c = std::cos(angle), s = std::sin(angle), d = 1 - c;
+  motion.rotation = { { c + d * x * x, d * x * y - s * z, d * x * z + s * y, d * x * y + s * z, c + d * y * y,
+                        d * y * z - s * x, d * x * z - s * y, d * y * z + s * x, c + d * z * z } };
+  return motion;
+}
+
+}  // namespace frontalis
