@@ -135,7 +135,9 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
 template <class Real>
 void CpuSolver<Real>::account(int thread, const Arguments& g)
 {
-  account_->after(slab_[thread], slab_[thread + 1], g.v, damping_, double(g.dt));
+  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, damping_, double(g.dt));
+  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
+    account_->friction(k, restricted_, g.v);
   const auto& nodes = loads_.nodes();
   for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
     for (auto l = std::lower_bound(nodes.begin(), nodes.end(), rows_.plane_nodes[k]) - nodes.begin();

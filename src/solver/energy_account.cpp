@@ -24,6 +24,8 @@ void EnergyAccount<Real>::open()
 {
   const std::size_t planes = plane_nodes_.size() - 1;
   planes_.assign(planes, {});
+  for (auto& component : beside_)
+    component.assign(mass_.size(), 0);
   muscle.assign(planes, 0);
   viscous.assign(2 * planes, 0);
 }
@@ -36,23 +38,28 @@ void EnergyAccount<Real>::copy(std::int32_t first, std::int32_t last, const Real
 }
 
 template <class Real>
-void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Real* const v[3], double damping,
-                                double dt)
+void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Real* const u_before[3],
+                                const Real* const u[3], const Real* const v[3], double damping, double dt)
 {
   for (auto k = first; k < last; ++k)
     for (int axis = 0; axis < 3; ++axis)
     {
       const Real* const old = before_[axis].data();
       const Real* const free = free_[axis].data();
-      double damped = 0, constrained = 0;
+      double damped = 0, constrained = 0, displaced = 0;
       for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
       {
         const double impulse = mass_[n] * 0.5 * (double(old[n]) + double(v[axis][n]));
         damped += impulse * 0.5 * (double(old[n]) + double(free[n]));
         constrained += impulse * (double(v[axis][n]) - double(free[n]));
+        const double beside = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
+        const double change =
+            double(free[n]) - double(old[n]) + 0.5 * damping * dt * (double(old[n]) + double(free[n]));
+        displaced += mass_[n] * change * 0.5 * (beside + beside_[axis][n]);
+        beside_[axis][n] = beside;
       }
       planes_[k].damping += damping * dt * damped;
-      planes_[k].constraint += constrained;
+      planes_[k].constraint += constrained - displaced / dt;
     }
 }
 
@@ -72,6 +79,7 @@ Work EnergyAccount<Real>::work() const
   {
     sum.load += planes_[k].load;
     sum.constraint += planes_[k].constraint;
+    sum.friction += planes_[k].friction;
     sum.damping += planes_[k].damping;
     sum.muscle += muscle[k];
     sum.viscous += viscous[2 * k] - viscous[2 * k + 1];

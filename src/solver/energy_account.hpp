@@ -35,8 +35,19 @@ public:
   void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }
   /// The same after the update and the loads, before constraints.
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
-  /// Adds the step's work in planes [first, last); damping [1/s], dt [s].
-  void after(std::int32_t first, std::int32_t last, const Real* const v[3], double damping, double dt);
+  /// Adds the step's work in planes [first, last); damping [1/s], dt [s]; u_before and u are the displacements before
+  /// and after it [m]. Where constraints moved a node by d other than dt v says, the other forces worked along d too,
+  /// by the mean of those of this step and the next, and the constraints took that away.
+  void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
+             const Real* const v[3], double damping, double dt);
+  /// Adds what friction took in plane k; restricted: RestrictedNodes<Real>.
+  template <class Restricted>
+  void friction(std::int32_t k, const Restricted& restricted, const Real* const v[3])
+  {
+    const Real* const old[3] = { before_[0].data(), before_[1].data(), before_[2].data() };
+    const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
+    planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
+  }
   /// Adds the work of a force on a node of a plane over the step, after after().
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double dt);
@@ -52,6 +63,7 @@ private:
   const std::vector<double>& mass_;
   std::vector<std::int32_t> plane_nodes_;
   Field before_, free_;
+  std::array<std::vector<double>, 3> beside_;  // d of the latest step [m]
   std::vector<Work> planes_;
 };
 

@@ -101,6 +101,26 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
   }
 }
 
+template <class Real>
+double GlidingNodes<Real>::friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
+                                         const Real* const before[3], const Real* const without[3],
+                                         const Real* const after[3]) const
+{
+  const auto at = [](const Real* const v[3], std::int32_t n) { return Point{ v[0][n], v[1][n], v[2][n] }; };
+  double lost = 0;
+  const auto nodes = range(first, last);
+  for (const Node* node = nodes.first; node != nodes.second; ++node)
+  {
+    if (!(node->friction > 0))
+      continue;
+    const auto n = node->node;
+    const Point change = at(after, n) - at(without, n);
+    const Point along = change - dot(change, node->normal) * node->normal;
+    lost -= mass[n] * dot(along, 0.5 * (at(before, n) + at(after, n)) - node->surface_velocity);
+  }
+  return lost;
+}
+
 template class GlidingNodes<float>;
 template class GlidingNodes<double>;
 

@@ -35,6 +35,9 @@ public:
   bool empty() const { return nodes_.empty(); }
   /// Those in [first, last), by node; they were added in the order of their nodes.
   std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
+  /// As RestrictedNodes::friction_loss.
+  double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const;
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Drive& drive);
 
 private:

@@ -141,7 +141,9 @@ double ReferenceSolver::run(const StepPlan& plan)
     restricted_.apply(0, count, u, v, old, plan.drive(step));
     if (account_)
     {
-      account_->after(0, model_->size[2] + 1, v, damping_, plan.dt);
+      account_->after(0, model_->size[2] + 1, old, u, v, damping_, plan.dt);
+      for (std::int32_t k = 0; k <= model_->size[2]; ++k)
+        account_->friction(k, restricted_, v);
       for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
         account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, plan.dt);
     }

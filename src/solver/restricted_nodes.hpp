@@ -10,23 +10,6 @@
 namespace frontalis
 {
 
-/// What constraints did in some steps [J], and what it takes to say so. A step takes a node's velocity from v- to v+
-/// and would have taken it to v* without them: their impulse is I = (dt / gain) m (v+ - v*), its work I . (v- + v+) /
-/// 2, which is the change of m v- . v+ / 2 in central differences. Where they moved the node by d other than dt v+
-/// says, the other forces, m (v* - keep v-) / gain, worked along d too: that is taken away. Added up node after node.
-template <class Real>
-struct ConstraintWork
-{
-  const Real* velocity_before[3];  ///< v- of all nodes [m/s]
-  const double* mass;              ///< of all nodes [kg]
-  double keep, gain;               ///< of the update v* = keep v- + gain force / mass
-
-  double bones = 0;     ///< by nodes and surfaces that follow bones
-  double loads = 0;     ///< by prescribed displacements
-  double sliding = 0;   ///< by surfaces that stand still: what their constraint errs by
-  double friction = 0;  ///< lost to it
-};
-
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
 /// may take disjoint ranges of node planes. Real is the backend's number type.
 template <class Real>
@@ -41,9 +24,14 @@ public:
   /// those before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
              const Drive& drive);
-  /// The same, and adds to `work`.
-  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
-             const Drive& drive, ConstraintWork<Real>& work);
+  /// Energy [J] that friction took from nodes in [first, last) in the step applied last: -I . (mean of v- and v+ -
+  /// velocity of the surface), where I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints,
+  /// v+: after it [m/s], mass [kg], all of all nodes. Added up node after node.
+  double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
+  {
+    return gliding_.friction_loss(first, last, mass, before, without, after);
+  }
   bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty() && gliding_.empty(); }
 
 private:
@@ -56,8 +44,6 @@ private:
 
   void make_blocks(const std::vector<SlidingNode>& nodes);
   static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
-
-  struct Unconstrained;
 
   const Model& model_;
   SlideKernel<Real> kernel_;
