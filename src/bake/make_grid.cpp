@@ -15,7 +15,7 @@ namespace
 
 constexpr double least_voxels = 8;
 constexpr double most_voxels = 2.5e8;  // eight numbers a voxel, counted in 32 bits
-// a bake of 0.93 million voxels peaks 231 bytes a voxel above its meshes (doc/performance.md); more muscles take more
+// bakes of about a million voxels peak at 230 to 270 bytes a voxel (doc/performance.md); more muscles take more
 constexpr double bytes_a_voxel = 400;
 constexpr double bytes_a_cell = 0.15;
 constexpr int samples = 2000;

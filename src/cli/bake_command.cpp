@@ -50,10 +50,10 @@ void bake_to_file(const BakeOptions& options)
 
   if (!summary.cache.empty())
     std::printf("cache    %s\n", summary.cache.c_str());
+  for (const std::string& stage : summary.stages)
+    std::printf("stage    %s\n", stage.c_str());
   if (options.report)
   {
-    for (const std::string& stage : summary.stages)
-      std::printf("stage    %s\n", stage.c_str());
     for (const std::string& finding : summary.findings)
       std::printf("finding  %s\n", finding.c_str());
     for (const std::string& muscle : summary.muscles)
@@ -78,7 +78,8 @@ void add_bake_command(CLI::App& app, Action& action)
   const auto options = std::make_shared<BakeOptions>();
   command->add_option("SCENE", options->source.path, "scene file (YAML)")->required();
   command->add_option("-o,--output", options->output, "model file to write (.vtkhdf)")->required();
-  command->add_flag("--report", options->report, "print the time of each stage and all that was found");
+  command->add_flag("--report", options->report,
+                    "print all that was found, and the muscles' volumes beside those of their meshes");
   command->add_option(
       "--cache", options->source.cache,
       "folder of models by their scenes' content: the model is taken from there, or baked and left there");

@@ -113,9 +113,12 @@ BakeSummary summary_of(const BakeReport& report)
                     "in bone", "off skin", "limits", "nurbs");
       summary.muscles.emplace_back(line);
     }
-    std::snprintf(line, sizeof line, "%8.3f %9.3f %6.1f%% %8.3f %8.3f %8.3f %8.3f %8.3f  ", 1e6 * muscle.voxels,
+    char nurbs[16] = "-";
+    if (muscle.nurbs > 0)
+      std::snprintf(nurbs, sizeof nurbs, "%.3f", 1e6 * muscle.nurbs);
+    std::snprintf(line, sizeof line, "%8.3f %9.3f %6.1f%% %8.3f %8.3f %8.3f %8.3f %8s  ", 1e6 * muscle.voxels,
                   1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1), 1e6 * muscle.mesh,
-                  1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere, 1e6 * muscle.nurbs);
+                  1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere, nurbs);
     summary.muscles.push_back(line + muscle.name);
   }
   return summary;
