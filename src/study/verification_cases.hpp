@@ -19,6 +19,9 @@ Finding verify_convergence(const VerificationSettings& settings);
 Finding verify_cook(const VerificationSettings& settings);
 Finding verify_staircase(const VerificationSettings& settings);
 Finding verify_wrinkling(const VerificationSettings& settings);
+Finding verify_heart_beam(const VerificationSettings& settings);
+Finding verify_calculix(const VerificationSettings& settings);
+Finding verify_heart_ellipsoid(const VerificationSettings& settings);
 
 /// Slope of log y against log x by least squares.
 double slope(const std::vector<double>& x, const std::vector<double>& y);
