@@ -174,7 +174,7 @@ SolidState solve_by_voxels(const SolidProblem& problem, double edge, double peri
   relax.backend = backend;
   relax.period = period;
   relax.tolerance = 5e-4;
-  Equilibrium rest = find_equilibrium(model, relax);
+  RestState rest = find_equilibrium(model, relax);
   state.displacements = rest.displacements;
   rest.solver->internal_forces(state.forces);
   return state;

@@ -20,27 +20,11 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   std::fill(target.activation.begin(), target.activation.end(), settings.activation);
   std::fill(target.bone.begin(), target.bone.end(), settings.bone_pose);
   result.solver->advance(settings.ramp * settings.period, target);
-  result.periods = settings.ramp;
+  const Equilibrium end = result.solver->settle(target, settings.tolerance, settings.longest * settings.period);
+  if (!end.reached)
+    throw Error("no equilibrium within " + std::to_string(settings.longest) + " periods of " +
+                std::to_string(settings.period) + " s: " + std::to_string(end.residual) + " of the motion is left");
   result.solver->displacements(result.displacements);
-  for (int quiet = 0; quiet < 2;)
-  {
-    if (result.periods > settings.longest)
-      throw Error("no equilibrium within " + std::to_string(settings.longest) + " periods of " +
-                  std::to_string(settings.period) + " s");
-    result.solver->advance(settings.period / 4, target);
-    result.periods += 0.25;
-    Vectors now;
-    result.solver->displacements(now);
-    double largest = 0, change = 0;
-    for (std::size_t n = 0; n < now.size(); ++n)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        largest = std::max(largest, std::abs(now[n][axis]));
-        change = std::max(change, std::abs(now[n][axis] - result.displacements[n][axis]));
-      }
-    quiet = change <= settings.tolerance * largest ? quiet + 1 : 0;
-    result.displacements = std::move(now);
-  }
   return result;
 }
 

@@ -33,6 +33,7 @@ Model lone_voxel(const Model& model, std::size_t e)
     one.material_directions = { model.material_directions[e] };
   one.fibre_begin = { 0, 0 };
   one.hourglass = model.hourglass;
+  one.integration = model.integration;
   build_nodes(one);
   return one;
 }

@@ -45,6 +45,9 @@ std::vector<VerificationCase> verification_cases()
            { "cook_membrane", true, verify_cook },
            { "staircase", false, verify_staircase },
            { "wrinkling", true, verify_wrinkling },
+           { "viscosity", true, verify_viscosity },
+           { "energy_balance", true, verify_energy_balance },
+           { "precision", false, verify_precision },
            { "heart_beam", false, verify_heart_beam },
            { "heart_ellipsoid", false, verify_heart_ellipsoid },
            { "calculix", false, verify_calculix } };

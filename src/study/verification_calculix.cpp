@@ -212,11 +212,10 @@ Finding verify_calculix(const VerificationSettings& settings)
   }
   finding.plots.emplace_back("calculix", plot);
   finding.remarks =
-      "The twisted column pulls its end by a seventh of what its torque is over its side: a difference of stresses "
-      "that nearly cancel, which "
-      "shows the error of these fourfold; it falls with the square of the voxel edge. Stress is singular at the edge "
-      "of the patch on the slab, so "
-      "there both programs converge slowly, and what is left at 0.625 mm is as much CalculiX's 12 × 12 × 8 elements.";
+      "The twisted column pulls its end by a seventh of what its torque is over its side: a difference of "
+      "stresses that nearly cancel, which shows the error of these fourfold; it falls with the square of the "
+      "voxel edge. Stress is singular at the edge of the patch on the slab, so there both programs converge "
+      "slowly, and what is left at 0.625 mm is as much CalculiX's 12 × 12 × 8 elements.";
   return finding;
 }
 

@@ -168,9 +168,9 @@ Finding verify_convergence(const VerificationSettings&)
   Finding finding;
   finding.title = "Order of convergence";
   finding.text =
-      "The surface of a unit cube, ν = 0.45, is displaced as ∇φ with φ = cos(2x + 0.3) cos(1.5y + 0.5) cosh(2.5(z − "
-      "½)): harmonic, so that "
-      "∇φ solves Navier's equation. Root mean square error of the inner displacements; theory: second order.";
+      "The surface of a unit cube, ν = 0.45, is displaced as ∇φ with φ = cos(2x + 0.3) cos(1.5y + 0.5) "
+      "cosh(2.5(z − ½)): harmonic, so that ∇φ solves Navier's equation. Root mean square error of the inner "
+      "displacements; theory: second order.";
   Plot plot;
   plot.title = "Displacement error inside a cube";
   plot.x_label = "voxel edge over the cube's [1]";
@@ -209,13 +209,11 @@ Finding verify_cook(const VerificationSettings&)
   Finding finding;
   finding.title = "Cook's membrane";
   finding.text =
-      "A tapered panel in linear plane stress (E = 1, ν = ⅓), clamped at its left side (height 44) and sheared by a "
-      "unit force at its right "
-      "one (height 16): the middle of that side rises by 23.96. (The upper corner, which is sometimes named with this "
-      "figure, rises "
-      "by about 25.1 as voxels shrink.) One layer of voxels, free to thin; the slanted sides are staircases of voxels "
-      "weighted by their "
-      "proportion inside the panel.";
+      "A tapered panel in linear plane stress (E = 1, ν = ⅓), clamped at its left side (height 44) and sheared "
+      "by a unit force at its right one (height 16): the middle of that side rises by 23.96. (The upper "
+      "corner, which is sometimes named with this figure, rises by about 25.1 as voxels shrink.) One layer of "
+      "voxels, free to thin; the slanted sides are staircases of voxels weighted by their proportion inside "
+      "the panel.";
   struct Way
   {
     const char* name;
@@ -258,9 +256,8 @@ Finding verify_cook(const VerificationSettings&)
   finding.tables.emplace_back("Rise", table);
   finding.plots.emplace_back("cook_membrane", plot);
   finding.remarks =
-      "The staircase makes the error one of first order: a body with straight sides along the grid converges with the "
-      "second "
-      "(above). Weighted voxels halve what whole ones err by.";
+      "The staircase makes the error one of first order: a body with straight sides along the grid converges "
+      "with the second (above). Weighted voxels halve what whole ones err by.";
   return finding;
 }
 
@@ -269,11 +266,10 @@ Finding verify_staircase(const VerificationSettings& settings)
   Finding finding;
   finding.title = "What a staircase costs on a curved body";
   finding.text =
-      "A hollow sphere, radii 1 and 2, ν = 0.45, under a small pressure inside, an eighth of it: Lamé's solution gives "
-      "the "
-      "displacement of both surfaces. Voxels are weighted by their proportion inside (4³ samples, below 0.2 dropped: "
-      "the defaults of "
-      "a bake); the pressure acts on the true sphere and reaches the nodes through its binding.";
+      "A hollow sphere, radii 1 and 2, ν = 0.45, under a small pressure inside, an eighth of it: Lamé's "
+      "solution gives the displacement of both surfaces. Voxels are weighted by their proportion inside (4³ "
+      "samples, below 0.2 dropped: the defaults of a bake); the pressure acts on the true sphere and reaches "
+      "the nodes through its binding.";
   Plot plot;
   plot.title = "Hollow sphere under pressure: displacement of its inner surface";
   plot.x_label = "voxel edge over the wall's thickness [1]";
@@ -308,9 +304,8 @@ Finding verify_staircase(const VerificationSettings& settings)
   finding.tables.emplace_back("Radial displacement over Lamé's: mean and standard deviation over the surface", table);
   finding.plots.emplace_back("staircase", plot);
   finding.remarks =
-      "The mean is within 2 % from four voxels through the wall on; what is left at sixteen is the tissue in voxels "
-      "that were "
-      "dropped. Locally the surface follows the steps: the scatter falls with the voxel edge.";
+      "The mean is within 2 % from four voxels through the wall on; what is left at sixteen is the tissue in "
+      "voxels that were dropped. Locally the surface follows the steps: the scatter falls with the voxel edge.";
   return finding;
 }
 

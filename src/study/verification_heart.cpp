@@ -149,13 +149,11 @@ Finding verify_heart_beam(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Heart benchmark, problem 1: a beam bends under pressure";
   finding.text =
-      "Land et al. 2015 (Proc. R. Soc. A 471:20150641): a beam of 10 × 1 × 1 mm of Guccione's law, c = 2 kPa, b_f = 8, "
-      "b_t = 2, b_fs = 4, fibres "
-      "along it, incompressible, clamped at one end, with 4 Pa on its lower side that follow it. Height of the end's "
-      "upper edge. Expected: "
-      "4.1549 mm, the output in the documentation of the FEniCS code *pulse* (finsberg/pulse, problem 1); the "
-      "participants of the benchmark lie "
-      "between 4.1 and 4.2 mm where their meshes are fine. Bulk modulus here 100 c.";
+      "Land et al. 2015 (Proc. R. Soc. A 471:20150641): a beam of 10 × 1 × 1 mm of Guccione's law, c = 2 kPa, "
+      "b_f = 8, b_t = 2, b_fs = 4, fibres along it, incompressible, clamped at one end, with 4 Pa on its lower "
+      "side that follow it. Height of the end's upper edge. Expected: 4.1549 mm, the output in the "
+      "documentation of the FEniCS code *pulse* (finsberg/pulse, problem 1); the participants of the benchmark "
+      "lie between 4.1 and 4.2 mm where their meshes are fine. Bulk modulus here 100 c.";
   Plot plot;
   plot.title = "Heart benchmark, problem 1: height of the beam's end";
   plot.x_label = "voxel edge [mm]";
@@ -186,15 +184,13 @@ Finding verify_heart_ellipsoid(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Heart benchmark, problem 3: an ellipsoid is inflated and contracts";
   finding.text =
-      "Land et al. 2015: the wall between ellipsoids with semi-axes 7, 7, 17 and 10, 10, 20 mm, cut off 5 mm above "
-      "their centre and held there; "
-      "Guccione's law as in problem 1, fibres that turn from −90° at the inner surface to 90° at the outer one, 15 kPa "
-      "inside and an active stress of 60 "
-      "kPa, S = Tₐ f₀ ⊗ f₀. Distance of the two apices from the centre. Expected: about 12.5 and 15.5 mm, as read from "
-      "the paper's figures (so "
-      "quoted in issue 39 of finsberg/pulse); that code's documentation has 11.855 and 15.490 mm for its coarse mesh. "
-      "Bulk modulus 1000 c; "
-      "each voxel has its own fibre direction, for the muscle and for the law.";
+      "Land et al. 2015: the wall between ellipsoids with semi-axes 7, 7, 17 and 10, 10, 20 mm, cut off 5 mm "
+      "above their centre and held there; Guccione's law as in problem 1, fibres that turn from −90° at the "
+      "inner surface to 90° at the outer one, 15 kPa inside and an active stress of 60 kPa, S = Tₐ f₀ ⊗ f₀. "
+      "Distance of the two apices from the centre. Expected: about 12.5 and 15.5 mm, as read from the paper's "
+      "figures (so quoted in issue 39 of finsberg/pulse); that code's documentation has 11.855 and 15.490 mm "
+      "for its coarse mesh. Bulk modulus 1000 c; each voxel has its own fibre direction, for the muscle and "
+      "for the law.";
   Plot plot;
   plot.title = "Heart benchmark, problem 3: apices after contraction";
   plot.x_label = "voxel edge [mm]";
@@ -223,11 +219,10 @@ Finding verify_heart_ellipsoid(const VerificationSettings& settings)
   }
   finding.plots.emplace_back("heart_ellipsoid", plot);
   finding.remarks =
-      "The wall is 3 mm thick: 3, 5 and 6 voxels. Contraction shortens the ellipsoid by about 4.5 mm, so 0.3 mm at the "
-      "apex are 6 % of its motion. What "
-      "is missing at coarse voxels is what a staircase costs: fibres turn by 60° from one voxel to the next through a "
-      "wall of three, and the "
-      "apex, where the wall's curvature is greatest, is a step of a few voxels.";
+      "The wall is 3 mm thick: 3, 5 and 6 voxels. Contraction shortens the ellipsoid by about 4.5 mm, so 0.3 "
+      "mm at the apex are 6 % of its motion. What is missing at coarse voxels is what a staircase costs: "
+      "fibres turn by 60° from one voxel to the next through a wall of three, and the apex, where the wall's "
+      "curvature is greatest, is a step of a few voxels.";
   return finding;
 }
 

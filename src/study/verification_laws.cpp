@@ -93,9 +93,9 @@ Finding verify_rigid_motion(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Rigid motion";
   finding.text =
-      "A block of 3³ voxels is turned by 1.2 rad about (1, 2, 3) and moved by 2 mm. No force may arise; the largest "
-      "is given over E h². In single precision the rounding of the displacements alone strains an element "
-      "by 10⁻⁷, which the bulk modulus, 17 E, turns into 10⁻⁶.";
+      "A block of 3³ voxels is turned by 1.2 rad about (1, 2, 3) and moved by 2 mm. No force may arise; the "
+      "largest is given over E h². In single precision the rounding of the displacements alone strains an "
+      "element by 10⁻⁷, which the bulk modulus, 17 E, turns into 10⁻⁶.";
   // Rodrigues' formula
   const double length = std::sqrt(14.0), a[3] = { 1 / length, 2 / length, 3 / length };
   const double c = std::cos(1.2), s = std::sin(1.2);
@@ -165,10 +165,9 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Forces are the gradient of the energy";
   finding.text =
-      "Nodes of a 2 × 2 × 2 block are displaced at random by up to 0.3 voxels, so that some voxels are nearly crushed; "
-      "each "
-      "nodal force is compared with the central difference of the energy (elastic and hourglass, in double). "
-      "Given is the largest error over the largest force.";
+      "Nodes of a 2 × 2 × 2 block are displaced at random by up to 0.3 voxels, so that some voxels are nearly "
+      "crushed; each nodal force is compared with the central difference of the energy (elastic and hourglass, "
+      "in double). Given is the largest error over the largest force.";
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-0.3 * edge, 0.3 * edge);
   for (const auto& [law, material] : every_law())
@@ -218,9 +217,9 @@ Finding verify_uniaxial_stretch(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Uniaxial stretch";
   finding.text =
-      "A neo-Hookean block, ν = 0.49, is drawn or pressed along x with its sides free, and comes to rest. Expected: "
-      "the "
-      "closed form ψ = μ/2 (J^(−2/3) I₁ − 3) + κ/2 (J − 1)² with the lateral stretch solved for numerically.";
+      "A neo-Hookean block, ν = 0.49, is drawn or pressed along x with its sides free, and comes to rest. "
+      "Expected: the closed form ψ = μ/2 (J^(−2/3) I₁ − 3) + κ/2 (J − 1)² with the lateral stretch solved for "
+      "numerically.";
   const double expected[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
                                   { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                   { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },

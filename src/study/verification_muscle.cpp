@@ -38,9 +38,8 @@ Finding verify_active_bar(const VerificationSettings& settings)
   Finding finding;
   finding.title = "Active incompressible bar";
   finding.text =
-      "A free bar with S = Tₐ f₀ ⊗ f₀ along it (a muscle without tension–length relation). Incompressible: λ = (1 + "
-      "Tₐ/μ)^(−1/3). "
-      "The bulk modulus here is 2000 μ.";
+      "A free bar with S = Tₐ f₀ ⊗ f₀ along it (a muscle without tension–length relation). Incompressible: λ = "
+      "(1 + Tₐ/μ)^(−1/3). The bulk modulus here is 2000 μ.";
   const double mu = 1e4;
   Material material;
   material.density = 1000;
@@ -61,8 +60,8 @@ Finding verify_published_bar(const VerificationSettings& settings)
   finding.title = "Published muscle";
   finding.text =
       "A free bar of the published muscle material (0.5 MPa, ν = 0.49) with the tension–length relation, at "
-      "activation 0.75. With a stress reference of 0.3 MPa it is to end at λ = 0.75, with the published 5 MPa at 0.52: "
-      "two digits are known, so the bound is half of the last.";
+      "activation 0.75. With a stress reference of 0.3 MPa it is to end at λ = 0.75, with the published 5 MPa "
+      "at 0.52: two digits are known, so the bound is half of the last.";
   for (const auto& [stress, stretch] : { std::pair{ 0.3e6, 0.75 }, { 5e6, 0.52 } })
     finding.checks.push_back(absolute_check(
         "stretch with " + readable(stress / 1e6) + " MPa", "1", stretch,

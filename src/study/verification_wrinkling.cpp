@@ -57,13 +57,11 @@ Finding verify_wrinkling(const VerificationSettings&)
   Finding finding;
   finding.title = "Wrinkling of a stiff film on a soft base";
   finding.text =
-      "Both neo-Hookean, ν = 0.49, the film 100 times stiffer, compressed in plane strain. Plate theory (Allen; Cao & "
-      "Hutchinson 2012) for a wave "
-      "number k and film thickness h: compression (kh)²/12 + Ēs/(2Ēf kh), least at wavelength 2πh (Ēf/3Ēs)^(1/3) = "
-      "20.2 h with ¼(3Ēs/Ēf)^(2/3) = "
-      "2.41 %. Here the compressed state is homogeneous, so the tangent of the solver's forces is assembled about it, "
-      "and the "
-      "compression is sought at which it stops being positive definite, for cells of half a wavelength, base one "
+      "Both neo-Hookean, ν = 0.49, the film 100 times stiffer, compressed in plane strain. Plate theory "
+      "(Allen; Cao & Hutchinson 2012) for a wave number k and film thickness h: compression (kh)²/12 + Ēs/(2Ēf "
+      "kh), least at wavelength 2πh (Ēf/3Ēs)^(1/3) = 20.2 h with ¼(3Ēs/Ēf)^(2/3) = 2.41 %. Here the compressed "
+      "state is homogeneous, so the tangent of the solver's forces is assembled about it, and the compression "
+      "is sought at which it stops being positive definite, for cells of half a wavelength, base one "
       "wavelength deep.";
   const double pi = std::acos(-1.0);
   Plot plot;
@@ -102,13 +100,11 @@ Finding verify_wrinkling(const VerificationSettings&)
   }
   finding.plots.emplace_back("wrinkling", plot);
   finding.remarks =
-      "Which wrinkles voxels can show: a wavelength takes about 8 voxels, and the film at least one. The published "
-      "stratum corneum on its "
-      "dermis (48 MPa, 0.02 mm on 0.0814 MPa) would wrinkle at 0.73 mm and 0.74 %: only a shell can carry it, and "
-      "voxels of a millimetre "
-      "do not. Corneum and dermis as one plate on the hypodermis wrinkle at 8 to 16 mm and 6 to 13 %, depending on the "
-      "depth "
-      "over bone: these are the wrinkles that a scene with millimetre voxels can show.";
+      "Which wrinkles voxels can show: a wavelength takes about 8 voxels, and the film at least one. The "
+      "published stratum corneum on its dermis (48 MPa, 0.02 mm on 0.0814 MPa) would wrinkle at 0.73 mm and "
+      "0.74 %: only a shell can carry it, and voxels of a millimetre do not. Corneum and dermis as one plate "
+      "on the hypodermis wrinkle at 8 to 16 mm and 6 to 13 %, depending on the depth over bone: these are the "
+      "wrinkles that a scene with millimetre voxels can show.";
   return finding;
 }
 

@@ -11,9 +11,9 @@ namespace frontalis
 struct EquilibriumSettings
 {
   Backend backend = Backend::cpu;
-  double period = 0;         ///< [s] of the slowest motion, about: damping is critical for it
-  double ramp = 1;           ///< periods over which loads and activations grow
-  double tolerance = 1e-4;   ///< largest change of a displacement in a quarter period over the largest displacement
+  double period = 0;         ///< [s] of the slowest motion, about
+  double ramp = 1;           ///< periods over which loads and activations grow, critically damped
+  double tolerance = 1e-4;   ///< as Solver::settle takes it
   double longest = 60;       ///< periods; Error beyond
   float activation = 0;      ///< of every muscle
   RigidTransform bone_pose;  ///< of every bone
@@ -24,10 +24,9 @@ struct RestState
 {
   std::unique_ptr<Solver> solver;
   Vectors displacements;  ///< [m]
-  double periods = 0;     ///< that it took
 };
 
-/// Lets the model come to rest by mass-proportional damping (the model's own is replaced) under slowly growing loads.
+/// Lets the model come to rest under slowly growing loads (the model's own damping is replaced), by Solver::settle.
 /// Throws Error where it does not within settings.longest.
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 
