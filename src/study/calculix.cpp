@@ -87,7 +87,7 @@ std::string deck(const SolidProblem& problem, const Lattice& elements, std::vect
   std::ostringstream out;
   out.precision(12);
   out << "*NODE,NSET=NALL\n"
-      << nodes.str() << solids.str() << sections.str() << "*STEP,NLGEOM,INC=1000\n*STATIC\n0.1,1,1e-5,0.2\n*BOUNDARY\n"
+      << nodes.str() << solids.str() << sections.str() << "*STEP,NLGEOM,INC=1000\n*STATIC\n0.25,1,1e-5,0.5\n*BOUNDARY\n"
       << held.str();
   for (std::size_t m = 0; gravity > 0 && m < problem.materials.size(); ++m)
     out << "*DLOAD\nE" << m << ",GRAV," << 1e3 * gravity << ',' << g[0] / gravity << ',' << g[1] / gravity << ','

@@ -15,7 +15,9 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
   RestState result;
-  result.solver = make_solver(std::make_shared<const Model>(std::move(model)), { settings.backend, 0, 0 });
+  // few voxels are not worth a second thread's waiting
+  const int threads = model.voxels.size() < 2000 ? 1 : 0;
+  result.solver = make_solver(std::make_shared<const Model>(std::move(model)), { settings.backend, threads, 0 });
   Controls target = result.solver->controls();
   std::fill(target.activation.begin(), target.activation.end(), settings.activation);
   std::fill(target.bone.begin(), target.bone.end(), settings.bone_pose);

@@ -150,7 +150,7 @@ namespace
 double measured_period(const Model& model, const VerificationSettings& settings, const Vectors& velocities,
                        const std::vector<std::int32_t>& end, int axis, double guess)
 {
-  const auto solver = make_solver(std::make_shared<const Model>(model), { settings.backend, 0, 0 });
+  const auto solver = make_solver(std::make_shared<const Model>(model), { settings.backend, 1, 0 });
   solver->set_velocities(velocities);
   const double interval = guess / 200;
   double before = 0, first = 0;

@@ -108,7 +108,7 @@ Finding verify_rigid_motion(const VerificationSettings& settings)
     for (const auto form : { HourglassControl::scalar, HourglassControl::assumed_strain })
     {
       const auto model = std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 3, form));
-      const auto solver = make_solver(model, { backend, 0, 0 });
+      const auto solver = make_solver(model, { backend, 1, 0 });
       solver->set_displacements(affine(*model, R, { { 2e-3, 0, 0 } }));
       Vectors forces;
       solver->internal_forces(forces);
@@ -138,7 +138,7 @@ Finding verify_affine_motion(const VerificationSettings& settings)
   {
     const auto model =
         std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 4, HourglassControl::assumed_strain));
-    const auto solver = make_solver(model, { backend, 0, 0 });
+    const auto solver = make_solver(model, { backend, 1, 0 });
     solver->set_displacements(affine(*model, F));
     Vectors forces;
     solver->internal_forces(forces);
@@ -195,7 +195,7 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
           }
       for (const auto& [backend, bound] : { std::pair{ Backend::reference, 1e-6 }, { settings.backend, 2e-5 } })
       {
-        const auto solver = make_solver(model, { backend, 0, 0 });
+        const auto solver = make_solver(model, { backend, 1, 0 });
         solver->set_displacements(u);
         Vectors forces;
         solver->internal_forces(forces);
@@ -270,7 +270,7 @@ Finding verify_simple_shear(const VerificationSettings& settings)
   for (const double gamma : { 0.2, 0.8 })
   {
     const auto model = std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 2));
-    const auto solver = make_solver(model, { settings.backend, 0, 0 });
+    const auto solver = make_solver(model, { settings.backend, 1, 0 });
     const Gradient F{ { 1, gamma, 0, 0, 1, 0, 0, 0, 1 } };
     solver->set_displacements(affine(*model, F));
     const Gradient P = piola_stress(*model, *solver);

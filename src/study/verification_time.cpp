@@ -69,8 +69,8 @@ Finding verify_viscosity(const VerificationSettings& settings)
                               Series{ "two terms", { { 0.3, 0.2 } }, { { 0.01, 0.1 } } } })
   {
     const Model model = sheared_block(series.share, series.time);
-    const auto elastic = make_solver(std::make_shared<const Model>(sheared_block({}, {})), { settings.backend, 0, 0 });
-    const auto viscous = make_solver(std::make_shared<const Model>(model), { settings.backend, 0, 0 });
+    const auto elastic = make_solver(std::make_shared<const Model>(sheared_block({}, {})), { settings.backend, 1, 0 });
+    const auto viscous = make_solver(std::make_shared<const Model>(model), { settings.backend, 1, 0 });
     elastic->advance(1e-4, elastic->controls());
     const double at_once = shear_force(*elastic, model);
     Plot::Curve theory{ std::string(series.name) + ", closed form", {}, {}, Plot::Style::line };
@@ -128,7 +128,7 @@ Finding verify_energy_balance(const VerificationSettings& settings)
       model.materials[0].viscous_share = { { 0.3, 0.2 } };
       model.materials[0].viscous_time = { { 0.005, 0.05 } };
     }
-    SolverSettings with_ledger{ settings.backend, 0, 0 };
+    SolverSettings with_ledger{ settings.backend, 1, 0 };
     with_ledger.ledger = true;
     const auto solver = make_solver(std::make_shared<const Model>(model), with_ledger);
     Controls target = solver->controls();

@@ -1,3 +1,4 @@
+#include "frontalis/physics/assumed_strain.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "frontalis/physics/trilinear.hpp"
@@ -64,6 +65,20 @@ TEST(Hourglass, BendingModeHasTheEnergyOfPureBending)
     if (is_hourglass_mode(m))
       energy += 0.5 * hourglass_stiffness(young, h * h * h, h) * mode[m] * mode[m];
   EXPECT_NEAR(energy, 0.5 * young * 4 * c * c / (h * h) * h * h * h / 3, 1e-18);
+}
+
+TEST(AssumedStrain, ABarBendsWithYoungsModulusAndAPlateIsStifferAlongShortEdges)
+{
+  const double young = 3e4, nu = 0.45, volume = 2e-9;
+  const auto k = assumed_strain(young / (2 * (1 + nu)), young / (3 * (1 - 2 * nu)), volume);
+  const double weight[3] = { 1, 0.5, 1 };  // the second edge is twice as long as the others
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const AxisBending<double> b = axis_bending(k, weight, axis);
+    // energy of a strain whose Poisson contraction is free
+    EXPECT_NEAR(b.own - b.coupled * b.coupled / b.own, young * volume, 1e-12 * young * volume);
+    EXPECT_NEAR(b.coupled / b.own, axis == 1 ? nu / 4 : nu, 1e-12);
+  }
 }
 
 TEST(TimeStep, LoneCubeNearIncompressibility)
