@@ -48,12 +48,13 @@ void verify(const VerifyOptions& options)
   const VerificationSettings settings{ backend_from_name(options.backend) };
   Findings findings;
   int failed = 0, bounded = 0;
+  double seconds = 0;
   std::printf("%-17s %-44s %12s %12s %-6s %10s %8s\n", "case", "check", "expected", "got", "unit", "error", "bound");
   for (const auto& c : cases)
   {
     const auto start = std::chrono::steady_clock::now();
     Finding finding = c.run(settings);
-    finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const auto& check : finding.checks)
     {
       std::printf("%s\n", check_line(c.name, check).c_str());
@@ -73,7 +74,7 @@ void verify(const VerifyOptions& options)
     write_manual(findings, options.markdown);
   if (failed > 0)
     throw Error(std::to_string(failed) + " of " + std::to_string(bounded) + " checks failed");
-  std::printf("all %d checks passed\n", bounded);
+  std::printf("all %d checks passed in %.0f s\n", bounded, seconds);
 }
 
 }  // namespace

@@ -152,8 +152,7 @@ Finding verify_heart_beam(const VerificationSettings& settings)
       "Land et al. 2015 (Proc. R. Soc. A 471:20150641): a beam of 10 × 1 × 1 mm of Guccione's law, c = 2 kPa, "
       "b_f = 8, b_t = 2, b_fs = 4, fibres along it, incompressible, clamped at one end, with 4 Pa on its lower "
       "side that follow it. Height of the end's upper edge. Expected: 4.1549 mm, the output in the "
-      "documentation of the FEniCS code *pulse* (finsberg/pulse, problem 1); the participants of the benchmark "
-      "lie between 4.1 and 4.2 mm where their meshes are fine. Bulk modulus here 100 c.";
+      "documentation of the FEniCS code *pulse* (finsberg/pulse, problem 1). Bulk modulus here 100 c.";
   Plot plot;
   plot.title = "Heart benchmark, problem 1: height of the beam's end";
   plot.x_label = "voxel edge [mm]";
@@ -219,9 +218,9 @@ Finding verify_heart_ellipsoid(const VerificationSettings& settings)
   }
   finding.plots.emplace_back("heart_ellipsoid", plot);
   finding.remarks =
-      "The wall is 3 mm thick: 3 and 6 voxels. Contraction shortens the ellipsoid by about 4.5 mm, so 0.3 "
-      "mm at the apex are 6 % of its motion. What is missing at coarse voxels is what a staircase costs: "
-      "fibres turn by 60° from one voxel to the next through a wall of three, and the apex, where the wall's "
+      "The wall is 3 mm thick: 3 and 6 voxels. Contraction shortens the ellipsoid by about 4.5 mm, so 0.3 mm "
+      "at the apex are 6 % of its motion. What is missing at coarse voxels is what a staircase costs: fibres "
+      "turn by 60° from one voxel to the next through a wall of three, and the apex, where the wall's "
       "curvature is greatest, is a step of a few voxels.";
   return finding;
 }

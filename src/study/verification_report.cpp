@@ -55,8 +55,7 @@ void write_manual(const Findings& findings, const std::string& path)
       "it. A check "
       "passes when its error is within its bound; *shown* are figures that have none. Errors and bounds with % are "
       "relative.\n";
-  Table overview({ "case", "checks", "passed", "seconds" });
-  double seconds = 0;
+  Table overview({ "case", "checks", "passed" });
   for (const auto& [name, finding] : findings)
   {
     double bounded = 0, passed = 0;
@@ -66,10 +65,9 @@ void write_manual(const Findings& findings, const std::string& path)
         bounded += 1;
         passed += check.passed() ? 1 : 0;
       }
-    overview.add({ "[" + finding.title + "](#" + name + ")", bounded, passed, readable(finding.seconds, 2) });
-    seconds += finding.seconds;
+    overview.add({ "[" + finding.title + "](#" + name + ")", bounded, passed });
   }
-  out += "\n" + overview.markdown() + "\n" + readable(seconds, 3) + " s in all.\n";
+  out += "\n" + overview.markdown();
   for (const auto& [name, finding] : findings)
   {
     out += "\n## " + finding.title + "\n\n<a id=\"" + name + "\"></a>\n" + finding.text + "\n";

@@ -39,7 +39,6 @@ struct Finding
   std::vector<std::pair<std::string, Plot>> plots;    ///< file name without extension, plot; its title is the caption
   std::string remarks;                                ///< markdown, after the figures
   std::string skipped;                                ///< why nothing was checked; empty: it was
-  double seconds = 0;
 };
 
 struct VerificationSettings
