@@ -1,83 +1,18 @@
-#include "cuda_backend.hpp"
-#include "device_model.hpp"
-#include "launch_choice.hpp"
-#include "stepping_solver.hpp"
+#include "cuda_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "cuda_backend.hpp"
+#include "launch_choice.hpp"
+
 #include <cstring>
 
 namespace frontalis
 {
-namespace
+namespace cuda
 {
-
-using cuda::DeviceArray;
-using cuda::PinnedArray;
-using cuda::require;
-using Vectors = std::vector<std::array<double, 3>>;
-
-/// One plan's worth of controls on its way to the device, and what is seen at its end.
-struct PlanSlot
-{
-  PinnedArray<char> staged;
-  DeviceArray<char> controls;
-  PinnedArray<std::uint32_t> seen;
-  cudaEvent_t done = nullptr;
-};
-
-/// Float, on one NVIDIA GPU. Steps are queued and not waited for: what a plan's last step saw of the time step rules
-/// the plan after the next, and the host waits only for that and where it asks for results.
-class CudaSolver : public SteppingSolver
-{
-public:
-  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
-  ~CudaSolver() override;
-
-  void skin(SkinState& out) override;
-  void displacements(Vectors& out) const override;
-  void set_displacements(const Vectors& in) override;
-  void set_velocities(const Vectors& in) override;
-  void internal_forces(Vectors& out) override;
-  std::string description() const override;
-
-protected:
-  double run(const StepPlan& plan) override;
-  int steps_a_plan() const override;
-  void rest() override;
-  void velocities(Vectors& out) const override;
-
-private:
-  static constexpr int plan_slots = 3;
-
-  StepArguments arguments(double dt) const;
-  void stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g);
-  void step(StepArguments& g, int begin, int end);
-  void download(const DeviceArray<float4>& field, Vectors& out) const;
-  void upload_displacements(const Vectors* in, int buffer);
-  void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
-
-  cuda::DeviceModel device_;
-  DeviceArray<float4> u_[2];
-  DeviceArray<float> v_[3];
-  cuda::DeviceSurface skin_, landmarks_;
-  DeviceArray<float> skin_output_;  // vertices, normals, landmarks
-  PinnedArray<float> skin_staged_;
-  DeviceArray<std::uint32_t> still_;  // device nodes that never move
-  DeviceArray<std::uint32_t> barrier_;
-  std::uint32_t barrier_base_ = 0;
-  cudaStream_t stream_ = nullptr;
-  PlanSlot slots_[plan_slots];
-  std::int64_t plans_ = 0;
-  int present_ = 0;           // buffer that holds the displacements now
-  bool still_moved_ = false;  // displacements were set from outside, those of still nodes too
-  StepLaunch launch_{};
-  bool resident_ = false;  // all blocks fit the device at once, so that one launch does many steps
-};
 
 CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
     : SteppingSolver(std::move(model), settings),
-      device_(*model_, discretisation_, cuda::choose_strips(*model_, cuda::effects_of(*model_, discretisation_))),
+      device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {
@@ -107,9 +42,12 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
   if (model_->muscles.size() > most_muscles)
     throw Error("backend cuda: " + std::to_string(model_->muscles.size()) + " muscles; allowed are " +
                 std::to_string(most_muscles));
-  const cuda::LaunchChoice choice = cuda::choose_launch(device_);
-  launch_ = choice.launch;
-  resident_ = choice.resident;
+  launch_ = choose_launch(device_);
+  if (wants_ledger_)
+  {
+    account_ = std::make_unique<DeviceAccount>(*model_, device_);
+    device_.viscosity().keep_account();
+  }
   rest();
 }
 
@@ -124,7 +62,7 @@ CudaSolver::~CudaSolver()
     cudaStreamDestroy(stream_);
 }
 
-void CudaSolver::upload_displacements(const Vectors* in, int buffer)
+void CudaSolver::upload_displacements(const Vectors* in, DeviceArray<float4>& to) const
 {
   std::vector<float4> u(device_.nodes(), float4{ 0, 0, 0, 0 });
   for (std::size_t n = 0; n < model_->nodes.size(); ++n)
@@ -133,7 +71,7 @@ void CudaSolver::upload_displacements(const Vectors* in, int buffer)
     u[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
                                     static_cast<float>(1 / discretisation_.node_mass[n]) };
   }
-  u_[buffer].upload(u.data(), u.size());
+  to.upload(u.data(), u.size());
 }
 
 void CudaSolver::rest()
@@ -142,18 +80,20 @@ void CudaSolver::rest()
   present_ = 0;
   plans_ = 0;
   still_moved_ = false;
-  upload_displacements(nullptr, 0);
+  upload_displacements(nullptr, u_[0]);
   require(cudaMemcpy(u_[1].data(), u_[0].data(), u_[0].bytes(), cudaMemcpyDeviceToDevice), "copying on the device");
   for (auto& component : v_)
     require(cudaMemset(component.data(), 0, component.bytes()), "clearing velocities");
   device_.reset_contacts();
+  device_.viscosity().reset();
+  viscous_elapsed_ = 0;
   require(cudaDeviceSynchronize(), "coming to rest");
 }
 
 void CudaSolver::set_displacements(const Vectors& in)
 {
   rest();
-  upload_displacements(&in, present_);
+  upload_displacements(&in, u_[present_]);
   still_moved_ = true;
   displacements_were_set();
 }
@@ -170,6 +110,7 @@ void CudaSolver::set_velocities(const Vectors& in)
       component[device_.device_node()[node]] = 0;
     v_[axis].upload(component.data(), component.size());
   }
+  velocities_were_set();
 }
 
 void CudaSolver::displacements(Vectors& out) const
@@ -203,138 +144,6 @@ void CudaSolver::velocities(Vectors& out) const
   }
 }
 
-StepArguments CudaSolver::arguments(double dt) const
-{
-  StepArguments g = device_.arguments();
-  for (int buffer = 0; buffer < 2; ++buffer)
-    g.u[buffer] = u_[buffer].data();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    g.v[axis] = v_[axis].data();
-    g.impulse[axis] = static_cast<float>(gain(dt) * gravity_[axis]);
-  }
-  g.first = present_;
-  g.dt = static_cast<float>(dt);
-  g.dt_exact = dt;
-  g.keep = static_cast<float>(keep(dt));
-  g.gain = static_cast<float>(gain(dt));
-  g.barrier = barrier_.data();
-  return g;
-}
-
-// look (cleared), activations, poses: one copy through page-locked memory
-void CudaSolver::stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g)
-{
-  const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
-  const std::size_t poses_at = sizeof(double) * (1 + muscles);
-  const std::size_t bytes = poses_at + sizeof(double) * 12 * plan.steps * bones;
-  if (bytes > slot.staged.size())
-  {
-    slot.staged = PinnedArray<char>(bytes);
-    slot.controls = DeviceArray<char>(bytes);
-  }
-  char* const staged = slot.staged.data();
-  std::memset(staged, 0, sizeof(double));
-  if (muscles > 0)
-  {
-    std::memcpy(staged + sizeof(double), plan.begin.activation.data(), muscles * sizeof(float));
-    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), plan.end.activation.data(), muscles * sizeof(float));
-  }
-  for (int step = 0; bones > 0 && step < plan.steps; ++step)
-  {
-    const Drive drive = plan.drive(step);
-    for (std::size_t b = 0; b < bones; ++b)
-    {
-      char* const pose = staged + poses_at + sizeof(double) * 12 * (step * bones + b);
-      std::memcpy(pose, drive.bone[b].rotation.data(), 9 * sizeof(double));
-      std::memcpy(pose + 9 * sizeof(double), drive.bone[b].translation.data(), 3 * sizeof(double));
-    }
-  }
-  require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
-  char* const controls = slot.controls.data();
-  g.look = reinterpret_cast<std::uint32_t*>(controls);
-  g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
-  g.activation_end = g.activation_begin + muscles;
-  g.poses = reinterpret_cast<const double*>(controls + poses_at);
-}
-
-void CudaSolver::step(StepArguments& g, int begin, int end)
-{
-  g.step_begin = begin;
-  g.step_end = end;
-  g.first = present_;
-  g.barrier_base = barrier_base_;
-  require(launch_steps(g, launch_, stream_), "launching steps");
-  barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * launch_.blocks);
-  present_ = (present_ + end - begin) & 1;
-}
-
-// long plans hide what stands between them, but the time step must follow what stiffens (half a millisecond is short
-// enough), and contacts are renewed between plans
-int CudaSolver::steps_a_plan() const
-{
-  return model_->sliding.empty() ? static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, 128.0)) : 32;
-}
-
-double CudaSolver::run(const StepPlan& plan)
-{
-  PlanSlot& slot = slots_[plans_ % plan_slots];
-  StepArguments g = arguments(plan.dt);
-  g.time = plan.time;
-  g.steps = plan.steps;
-  stage(plan, slot, g);
-  require(launch_renewals(g, stream_), "renewing contacts");
-  int done = 0;
-  if (still_moved_)
-  {
-    const int before = present_;
-    device_.loads().update(u_[present_].data(), stream_);
-    step(g, 0, 1);
-    require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
-            "holding still nodes");
-    still_moved_ = false;
-    done = 1;
-  }
-  if (resident_ && done < plan.steps)
-    step(g, done, plan.steps);
-  else
-    for (; done < plan.steps; ++done)
-    {
-      device_.loads().update(u_[present_].data(), stream_);
-      step(g, done, done + 1);
-    }
-  require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
-          "copying the frequency bound");
-  require(cudaEventRecord(slot.done, stream_), "recording an event");
-  ++plans_;
-  if (plans_ == 1)
-    return 0;
-  // the plan before, so that the device is never without work
-  const PlanSlot& before = slots_[(plans_ - 2) % plan_slots];
-  require(cudaEventSynchronize(before.done), "stepping");
-  float squared = 0;
-  std::memcpy(&squared, before.seen.data(), sizeof squared);
-  return squared;
-}
-
-void CudaSolver::internal_forces(Vectors& out)
-{
-  synchronise();
-  StepArguments g = arguments(0);
-  const DeviceArray<float> activation(this->activation());
-  g.activation_begin = g.activation_end = activation.data();
-  g.steps = 1;
-  g.forces_only = true;
-  const DeviceArray<float4> forces(device_.nodes());
-  require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
-  g.u[1 - present_] = forces.data();
-  const int present = present_;
-  step(g, 0, 1);
-  present_ = present;
-  synchronise();
-  download(forces, out);
-}
-
 void CudaSolver::skin(SkinState& out)
 {
   const float4* const u = u_[present_].data();
@@ -361,11 +170,12 @@ std::string CudaSolver::description() const
 {
   cudaDeviceProp device{};
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
-  return std::string("cuda (float, ") + device.name + ", " + std::to_string(device_.strips()) + " strips of " +
-         std::to_string(device_.rows()) + " rows, " + (resident_ ? "resident" : "a launch a step") + ")";
+  return std::string("cuda (float, ") + device.name + ", " + std::to_string(device_.strips()) +
+         (launch_.bricks ? " bricks of " : " strips of ") + std::to_string(launch_.rows) + " by " +
+         std::to_string(launch_.planes) + " rows)";
 }
 
-}  // namespace
+}  // namespace cuda
 
 std::string missing_cuda_device()
 {
@@ -384,7 +194,10 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   const std::string missing = missing_cuda_device();
   if (!missing.empty())
     throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
-  return std::make_unique<CudaSolver>(std::move(model), settings);
+  auto solver = std::make_unique<cuda::CudaSolver>(std::move(model), settings);
+  if (settings.ledger)
+    solver->reset();
+  return solver;
 }
 
 }  // namespace frontalis

@@ -54,35 +54,34 @@ void expect_room(const Model& model, const VoxelStrips& strips)
 
 Effects effects_of(const Model& model, const Discretisation& discretisation)
 {
-  if (discretisation.assumed_strain || discretisation.laws)
+  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws ||
+      discretisation.viscous_terms > 0)
     return Effects::all;
   return model.fibre_muscle.empty() ? Effects::none : Effects::fibres;
 }
 
-DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const StripSettings& settings)
-    : DeviceModel(model, discretisation, VoxelStrips(model, settings))
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut)
+    : DeviceModel(model, discretisation, cut, VoxelStrips(model, cut.strips))
 {
 }
 
-DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips)
-    : rows_(strips.rows),
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut,
+                         VoxelStrips&& strips)
+    : cut_(cut),
       effects_(effects_of(model, discretisation)),
       filled_(strips.filled()),
       device_node_((expect_room(model, strips), std::move(strips.device_node))),
-      loads_(model, device_node_)
+      loads_(model, discretisation, device_node_),
+      viscosity_(model, discretisation, device_node_, strips.slots)
 {
   add_palette(model, discretisation, strips.slots);
   add_fibres(model, discretisation, strips);
   add_tasks(model, strips);
   strips_ = DeviceArray<Strip>(strips.strips);
-  strips.slots.resize(strips.slots.size() + planes_ahead * static_cast<std::size_t>(rows_ + 2) * 32, StripSlot{ 0, 0 });
+  strips.slots.resize(strips.slots.size() + planes_ahead * static_cast<std::size_t>(strips.rows + 2) * 32,
+                      StripSlot{ 0, 0 });
   slots_ = DeviceArray<StripSlot>(strips.slots);
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
-
-  for (const Strip& strip : strips.strips)
-    slot_bytes_ = std::max<std::size_t>(
-        slot_bytes_, 32 * ((strip.planes + planes_ahead) * static_cast<std::size_t>(rows_ + 2) * sizeof(StripSlot) +
-                           strip.planes * static_cast<std::size_t>(rows_ + 1) * sizeof(std::uint32_t)));
 
   StepArguments& g = constants_;
   g.strips = strips_.data();
@@ -105,7 +104,10 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.sliding = sliding_.data();
   g.contact_planes = contact_planes_.data();
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
-  g.surfaces = surfaces_.data();
+  g.load_relief = loads_.relief();
+  g.brick_tasks = brick_tasks_.data();
+  g.selective_reduced = discretisation.selective_reduced;
+  viscosity_.describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
@@ -182,6 +184,7 @@ void DeviceModel::add_palette(const Model& model, const Discretisation& d, std::
     }
     entry_of[e] = index;
   }
+  viscosity_.set_palette(entry_of);
   for (auto& slot : slots)
     slot.voxel = slot.voxel > 0 ? entry_of[slot.voxel - 1] : 0;
   palette_ = DeviceArray<float4>(entries);
@@ -224,7 +227,6 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     surfaces.push_back(
         { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
   }
-  surfaces_ = DeviceArray<SurfaceSearch>(surfaces);
   // in the order in which warps meet them
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
@@ -235,20 +237,24 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     SlidingContact contact{};
     const auto rest = rest_position(model, node.node);
     std::copy(rest.begin(), rest.end(), contact.rest);
-    contact.distance = node.distance;
-    contact.surface = node.surface;
+    contact.contact = SurfaceContact(surfaces[node.surface], node.distance);
     contact.node = device_node_[node.node];
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    contact.glides = surface.bone >= 0 || surface.friction > 0;
+    contact.bone = surface.bone;
+    contact.friction = surface.friction;
+    glides_.push_back(contact.glides ? 1 : 0);
     task_of[node.node].sliding = static_cast<std::int32_t>(contacts.size());
     contacts.push_back(contact);
   }
   sliding_ = DeviceArray<SlidingContact>(contacts);
-  contact_planes_ = DeviceArray<ContactPlane>(contacts.size());
+  contact_planes_ = DeviceArray<TangentPlane>(contacts.size());
   reset_contacts();
 }
 
 void DeviceModel::reset_contacts()
 {
-  const std::vector<ContactPlane> unknown(contact_planes_.size(), ContactPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, 1 } });
+  const std::vector<TangentPlane> unknown(contact_planes_.size(), TangentPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, -1 } });
   contact_planes_.upload(unknown.data(), unknown.size());
 }
 
@@ -327,9 +333,38 @@ void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
     for (auto& slot : strips.slots)
       if (still_device[slot.node & StripSlot::node_mask])
         slot.node &= ~StripSlot::updated;
+  if (cut_.bricks)
+    add_brick_tasks(strips, tasks);
   tasks_ = DeviceArray<NodeTask>(tasks);
   prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
   rigid_ = DeviceArray<RigidMotion>(rigid);
+}
+
+// what the brick kernel finds at each owned place: [brick][plane][row][lane]
+void DeviceModel::add_brick_tasks(const VoxelStrips& strips, const std::vector<NodeTask>& tasks)
+{
+  std::vector<std::int32_t> task_of(device_node_.size() + 1, brick_task::none);
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+  {
+    const NodeTask& task = tasks[t];
+    const bool slides_only =
+        task.sliding >= 0 && glides_[task.sliding] == 0 && task.load < 0 && task.prescribed < 0 && task.rigid < 0;
+    task_of[task.node] = slides_only ? task.sliding : brick_task::other - static_cast<std::int32_t>(t);
+  }
+  const auto rows = static_cast<std::size_t>(cut_.strips.rows),
+             planes = static_cast<std::size_t>(cut_.strips.planes) + 2;
+  std::vector<std::int32_t> words(strips.strips.size() * planes * rows * 32, brick_task::none);
+  for (std::size_t s = 0; s < strips.strips.size(); ++s)
+    for (std::size_t plane = 0; plane < strips.strips[s].planes; ++plane)
+      for (std::size_t row = 0; row < rows; ++row)
+        for (std::size_t lane = 0; lane < 32; ++lane)
+        {
+          const StripSlot& slot =
+              strips.slots[strips.strips[s].slot_begin + (plane * (rows + 2) + row + 1) * 32 + lane];
+          if (slot.node & StripSlot::owned)
+            words[((s * planes + plane) * rows + row) * 32 + lane] = task_of[slot.node & StripSlot::node_mask];
+        }
+  brick_tasks_ = DeviceArray<std::int32_t>(words);
 }
 
 }  // namespace cuda

@@ -2,6 +2,7 @@
 
 #include "device_memory.hpp"
 #include "device_surface.hpp"
+#include "device_viscosity.hpp"
 #include "discretisation.hpp"
 #include "step_kernel.hpp"
 
@@ -15,39 +16,46 @@ namespace cuda
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
+struct CutChoice
+{
+  bool bricks = false;
+  StripSettings strips;
+};
+
 /// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
 class DeviceModel
 {
 public:
   /// Throws Error with the bytes wanted and free where the device has too little memory, before anything is allocated.
-  DeviceModel(const Model& model, const Discretisation& discretisation, const StripSettings& settings);
+  DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
 
   /// Arguments of a step with all that is constant filled in.
   StepArguments arguments() const;
   /// Contacts as they are at rest.
   void reset_contacts();
 
-  int rows() const { return rows_; }
+  const CutChoice& cut() const { return cut_; }
   Effects effects() const { return effects_; }
   std::size_t strips() const { return strips_.size(); }
-  std::size_t slot_bytes() const { return slot_bytes_; }  ///< of the longest strip, fibre words with them
   double filled() const { return filled_; }
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
+  std::size_t contacts() const { return sliding_.size(); }
   DeviceLoads& loads() { return loads_; }
+  DeviceViscosity& viscosity() { return viscosity_; }
 
 private:
-  DeviceModel(const Model& model, const Discretisation& discretisation, VoxelStrips&& strips);
+  DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut, VoxelStrips&& strips);
   void add_palette(const Model& model, const Discretisation& discretisation, std::vector<StripSlot>& slots);
   void add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips);
   void add_tasks(const Model& model, VoxelStrips& strips);
+  void add_brick_tasks(const VoxelStrips& strips, const std::vector<NodeTask>& tasks);
   void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
 
-  int rows_;
+  CutChoice cut_;
   Effects effects_;
   double filled_;
-  std::size_t slot_bytes_ = 0;
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
   StepArguments constants_{};
@@ -61,13 +69,15 @@ private:
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;
   DeviceArray<SlidingContact> sliding_;
-  DeviceArray<ContactPlane> contact_planes_;
+  DeviceArray<TangentPlane> contact_planes_;
+  std::vector<char> glides_;  // contacts
+  DeviceArray<std::int32_t> brick_tasks_;
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
-  DeviceArray<SurfaceSearch> surfaces_;
   DeviceArray<PrescribedMotion> prescribed_;
   DeviceArray<RigidMotion> rigid_;
   DeviceLoads loads_;
+  DeviceViscosity viscosity_;
 };
 
 }  // namespace cuda

@@ -1,6 +1,7 @@
 #include "device_surface.hpp"
 
 #include "frontalis/physics/trilinear.hpp"
+#include "nodal_loads.hpp"
 
 #include <algorithm>
 
@@ -57,9 +58,12 @@ BoundSurface DeviceSurface::view() const
            around_.data() };
 }
 
-DeviceLoads::DeviceLoads(const Model& model, const std::vector<std::uint32_t>& device_node)
+DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisation,
+                         const std::vector<std::uint32_t>& device_node)
 {
-  std::vector<double> ramp, force;
+  std::vector<double> ramp, force, relief;
+  nodes_ = relieved_nodes(model, discretisation);
+  const bool relieved = !nodes_.empty();
   for (const auto& load : model.loads)
   {
     ramp.push_back(load.ramp);
@@ -71,6 +75,12 @@ DeviceLoads::DeviceLoads(const Model& model, const std::vector<std::uint32_t>& d
   ramp_ = DeviceArray<double>(ramp);
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+
+  for (const auto n : nodes_)
+    if (relieved)
+      for (const double x : gravity_relief(model, discretisation, n))
+        relief.push_back(x);
+  relief_ = DeviceArray<double>(relief);
 
   std::vector<std::vector<LoadPart>> by_node(nodes_.size());
   for (std::size_t l = 0; l < model.loads.size(); ++l)

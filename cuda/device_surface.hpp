@@ -1,6 +1,7 @@
 #pragma once
 
 #include "device_memory.hpp"
+#include "discretisation.hpp"
 #include "frontalis/model/model.hpp"
 #include "step_kernel.hpp"
 #include "surface_kernels.hpp"
@@ -33,17 +34,19 @@ private:
   DeviceArray<std::int32_t> around_begin_, around_;
 };
 
-/// Tractions and follower pressures. A load's nodes gather parts of the forces at its vertices.
+/// Tractions, follower pressures, and what gravity is less on nodes whose mass is scaled. A load's nodes gather parts
+/// of the forces at its vertices.
 class DeviceLoads
 {
 public:
-  DeviceLoads(const Model& model, const std::vector<std::uint32_t>& device_node);
+  DeviceLoads(const Model& model, const Discretisation& discretisation, const std::vector<std::uint32_t>& device_node);
 
   /// Where each loaded model node's parts begin, in the order of nodes().
   const std::vector<std::int32_t>& nodes() const { return nodes_; }
   const std::int32_t* begin() const { return begin_.data(); }
   const LoadPart* parts() const { return parts_.data(); }
   const double* vertex_force() const { return vertex_force_.data(); }
+  const double* relief() const { return relief_.data(); }
   const double* ramp() const { return ramp_.data(); }
 
   /// True where forces follow the surface, so that they change with every step.
@@ -61,7 +64,7 @@ private:
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;
-  DeviceArray<double> vertex_force_, vertex_position_, ramp_;
+  DeviceArray<double> vertex_force_, vertex_position_, ramp_, relief_;
   std::vector<Pressure> pressures_;
 };
 

@@ -4,7 +4,9 @@
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/selective_reduced.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "frontalis/physics/viscosity.hpp"
 #include "material_laws.hpp"
 #include "step_kernel.hpp"
 
@@ -20,7 +22,19 @@ struct ElementPlace
   std::uint32_t fibre_word;
   float4 fibre;
   std::uint32_t muscle_word;
+  std::uint32_t viscous;
 };
+
+/// Activations at the end of a step of the plan, by all threads of a block.
+__device__ __forceinline__ void set_activations(const StepArguments& g, std::int32_t step, float* activation)
+{
+  const auto fraction = static_cast<float>((step + 1.0) / g.steps);
+  for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
+  {
+    const float begin = g.activation_begin[m];
+    activation[m] = begin + fraction * (g.activation_end[m] - begin);
+  }
+}
 
 /// Without a condition on the voxel: places without fibres fetch the first entry.
 __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_t word, ElementPlace& place)
@@ -61,19 +75,94 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace 
 }
 
 /// Stress of the laws beyond neo-Hookean times the tissue volume that they have; not inlined, because few voxels have
-/// them. Adds to the frequency bound squared what they have stiffened since rest.
-__device__ __noinline__ void add_laws(const StepArguments& g, std::uint32_t palette,
-                                      const physics::Kinematics<float>& k, physics::Matrix3<float>& P,
-                                      float& frequency_squared)
+/// them.
+static __device__ __noinline__ void add_laws(const StepArguments& g, std::uint32_t palette,
+                                             const physics::Kinematics<float>& k, physics::Matrix3<float>& P)
 {
   const std::uint32_t last = __ldg(g.law_begin + palette + 1);
   for (std::uint32_t l = __ldg(g.law_begin + palette); l < last; ++l)
   {
     const LawEntry entry = g.laws[l];
     add_law_stress(static_cast<Law>(entry.law), entry.parameters, entry.weight, k, P);
-    const float more = law_stiffness(static_cast<Law>(entry.law), entry.parameters, k) - entry.at_rest;
-    frequency_squared += entry.inertia * fmaxf(more, 0.0f);
   }
+}
+
+/// What the laws add to the frequency bound squared since rest.
+static __device__ __noinline__ float stiffened(const StepArguments& g, std::uint32_t palette,
+                                               const physics::Kinematics<float>& k)
+{
+  float sum = 0;
+  const std::uint32_t last = __ldg(g.law_begin + palette + 1);
+  for (std::uint32_t l = __ldg(g.law_begin + palette); l < last; ++l)
+  {
+    const LawEntry entry = g.laws[l];
+    const float more = law_stiffness(static_cast<Law>(entry.law), entry.parameters, k) - entry.at_rest;
+    sum += entry.inertia * fmaxf(more, 0.0f);
+  }
+  return sum;
+}
+
+/// Elastic stress times tissue volume.
+template <Effects With>
+__device__ __forceinline__ physics::Matrix3<float> elastic_stress(const StepArguments& g, std::uint32_t palette,
+                                                                  const physics::NeoHookean<float>& material,
+                                                                  const physics::Kinematics<float>& k)
+{
+  const auto isotropic = physics::stress(material, k);
+  physics::Matrix3<float> P;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+#pragma unroll
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
+  if (With == Effects::all && g.law_begin != nullptr)
+    add_laws(g, palette, k, P);
+  return P;
+}
+
+/// The largest frequency bound squared so far.
+template <Effects With>
+__device__ __forceinline__ void look_at(const StepArguments& g, std::uint32_t palette, const float4& entry,
+                                        const physics::Kinematics<float>& k, std::uint32_t& frequency_bits)
+{
+  const float growth = physics::stiffening(physics::NeoHookean<float>{ entry.x, entry.y }, k, g.stretch_weight);
+  float now = entry.w * fmaxf(growth, 1.0f);
+  if (With == Effects::all && g.law_begin != nullptr)
+    now += stiffened(g, palette, k);
+  // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
+  frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
+}
+
+/// Isochoric stress at eight points: modes to the forces on them.
+static __device__ __noinline__ void gauss_points(const StepArguments& g, std::uint32_t palette, const float4& entry,
+                                                 float (&mode)[3][8], bool look, std::uint32_t& frequency_bits)
+{
+  float force[3][8] = {};
+  // unrolled, so that the weights are constants
+#pragma unroll
+  for (int point = 0; point < 8; ++point)
+  {
+    float moved[3][8];
+    physics::at_gauss_point(point, mode, moved);
+    const auto k = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
+    const physics::NeoHookean<float> material{ entry.x, 0.0f };
+    physics::add_gauss_forces(point, elastic_stress<Effects::all>(g, palette, material, k), g.scale, force);
+    if (look && palette != 0)
+      look_at<Effects::all>(g, palette, entry, k, frequency_bits);
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int m = 0; m < 8; ++m)
+      mode[c][m] = force[c][m];
+}
+
+__device__ __forceinline__ physics::Symmetric3<float> load_relaxed(const StepArguments& g, std::uint32_t viscous,
+                                                                   std::int32_t term)
+{
+  physics::Symmetric3<float> H;
+#pragma unroll
+  for (int n = 0; n < 6; ++n)
+    H.a[n] = g.relaxed[(6 * static_cast<std::size_t>(term) + n) * g.viscous_count + viscous];
+  return H;
 }
 
 /// `activation`: one a muscle, in shared memory. Replaces the transformed displacements of a voxel by the forces
@@ -86,32 +175,34 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
-  const physics::NeoHookean<float> material{ entry.x, entry.y };
-  const auto isotropic = physics::stress(material, k);
+  const bool reduced = With == Effects::all && g.selective_reduced;
   physics::Matrix3<float> P;
+  if (reduced)
+  {
+    const float pressure = entry.y * (k.J - 1.0f);
 #pragma unroll
-  for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i)
 #pragma unroll
-    for (int j = 0; j < 3; ++j)
-      P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
-  float stiffened = 0;
+      for (int j = 0; j < 3; ++j)
+        P.a[i][j] = pressure * k.cofactor.a[i][j];
+  }
+  else
+    P = elastic_stress<With>(g, place.palette, physics::NeoHookean<float>{ entry.x, entry.y }, k);
   if (With != Effects::none)
     add_fibres(g, place, activation, k, P);
-  if (With == Effects::all && g.law_begin != nullptr)
-    add_laws(g, place.palette, k, P, stiffened);
-  if (look && place.palette != 0)
-  {
-    const float growth = physics::stiffening(material, k, g.stretch_weight);
-    const float now = entry.w * fmaxf(growth, 1.0f) + stiffened;
-    // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
-    frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
-  }
+  if (With == Effects::all && place.viscous != 0)
+    for (std::int32_t term = 0; term < g.viscous_terms; ++term)
+      physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, term), P);
+  if (look && place.palette != 0 && !reduced)
+    look_at<With>(g, place.palette, entry, k, frequency_bits);
   if (With == Effects::all && g.stabilisation != nullptr)
   {
     const float4 s = __ldg(g.stabilisation + place.palette);
     const physics::AssumedStrain<float> stiffness{ s.x, s.y, s.z, s.w };
     physics::hourglass_forces(stiffness, entry.z, g.hourglass_weight, k.F, mode, P);
   }
+  else if (reduced)
+    gauss_points(g, place.palette, entry, mode, look, frequency_bits);
   else
   {
 #pragma unroll
@@ -127,7 +218,10 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     mode[c][0] = 0;
 #pragma unroll
     for (int j = 0; j < 3; ++j)
-      mode[c][physics::gradient_mode(j)] = P.a[c][j] * g.scale[j];
+    {
+      float& to = mode[c][physics::gradient_mode(j)];
+      to = P.a[c][j] * g.scale[j] + (reduced ? to : 0.0f);
+    }
   }
 }
 

@@ -1,6 +1,8 @@
 #include "launch_choice.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 
 namespace frontalis
@@ -10,7 +12,10 @@ namespace cuda
 namespace
 {
 
-constexpr int warps_a_block = step_block / 32;
+// above this, a launch a step is no longer dear and strips compute less twice
+constexpr std::size_t most_brick_nodes = 600000;
+
+constexpr std::size_t most_shared_bytes = 224 * 1024;
 
 int processors()
 {
@@ -25,42 +30,83 @@ int from_environment(const char* name, int otherwise, int least, int most)
   return text == nullptr ? otherwise : std::clamp(std::atoi(text), least, most);
 }
 
-}  // namespace
-
-StripSettings choose_strips(const Model& model, Effects effects)
+// about how long a step is [us]: a turn of all multiprocessors takes a latency and a time a row of voxels (measured on
+// an H200)
+double brick_time(const StripSettings& strips, std::size_t count)
 {
-  constexpr double nodes_a_row = 28;
-  const double schedulers = 4.0 * processors();
-  const double rows_of_nodes = static_cast<double>(model.nodes.size()) / nodes_a_row;
-  StripSettings settings;
-  // four rows with fibres too do not fit the registers
-  const int most_rows = effects == Effects::none ? 4 : 2;
-  settings.rows = std::min(rows_of_nodes > 32 * schedulers ? 4 : rows_of_nodes > 12 * schedulers ? 2 : 1, most_rows);
-  settings.planes = static_cast<int>(std::clamp(rows_of_nodes / settings.rows / (3.1 * schedulers), 1.0, 32.0));
-  // for measuring
-  settings.rows = from_environment("FRONTALIS_CUDA_ROWS", settings.rows, 1, 4);
-  settings.rows = effects == Effects::all ? 2 : settings.rows == 3 ? 4 : settings.rows;
-  settings.planes = from_environment("FRONTALIS_CUDA_PLANES", settings.planes, 1, 4096);
-  return settings;
+  const int rows = (strips.rows + 1) * (strips.planes + 1);
+  const int beside = std::max(1, most_brick_warps / rows);
+  return std::ceil(static_cast<double>(count) / (processors() * beside)) * (0.85 + 0.075 * rows * beside);
 }
 
-LaunchChoice choose_launch(DeviceModel& device)
+}  // namespace
+
+CutChoice choose_cut(const Model& model, Effects effects)
 {
-  const int wanted = static_cast<int>((device.strips() + warps_a_block - 1) / warps_a_block);
-  StepLaunch launch{ device.rows(), device.effects(), device.slot_bytes(), wanted };
-  int resident = launch.slot_bytes <= most_slot_bytes ? resident_blocks(launch) : 0;
-  if (resident < wanted)
+  const auto nodes = static_cast<double>(model.nodes.size());
+  CutChoice cut;
+  cut.bricks = model.nodes.size() <= most_brick_nodes;
+  if (cut.bricks)
   {
-    launch.slot_bytes = 0;
-    resident = resident_blocks(launch);
+    double least = 1e300;
+    for (const auto& size : { std::array<int, 2>{ { 2, 1 } }, { { 2, 2 } }, { { 3, 2 } }, { { 3, 3 } } })
+    {
+      const StripSettings strips{ size[0], size[1] };
+      const double time = brick_time(strips, VoxelStrips::count(model, strips));
+      if (time < least)
+        cut.strips = strips;
+      least = std::min(least, time);
+    }
   }
+  const int asked = from_environment("FRONTALIS_CUDA_BRICKS", -1, 0, 99);
+  if (asked >= 0)
+  {
+    cut.bricks = asked > 0;
+    cut.strips = { asked / 10, asked % 10 };
+    const int rows = cut.strips.rows, planes = cut.strips.planes;
+    if (cut.bricks && (rows < 1 || rows > planes + 1 || (rows + 1) * (planes + 1) > most_brick_warps))
+      throw Error("FRONTALIS_CUDA_BRICKS is " + std::to_string(asked) +
+                  ": allowed are 0, and rows from 1 to planes + 1 that take at most " +
+                  std::to_string(most_brick_warps) + " warps, such as 33");
+  }
+  if (!cut.bricks)
+  {
+    const double warps = 3.1 * 4 * processors();
+    cut.strips.rows = strip_rows(effects);
+    cut.strips.planes = static_cast<int>(std::clamp(nodes / 28 / cut.strips.rows / warps, 1.0, 32.0));
+    cut.strips.planes = from_environment("FRONTALIS_CUDA_PLANES", cut.strips.planes, 1, 4096);
+  }
+  return cut;
+}
+
+StepLaunch choose_launch(DeviceModel& device)
+{
+  const CutChoice& cut = device.cut();
+  const auto count = static_cast<int>(device.strips());
+  StepLaunch launch{ cut.bricks, cut.strips.rows, cut.strips.planes, device.effects(), 0, false, 0 };
+  if (!cut.bricks)
+  {
+    constexpr int warps = step_block / 32;
+    launch.blocks = (count + warps - 1) / warps;
+    return launch;
+  }
+  const std::size_t forces = brick_force_bytes(launch.rows, launch.planes);
+  launch.shared_bytes = forces;
+  const int resident = resident_blocks(launch);
   if (resident == 0)
     require(cudaGetLastError(), "this build has no code for the device");
-  const bool all_at_once =
-      wanted <= resident && !device.loads().follow() && from_environment("FRONTALIS_CUDA_RESIDENT", 1, 0, 1) == 1;
-  if (!all_at_once)
-    launch.slot_bytes = 0;
-  return { launch, all_at_once };
+  launch.blocks = std::min(count, resident);
+  const auto turns = static_cast<std::size_t>((count + launch.blocks - 1) / std::max(launch.blocks, 1));
+  StepLaunch cached = launch;
+  cached.cached = true;
+  cached.shared_bytes = forces + turns * brick_bytes(launch.rows, launch.planes);
+  if (device.loads().follow() || cached.shared_bytes > most_shared_bytes || resident_blocks(cached) < launch.blocks)
+  {
+    // the limit is the kernel's, not the launch's
+    resident_blocks(launch);
+    return launch;
+  }
+  return cached;
 }
 
 }  // namespace cuda

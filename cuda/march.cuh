@@ -1,6 +1,7 @@
 #pragma once
 
 #include "element_stress.cuh"
+#include "node_tasks.cuh"
 
 namespace frontalis
 {
@@ -101,25 +102,9 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
 }
 
-/// What the update of a node needs, fetched before the stress is computed.
-struct NodeFetch
+/// The transposed x step.
+__device__ __forceinline__ void transform_x_transposed(const RowForces& row, int left, float (&force)[3])
 {
-  float4 own;
-  float v[3];
-};
-
-__device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
-{
-  // without a condition, for the same reason; nodes that are not stepped here are there to be read too
-  const std::uint32_t node = word & StripSlot::node_mask;
-  return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
-}
-
-/// The transposed x step, then the update of the node or its force alone.
-__device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
-                                          const NodeFetch& fetch, const RowForces& row)
-{
-  float force[3];
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
@@ -127,6 +112,14 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
     const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
     force[c] = row.part[c][0] - row.part[c][1] + from_left;
   }
+}
+
+/// The transposed x step, then the update of the node or its force alone.
+__device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
+                                          const NodeFetch& fetch, const RowForces& row)
+{
+  float force[3];
+  transform_x_transposed(row, left, force);
   const std::uint32_t node = word & StripSlot::node_mask;
   if (g.forces_only)
   {
@@ -135,25 +128,23 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
   }
   else if (word & StripSlot::updated)
   {
-    const float share = g.gain * fetch.own.w;
-    const float x = g.keep * fetch.v[0] - share * force[0] + g.impulse[0];
-    const float y = g.keep * fetch.v[1] - share * force[1] + g.impulse[1];
-    const float z = g.keep * fetch.v[2] - share * force[2] + g.impulse[2];
-    g.v[0][node] = x;
-    g.v[1][node] = y;
-    g.v[2][node] = z;
-    next[node] = make_float4(fetch.own.x + g.dt * x, fetch.own.y + g.dt * y, fetch.own.z + g.dt * z, fetch.own.w);
+    const NodeState n = updated(g, node, fetch, force);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = n.v[i];
+    next[node] = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
   }
 }
 
 /// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
 /// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
 /// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements a row ahead.
-/// `slot`, `fibre_word`: the strip's, at this lane; the latter null where it has no fibres.
+/// `slot`, `fibre_word`, `viscous_word`: the strip's, at this lane; null where it has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot,
-                                      const std::uint32_t* fibre_word, const float4* u, float4* next,
-                                      const float* activation, bool look, std::uint32_t& frequency_bits)
+                                      const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
+                                      const float4* u, float4* next, const float* activation, bool look,
+                                      std::uint32_t& frequency_bits)
 {
   constexpr int nodes = Rows + 2;
   const int lane = threadIdx.x & 31;
@@ -207,6 +198,8 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
         fetch_fibre(g, *fibre_word, place);
         fibre_word += 32;
       }
+      if (With == Effects::all && viscous_word != nullptr)
+        place.viscous = viscous_word[(plane * nodes + r) * 32];
       NodeFetch fetch{};
       if (r > 0)
         fetch = fetch_node(g, u, here[r].x);

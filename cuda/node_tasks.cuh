@@ -1,14 +1,12 @@
 #pragma once
 
+#include "frontalis/physics/sliding.hpp"
 #include "step_kernel.hpp"
 
 namespace frontalis
 {
 namespace cuda
 {
-
-// a node that has slid farther than this from its latest exact closest point gets a new one [m]
-constexpr double slip_until_renewal = 15e-6;
 
 struct NodeState
 {
@@ -18,22 +16,23 @@ struct NodeState
 
 __device__ __forceinline__ double ramped(double time, double ramp) { return ramp > 0 ? fmin(time / ramp, 1.0) : 1.0; }
 
-__device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, bool first)
+/// Finds the plane of a node anew and turns its velocity with it.
+static __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, float* v)
 {
+  using Point = SurfaceContact::Point;
   SlidingContact& s = g.sliding[index];
-  const SurfaceSearch::Point p{ s.rest[0] + u[0], s.rest[1] + u[1], s.rest[2] + u[2] };
-  const SurfaceSearch::Point foot{ s.foot[0], s.foot[1], s.foot[2] };
-  const double reach = first ? 1e3 : norm(p - foot) * (1 + 1e-9) + 1e-12;
-  const SurfaceSearch::Closest c = g.surfaces[s.surface].closest(p, reach);
-  if (c.triangle < 0)
-    return;
-  const SurfaceSearch::Point n = SurfaceSearch::offset_normal(c, p, s.distance, s.turned);
-  s.foot[0] = c.point.x;
-  s.foot[1] = c.point.y;
-  s.foot[2] = c.point.z;
-  const SurfaceSearch::Point rest{ s.rest[0], s.rest[1], s.rest[2] };
-  g.contact_planes[index] = { make_float4(n.x, n.y, n.z, dot(n, rest - c.point) - s.distance),
-                              make_float4(u[0], u[1], u[2], 0) };
+  const Point rest{ s.rest[0], s.rest[1], s.rest[2] };
+  if (g.contact_planes[index].reference.w < 0)
+    s.contact.forget();
+  const ContactPlane plane = s.contact.renew(rest + Point{ u[0], u[1], u[2] });
+  const Point& n = plane.normal;
+  const float4 from = g.contact_planes[index].normal_offset;
+  const Point turned = physics::turned_with_normal(Point{ from.x, from.y, from.z }, n, Point{ v[0], v[1], v[2] });
+  v[0] = static_cast<float>(turned.x);
+  v[1] = static_cast<float>(turned.y);
+  v[2] = static_cast<float>(turned.z);
+  g.contact_planes[index] = { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
+                              make_float4(u[0], u[1], u[2], plane.slip * plane.slip) };
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -42,34 +41,116 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
   return x * x + y * y + z * z;
 }
 
-__device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, NodeState& n)
+/// `plane`: as it was read before the step.
+__device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, TangentPlane plane, NodeState& n)
 {
-  ContactPlane plane = g.contact_planes[index];
-  const bool first = plane.reference.w != 0;
-  if (first || slip_squared(plane.reference, n.u) > float(slip_until_renewal * slip_until_renewal))
+  if (slip_squared(plane.reference, n.u) > plane.reference.w)
   {
-    renew_contact(g, index, n.u, first);
+    renew_contact(g, index, n.u, n.v);
     plane = g.contact_planes[index];
   }
-  const float normal[3] = { plane.normal_offset.x, plane.normal_offset.y, plane.normal_offset.z };
-  const float error = normal[0] * n.u[0] + normal[1] * n.u[1] + normal[2] * n.u[2] + plane.normal_offset.w;
-  const float speed = normal[0] * n.v[0] + normal[1] * n.v[1] + normal[2] * n.v[2];
-#pragma unroll
-  for (int i = 0; i < 3; ++i)
-  {
-    n.u[i] -= error * normal[i];
-    n.v[i] -= speed * normal[i];
-  }
+  physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
+  const float4& p = plane.normal_offset;
+  physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z } };
 }
 
-/// Loads, then sliding, prescribed and rigid motion of one node, after its update.
-__device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask& task, const float4* u, float4* next,
-                                         int step)
+struct Pose
 {
-  const float4 before = u[task.node];
-  float4 now = next[task.node];
-  const float old[3] = { before.x, before.y, before.z };
-  NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
+  using Point = SurfaceContact::Point;
+
+  double r[9], t[3];
+
+  __device__ Point rotated(const Point& p) const
+  {
+    return { r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
+             r[6] * p.x + r[7] * p.y + r[8] * p.z };
+  }
+  __device__ Point rotated_back(const Point& p) const
+  {
+    return { r[0] * p.x + r[3] * p.y + r[6] * p.z, r[1] * p.x + r[4] * p.y + r[7] * p.z,
+             r[2] * p.x + r[5] * p.y + r[8] * p.z };
+  }
+  __device__ Point translation() const { return { t[0], t[1], t[2] }; }
+};
+
+// `when`: 0 before the plan's first step, n after its n-th
+__device__ __forceinline__ Pose pose_at(const StepArguments& g, int when, std::int32_t bone)
+{
+  Pose pose{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { 0, 0, 0 } };
+  if (bone < 0)
+    return pose;
+  const double* const from = g.poses + 12 * (static_cast<std::size_t>(when) * g.bones + bone);
+  for (int i = 0; i < 9; ++i)
+    pose.r[i] = from[i];
+  for (int i = 0; i < 3; ++i)
+    pose.t[i] = from[9 + i];
+  return pose;
+}
+
+/// Sliding on a surface that follows a bone or has friction, in double (see gliding_nodes.cpp).
+static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, int step, float inverse_mass,
+                                          NodeState& n)
+{
+  using Point = SurfaceContact::Point;
+  SlidingContact& s = g.sliding[index];
+  if (g.contact_planes[index].reference.w < 0)
+  {
+    s.contact.forget();
+    s.plane = {};
+    s.plane.slip = -1;
+    s.pressing = 0;
+    g.contact_planes[index].reference.w = 0;
+  }
+  const Pose now = pose_at(g, step + 1, s.bone), before = pose_at(g, step, s.bone);
+  const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
+  Point p = now.rotated_back(rest + Point{ n.u[0], n.u[1], n.u[2] } - now.translation());
+  const Point surface_velocity =
+      (1 / g.dt_exact) * (now.rotated(p) + now.translation() - before.rotated(p) - before.translation());
+  Point w = now.rotated_back(free - surface_velocity);
+  double taken = 0;
+  if (s.plane.slip < 0 || norm(p - s.reference) > s.plane.slip)
+  {
+    const Point normal = s.plane.normal;
+    s.plane = s.contact.renew(p);
+    s.reference = p;
+    // what turns it is a part of the reaction
+    taken = dot(s.plane.normal, w);
+    w = physics::turned_with_normal(normal, s.plane.normal, w);
+    taken -= dot(s.plane.normal, w);
+  }
+  taken += physics::slide(s.plane.normal, s.plane.height, p, w);
+  if (s.friction > 0)
+  {
+    s.pressing += physics::friction_response(g.dt_exact) * (taken / g.dt_exact - s.pressing);
+    const Point lost = physics::friction_loss(s.friction, g.dt_exact * s.pressing, norm(w)) * w;
+    w = w - lost;
+    p = p - g.dt_exact * lost;
+  }
+  const Point moved = now.rotated(p) + now.translation() - rest, v = now.rotated(w) + surface_velocity;
+  if (g.friction_work != nullptr && s.friction > 0)
+  {
+    const Point normal = now.rotated(s.plane.normal), change = v - free;
+    const Point along = change - dot(change, normal) * normal;
+    const Point old{ g.velocity_before[0][s.node], g.velocity_before[1][s.node], g.velocity_before[2][s.node] };
+    g.friction_work[index] -= dot(along, 0.5 * (old + v) - surface_velocity) / double(inverse_mass);
+  }
+  n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
+        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
+}
+
+/// Velocities for the account of work, where one is kept.
+__device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t node, const float* v)
+{
+  if (to[0] != nullptr)
+    for (int i = 0; i < 3; ++i)
+      to[i][node] = v[i];
+}
+
+/// Loads, then sliding, prescribed and rigid motion of one node, after its update. `old`: displacement before it.
+__device__ __forceinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float* old,
+                                           float inverse_mass, int step, NodeState& n)
+{
   if (task.load >= 0)
   {
     double force[3] = { 0, 0, 0 };
@@ -82,13 +163,21 @@ __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask&
     }
     for (int i = 0; i < 3; ++i)
     {
-      const float change = g.gain * now.w * static_cast<float>(force[i]);
+      if (g.load_relief != nullptr)
+        force[i] += g.load_relief[3 * task.load + i];
+      const float change = g.gain * inverse_mass * static_cast<float>(force[i]);
       n.v[i] += change;
       n.u[i] += g.dt * change;
     }
+    keep_velocity(g.velocity_free, task.node, n.v);
   }
   if (task.sliding >= 0)
-    slide(g, task.sliding, n);
+  {
+    if (g.sliding[task.sliding].glides)
+      glide(g, task.sliding, step, inverse_mass, n);
+    else
+      slide(g, task.sliding, g.contact_planes[task.sliding], n);
+  }
   if (task.prescribed >= 0)
   {
     const PrescribedMotion& motion = g.prescribed[task.prescribed];
@@ -102,7 +191,7 @@ __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask&
   if (task.rigid >= 0)
   {
     const RigidMotion& motion = g.rigid[task.rigid];
-    const double* pose = g.poses + 12 * (static_cast<std::size_t>(step) * g.bones + motion.bone);
+    const double* pose = g.poses + 12 * ((step + std::size_t(1)) * g.bones + motion.bone);
     for (int i = 0; i < 3; ++i)
     {
       double x = pose[9 + i] - motion.rest[i];
@@ -112,9 +201,51 @@ __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask&
       n.v[i] = (n.u[i] - old[i]) / g.dt;
     }
   }
+}
+
+/// The same for a node that has been written already.
+__device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask& task, const float4* u, float4* next,
+                                         int step)
+{
+  const float4 before = u[task.node];
+  const float4 now = next[task.node];
+  const float old[3] = { before.x, before.y, before.z };
+  NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
+  apply_task(g, task, old, now.w, step, n);
   for (int i = 0; i < 3; ++i)
     g.v[i][task.node] = n.v[i];
   next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
+}
+
+/// What the update of a node needs, fetched before the stress is computed.
+struct NodeFetch
+{
+  float4 own;
+  float v[3];
+};
+
+__device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
+{
+  // without a condition, so that nothing waits for it; nodes that are not stepped here are there to be read too
+  const std::uint32_t node = word & StripSlot::node_mask;
+  return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
+}
+
+/// Damped central difference.
+__device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32_t node, const NodeFetch& fetch,
+                                             const float* force)
+{
+  const float share = g.gain * fetch.own.w;
+  NodeState n;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+    n.v[i] = g.keep * fetch.v[i] - share * force[i] + g.impulse[i];
+  n.u[0] = fetch.own.x + g.dt * n.v[0];
+  n.u[1] = fetch.own.y + g.dt * n.v[1];
+  n.u[2] = fetch.own.z + g.dt * n.v[2];
+  keep_velocity(g.velocity_before, node, fetch.v);
+  keep_velocity(g.velocity_free, node, n.v);
+  return n;
 }
 
 }  // namespace cuda

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "surface_search.hpp"
+#include "surface_contact.hpp"
 #include "voxel_strips.hpp"
 
 #include <cuda_runtime_api.h>
@@ -45,20 +45,25 @@ struct RigidMotion
 /// A node on a surface: what an exact closest point needs.
 struct SlidingContact
 {
-  double rest[3];   ///< [m]
-  double distance;  ///< [m]
-  double foot[3];   ///< the latest exact closest point [m]
+  double rest[3];  ///< [m]
+  SurfaceContact contact;
   std::uint32_t node;
-  std::int32_t surface;
-  bool turned;  ///< has gone round the rim of an open surface
+
+  // where the surface follows a bone or has friction: all in the frame of the bone, plane and point in double
+  bool glides;
+  std::int32_t bone;  ///< -1: still
+  double friction;
+  ContactPlane plane;
+  SurfaceContact::Point reference;  ///< where the plane was found
+  double pressing;                  ///< reaction over mass that friction knows of [m/s2]
 };
 
 /// What a step needs of it: the tangent plane of the offset surface at the latest exact closest point. A displacement u
 /// keeps its distance where normal . u + offset = 0.
-struct ContactPlane
+struct TangentPlane
 {
   float4 normal_offset;
-  float4 reference;  ///< displacement there; w: 1 where there is no closest point yet
+  float4 reference;  ///< displacement there; w: square of how far the plane serves [m2], below 0: there is none yet
 };
 
 /// A law beyond neo-Hookean that a voxel has in part.
@@ -88,6 +93,11 @@ struct StepArguments
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
   const LawEntry* laws;
+  bool selective_reduced;              ///< isochoric stress at eight points
+  const std::uint32_t* viscous_words;  ///< laid out as slots: 1 + viscous voxel, 0: none; null: no voxel is viscous
+  const float* relaxed;                ///< [term][component][viscous voxel] times tissue volume [N m]
+  std::uint32_t viscous_count;
+  std::int32_t viscous_terms;
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
@@ -101,13 +111,13 @@ struct StepArguments
   const std::int32_t* load_begin;
   const double* vertex_force;  ///< three a vertex, at full ramp [N]
   const double* load_ramp;     ///< one a load [s]
+  const double* load_relief;   ///< three a loaded node: what gravity is less on scaled masses [N]; null: nowhere
   SlidingContact* sliding;
-  ContactPlane* contact_planes;
+  TangentPlane* contact_planes;
   std::uint32_t sliding_count;
-  const SurfaceSearch* surfaces;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
-  const double* poses;  ///< [step][bone][12]: rotation row by row, translation
+  const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
   std::int32_t bones;
 
   float scale[3];             ///< 1 / (4 h)
@@ -119,44 +129,74 @@ struct StepArguments
   std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
   std::uint32_t* look;                       ///< bits of the largest frequency bound squared at the plan's last step
   bool forces_only;                          ///< internal forces into u[1 - first], nothing updated
+  float* velocity_before[3];                 ///< velocities before the update; null: no account of work is kept
+  float* velocity_free[3];                   ///< after it and the loads, before constraints
+  double* friction_work;                     ///< lost to friction, one a contact [J]; null: no account of work is kept
+  const std::int32_t* brick_tasks;           ///< [brick][plane][owned row][lane]: see brick_task
   std::uint32_t* barrier;
   std::uint32_t barrier_base;
 };
 
-/// Threads of a block; a warp walks one strip at a time.
+/// Threads of a block of the strip kernel; a warp walks one strip.
 constexpr int step_block = 128;
 
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most shared memory for a warp's slots [bytes].
-constexpr std::size_t most_slot_bytes = 12 * 1024;
+/// Most warps of a brick, a row of voxels each.
+constexpr int most_brick_warps = 16;
 
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;
+
+/// Entries of brick_tasks: 0 and up: the node slides on this contact and nothing else; none: nothing holds it; below
+/// that: other_task - index of its NodeTask.
+namespace brick_task
+{
+constexpr std::int32_t none = -1;
+constexpr std::int32_t other = -2;
+}  // namespace brick_task
 
 /// Kernels by what voxels need, so that those of a plain model hold no registers for more.
 enum class Effects : std::uint8_t
 {
   none,    ///< neo-Hookean with scalar hourglass control
   fibres,  ///< muscles too
-  all      ///< laws beyond neo-Hookean and assumed-strain hourglass control too; strips of two rows only
+  all      ///< everything else too
 };
 
 /// How the step kernel is launched for a model.
 struct StepLaunch
 {
-  int rows;  ///< of a strip: 1, 2 or 4
+  bool bricks;  ///< a block of threads a strip, many steps a launch; else a warp a strip
+  int rows;     ///< of a strip
+  int planes;   ///< most of a strip
   Effects effects;
-  std::size_t slot_bytes;  ///< shared memory for a warp's slots; 0: they are read from device memory at each step
+  std::size_t shared_bytes;  ///< of a block
+  bool cached;               ///< a block keeps what its bricks are made of in shared memory
   int blocks;
 };
 
-/// Blocks of the step kernel that a device holds at once; 0 where it has no code for the device.
+/// Rows of a strip that the strip kernel takes.
+constexpr int strip_rows(Effects effects) { return effects == Effects::none ? 4 : 2; }
+
+/// Shared memory [bytes] of a block for the forces of a brick, and for what a brick is made of.
+FRONTALIS_LAW constexpr std::size_t brick_force_bytes(int rows, int planes)
+{
+  return 2 * sizeof(float) * 12 * 32 * static_cast<std::size_t>((rows + 1) * (planes + 1));
+}
+FRONTALIS_LAW constexpr std::size_t brick_bytes(int rows, int planes)
+{
+  return 16 + 32 * static_cast<std::size_t>(planes + 2) *
+                  ((rows + 2) * sizeof(uint2) + (rows + 1) * sizeof(std::uint32_t) + rows * sizeof(std::int32_t));
+}
+
+/// Blocks of the brick kernel that a device holds at once; 0 where it has no code for the device.
 int resident_blocks(const StepLaunch& launch);
 
-/// Launches steps [step_begin, step_end) of the plan. Several of them need all blocks resident at once.
+/// Launches steps [step_begin, step_end) of the plan; several of them need bricks.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
+cudaError_t launch_bricks(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
 /// Exact closest points for the sliding nodes for which a step of the plan would else have to find them itself.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);

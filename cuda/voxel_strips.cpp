@@ -154,9 +154,10 @@ struct Builder
   }
 };
 
-// packs pieces of about equal length into warps, in order
-std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
+// packs pieces of about equal length into warps, in order; short ones of any length
+std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces, const StripSettings& settings)
 {
+  const bool any_length = settings.planes <= 3;
   // a few warps stay open, so that a large piece does not close one that small ones could fill
   constexpr std::size_t open_warps = 16;
   std::vector<std::vector<Piece>> warps;
@@ -166,7 +167,7 @@ std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
   {
     std::size_t found = warps.size();
     for (std::size_t w = std::max(first_open, warps.size() - std::min(warps.size(), open_warps)); w < warps.size(); ++w)
-      if (used[w] + p.lanes <= lanes && warps[w][0].planes * 3 <= p.planes * 4)
+      if (used[w] + p.lanes <= lanes && (any_length || warps[w][0].planes * 3 <= p.planes * 4))
       {
         found = w;
         break;
@@ -191,7 +192,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
                 std::to_string(model.fibre_muscle.size()) + " fibre entries; allowed are below 2^30 and 2^28");
   Builder builder(model, settings);
   builder.cut();
-  const auto warps = pack(builder.pieces);
+  const auto warps = pack(builder.pieces, settings);
   builder.pieces = {};
 
   // owned nodes, numbered as a warp meets them
@@ -273,6 +274,13 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
           fibre_words.push_back(word);
         }
   }
+}
+
+std::size_t VoxelStrips::count(const Model& model, const StripSettings& settings)
+{
+  Builder builder(model, settings);
+  builder.cut();
+  return pack(builder.pieces, settings).size();
 }
 
 double VoxelStrips::filled() const

@@ -54,6 +54,9 @@ struct VoxelStrips
   std::vector<std::uint32_t> device_node;    ///< of each model node
   std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
 
+  /// How many strips a model is cut into.
+  static std::size_t count(const Model& model, const StripSettings& settings);
+
   /// Share of the places of voxels that hold one: what a sparse shell loses.
   double filled() const;
 };

@@ -25,30 +25,50 @@ double length(const Vectors& x)
 
 }  // namespace
 
-// largest eigenvalue of M^-1/2 K M^-1/2 at the present state by power iteration; products with K are differences of
-// internal forces, so that every law and fibre is in them. Without the constraints, which only lower it.
+// without the constraints, which only lower it
 void SteppingSolver::renew_assembled_bound()
 {
-  const bool first = assembled_mode_.empty();
   if (assembled_at_frequency_ > 0 && profile_.steps - assembled_at_step_ < good_for &&
       frequency_squared_ <= growth_allowed * assembled_at_frequency_)
     return;
+  const double squared = assembled_frequency_squared(assembled_at_frequency_ > 0 ? 16 : 300);
+  assembled_share_ = std::isfinite(squared) ? std::min(1.0, margin * squared / frequency_squared_) : 1.0;
+  assembled_at_step_ = profile_.steps;
+  assembled_at_frequency_ = frequency_squared_;
+}
+
+double mode_amplitude(const Model& model)
+{
+  return 1e-3 * *std::min_element(model.spacing.begin(), model.spacing.end());
+}
+
+bool mode_has_settled(int iteration, double before, double now)
+{
+  return iteration >= 8 && std::abs(now - before) < 1e-4 * now;
+}
+
+void random_mode(SteppingSolver::Vectors& mode)
+{
+  std::mt19937 random(1);
+  for (auto& p : mode)
+    for (double& x : p)
+      x = static_cast<double>(random()) / 2147483648.0 - 1;
+}
+
+// products with K are differences of internal forces, so that every law and fibre is in them
+double SteppingSolver::assembled_frequency_squared(int most_iterations)
+{
   const auto& mass = discretisation_.node_mass;
-  if (first)
+  if (assembled_mode_.empty())
   {
-    std::mt19937 random(1);
     assembled_mode_.resize(mass.size());
-    for (auto& p : assembled_mode_)
-      for (double& x : p)
-        x = static_cast<double>(random()) / 2147483648.0 - 1;
+    random_mode(assembled_mode_);
   }
   Vectors u, moved, plus, minus;
   displacements(u);
-  // in units of a thousandth of a voxel: large for float, small for the curvature of the laws
-  const double amplitude = 1e-3 * *std::min_element(model_->spacing.begin(), model_->spacing.end());
+  const double amplitude = mode_amplitude(*model_);
   double squared = 0;
-  const int most = assembled_at_frequency_ > 0 ? 16 : 300;
-  for (int iteration = 0; iteration < most; ++iteration)
+  for (int iteration = 0; iteration < most_iterations; ++iteration)
   {
     double largest = 0;
     for (std::size_t n = 0; n < mass.size(); ++n)
@@ -71,14 +91,12 @@ void SteppingSolver::renew_assembled_bound()
     for (auto& p : assembled_mode_)
       for (double& x : p)
         x /= now * before;
-    const bool settled = std::abs(now - squared) < 1e-4 * now;
+    const bool settled = mode_has_settled(iteration, squared, now);
     squared = now;
-    if (settled && iteration >= 8)
+    if (settled)
       break;
   }
-  assembled_share_ = std::isfinite(squared) ? std::min(1.0, margin * squared / frequency_squared_) : 1.0;
-  assembled_at_step_ = profile_.steps;
-  assembled_at_frequency_ = frequency_squared_;
+  return squared;
 }
 
 }  // namespace frontalis

@@ -35,19 +35,8 @@ namespace
 {
 
 // why this model cannot run on a GPU here; empty where it can
-std::string missing_gpu(const Model& model)
+std::string missing_gpu([[maybe_unused]] const Model& model)
 {
-  for (const auto& material : model.materials)
-    if (material.law != Law::neo_hookean)
-      return "it has no law but neo-Hookean, and material " + material.name + " has another";
-    else if (material.viscous_share[0] > 0 || material.viscous_share[1] > 0)
-      return "it has no viscosity, and material " + material.name + " has it";
-  if (model.integration != Integration::one_point)
-    return "it has no selective reduced integration";
-  for (const auto& surface : model.constraint_surfaces)
-    if (surface.bone >= 0 || surface.friction > 0)
-      return "its nodes slide only on surfaces that stand still and have no friction, and " + surface.name +
-             (surface.bone >= 0 ? " follows a bone" : " has friction");
 #if defined(FRONTALIS_WITH_CUDA)
   return missing_cuda_device();
 #else

@@ -37,14 +37,27 @@ void vertex_forces(const Load& load, double ramp, const std::vector<std::array<d
 
 }  // namespace
 
+std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation)
+{
+  std::vector<std::int32_t> nodes;
+  const auto& g = model.gravity;
+  if (model.mass_scaling.kind == MassScalingSettings::Kind::selective && (g[0] != 0 || g[1] != 0 || g[2] != 0))
+    for (std::size_t n = 0; n < discretisation.weight_share.size(); ++n)
+      if (discretisation.weight_share[n] < 1)
+        nodes.push_back(static_cast<std::int32_t>(n));
+  return nodes;
+}
+
+std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node)
+{
+  const double excess = discretisation.node_mass[node] * (double(discretisation.weight_share[node]) - 1);
+  return { { excess * model.gravity[0], excess * model.gravity[1], excess * model.gravity[2] } };
+}
+
 NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation) : model_(model)
 {
-  const auto& g = model.gravity;
-  const bool heavy = model.mass_scaling.kind == MassScalingSettings::Kind::selective &&
-                     !discretisation.weight_share.empty() && (g[0] != 0 || g[1] != 0 || g[2] != 0);
-  for (std::size_t n = 0; heavy && n < model.nodes.size(); ++n)
-    if (discretisation.weight_share[n] < 1)
-      nodes_.push_back(static_cast<std::int32_t>(n));
+  nodes_ = relieved_nodes(model, discretisation);
+  const bool relieved = !nodes_.empty();
   for (const auto& load : model.loads)
   {
     if (load.kind == Load::Kind::displacement)
@@ -57,11 +70,8 @@ NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation)
   surface_forces_.assign(nodes_.size(), { { 0, 0, 0 } });
   forces_ = surface_forces_;
   for (const auto n : nodes_)
-    if (heavy)
-    {
-      const double excess = discretisation.node_mass[n] * (double(discretisation.weight_share[n]) - 1);
-      relief_.push_back({ { excess * g[0], excess * g[1], excess * g[2] } });
-    }
+    if (relieved)
+      relief_.push_back(gravity_relief(model, discretisation, n));
   for (const auto& load : model.loads)
   {
     if (load.kind == Load::Kind::displacement)

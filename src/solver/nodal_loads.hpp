@@ -8,6 +8,11 @@
 namespace frontalis
 {
 
+/// Nodes that are heavier than gravity should feel, because their mass is scaled and others' is not.
+std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
+/// What gravity is less on such a node [N].
+std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
+
 /// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding. Forces are added
 /// in a fixed order. Where selective mass scaling has made nodes heavier under gravity, the weight that is too much is
 /// taken off them again.

@@ -51,6 +51,9 @@ protected:
   virtual void velocities(Vectors& out) const = 0;
   /// Internal forces [N] at displacements that are not the state's.
   virtual void forces_at(const Vectors& displacements, Vectors& out);
+  /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present state without constraints, by power iteration from
+  /// where the latest one ended.
+  virtual double assembled_frequency_squared(int most_iterations);
   /// Loads and, where mass scaling is not uniform, what gravity is less on scaled nodes [N], at the present state.
   virtual void external_forces(Vectors& out);
   /// Opens an account of work, and what is in it; only called where the ledger is wanted.
@@ -102,6 +105,12 @@ private:
   EnergyLedger ledger_;
   double initial_ = 0;
 };
+
+/// Of the power iteration: what it begins with; how far nodes move for a product with K, large for float and small for
+/// the curvature of the laws [m]; whether the eigenvalue is known.
+void random_mode(SteppingSolver::Vectors& mode);
+double mode_amplitude(const Model& model);
+bool mode_has_settled(int iteration, double before, double now);
 
 /// Controls at rest: no activation, bones in place.
 Controls rest_controls(const Model& model);

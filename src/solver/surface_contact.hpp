@@ -15,7 +15,7 @@ struct ContactPlane
 
 /// One node on a surface, on the sheet of it that it met first: walls that face it from across are left alone, such as
 /// the inner table of a thin bone for a node in its outer one. Knows the triangles around it, so that most of its exact
-/// closest points need no search.
+/// closest points need no search. Runs on host and GPU.
 class SurfaceContact
 {
 public:
@@ -25,14 +25,24 @@ public:
   static constexpr double plane_error = 9e-6;
   static constexpr double longest_slip = 0.4e-3;  ///< [m]
 
+  SurfaceContact() = default;
   /// `distance` is the one to keep [m], signed.
-  SurfaceContact(const SurfaceTree& tree, double distance) : tree_(&tree), distance_(distance) {}
+  SurfaceContact(const SurfaceSearch& surface, double distance) : surface_(surface), distance_(distance) {}
+  SurfaceContact(const SurfaceTree& tree, double distance) : SurfaceContact(tree.search(), distance) {}
 
   /// Plane through the exact closest point to p.
-  ContactPlane renew(const Point& p);
-  void forget();
+  FRONTALIS_LAW ContactPlane renew(const Point& p);
+  FRONTALIS_LAW void forget()
+  {
+    near_ = {};
+    up_ = { 0, 0, 0 };
+    turned_ = false;
+  }
 
 private:
+  using N = physics::Number<double>;
+  using Triangle = SurfaceSearch::Triangle;
+
   static constexpr double apart = 4 * plane_error;  // from here on a distance keeps its sign
 
   struct Sight
@@ -50,14 +60,135 @@ private:
     Sight seen[NearTriangles::capacity];
   };
 
-  void look(const Point& p, Surroundings& s) const;
-  double slip(const Point& p, const Surroundings& s, const Point& normal, double error) const;
+  static FRONTALIS_LAW double size(double x) { return N::max(x, -x); }
+  static FRONTALIS_LAW double to_boundary(const Triangle& triangle, const Point& at);
+  FRONTALIS_LAW void look(const Point& p, Surroundings& s) const;
+  FRONTALIS_LAW double slip(const Point& p, const Surroundings& s, const Point& normal, double error) const;
 
-  const SurfaceTree* tree_;
-  double distance_;
+  SurfaceSearch surface_{ nullptr, nullptr, 0 };
+  double distance_ = 0;
   Point up_{ 0, 0, 0 };  // unit vector from the latest foot; zero: there is none
   bool turned_ = false;  // has gone round the rim of an open surface
   NearTriangles near_;
 };
+
+// from a point of a triangle to the nearest of its edges
+FRONTALIS_LAW double SurfaceContact::to_boundary(const Triangle& triangle, const Point& at)
+{
+  double shortest = 1e300;
+  for (int c = 0; c < 3; ++c)
+  {
+    const Point edge = triangle.corner[(c + 1) % 3] - triangle.corner[c];
+    const Point inwards = cross(triangle.face_normal, edge);
+    shortest = N::min(shortest, dot(at - triangle.corner[c], inwards) / norm(edge));
+  }
+  return N::max(shortest, 0.0);
+}
+
+FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
+{
+  const double moved = norm(p - near_.at);
+  double closest = 1e300;
+  s.count = 0;
+  s.outside = near_.beyond - moved;
+  for (int k = 0; k < near_.count; ++k)
+  {
+    if (near_.distance[k] - moved > closest + longest_slip + 2 * plane_error)
+    {
+      s.outside = N::min(s.outside, near_.distance[k] - moved);
+      break;
+    }
+    Sight& seen = s.seen[s.count];
+    seen.triangle = &surface_.triangles[near_.triangle[k]];
+    const auto& corner = seen.triangle->corner;
+    seen.foot = closest_point(p, corner[0], corner[1], corner[2]);
+    seen.distance = norm(p - seen.foot);
+    // another sheet, across from this one
+    if (seen.distance > apart && dot(p - seen.foot, up_) < -0.5 * seen.distance)
+      continue;
+    if (seen.distance < closest)
+    {
+      closest = seen.distance;
+      s.closest = s.count;
+    }
+    ++s.count;
+  }
+}
+
+// Within slip of p, on the plane at height d over the tangent plane at p's foot, distance must stay within e of d. Two
+// arguments, each of which holds by itself; the larger slip counts. D is how far a triangle is from p, gap = D - d.
+// - By distances, for a point apart from the surface. A triangle comes no nearer than d - e if it rises no more than e
+//   above the tangent plane; if slip is at most gap + e; and, distance to it being convex, if its linearisation does
+//   not. And some of the surface is within d + e: the foot's own triangle, and a circle beyond its edge.
+// - By the gradient, which is a mean of the normals of the faces around the foot: those within e / slip of the plane's
+//   normal do no harm, nor do faces that no foot reaches. A foot is within d + e, so its face has gap - e <= slip; and
+//   sideways it is within slip + r, where r^2 = (d + e)^2 - (d - rise)^2. At a rim the gradient is free.
+FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s, const Point& normal,
+                                          double error) const
+{
+  constexpr double e = plane_error;
+  const Point& foot = s.seen[s.closest].foot;
+  const double d = s.seen[s.closest].distance;
+  // towards the node
+  const Point up = dot(p - foot, normal) < 0 ? -1.0 * normal : normal;
+  const double gap_outside = s.outside - d - 2 * error;
+  double by_gradient = gap_outside - e, by_distance = 0;
+  if (d > apart)
+    by_distance = N::min(gap_outside + e, to_boundary(*s.seen[s.closest].triangle, foot) + N::sqrt(e * (e + 2 * d)));
+  for (int k = 0; k < s.count; ++k)
+  {
+    const Sight& seen = s.seen[k];
+    const Triangle& t = *seen.triangle;
+    const Point direction = (1 / N::max(seen.distance, 1e-12)) * (p - seen.foot) - up;
+    const double squared_turn = dot(direction, direction);
+    const double gap = seen.distance - d - 0.5 * squared_turn * error;
+    const double rise =
+        N::max(N::max(dot(t.corner[0] - foot, up), dot(t.corner[1] - foot, up)), dot(t.corner[2] - foot, up));
+    if (d > apart && rise > e && by_distance > gap + e &&
+        by_distance * by_distance * squared_turn > (gap + e) * (gap + e))
+      by_distance = N::max(gap + e, (gap + e) / N::sqrt(squared_turn));
+    if (by_gradient <= gap - e)
+      continue;
+    const double turn = t.rim != 0 ? 2.0 : norm(t.face_normal - normal);
+    if (turn * by_gradient <= e)
+      continue;
+    const double low = N::max(d - N::max(rise, e), 0.0), far = seen.distance - error;
+    const double sideways = N::sqrt(N::max(far * far - (d + e) * (d + e), 0.0));
+    const double reach = sideways - N::sqrt((d + e) * (d + e) - low * low);
+    by_gradient = N::min(by_gradient, N::max(N::max(gap - e, reach), e / turn));
+  }
+  return N::min(N::max(0.999 * N::max(by_distance, by_gradient), 0.0), longest_slip);
+}
+
+FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
+{
+  Surroundings s;
+  look(p, s);
+  // anew where another might be closer, and where so little is left of the list that it allows no slip
+  if (s.count == 0 || s.outside - s.seen[s.closest].distance < 0.2 * (near_.beyond - near_.distance[0]))
+  {
+    surface_.near(p, near_);
+    look(p, s);
+  }
+  const bool first = dot(up_, up_) == 0;
+  if (s.count == 0 && !first)
+  {
+    up_ = { 0, 0, 0 };
+    look(p, s);
+  }
+  // a surface without triangles holds nothing
+  if (s.count == 0)
+    return {};
+  SurfaceSearch::Closest closest{};
+  closest.point = s.seen[s.closest].foot;
+  closest.squared_distance = s.seen[s.closest].distance * s.seen[s.closest].distance;
+  SurfaceSearch::describe(*s.seen[s.closest].triangle, closest);
+  const Point normal = SurfaceSearch::offset_normal(closest, p, distance_, turned_);
+  up_ = dot(p - closest.point, normal) < 0 ? -1.0 * normal : normal;
+  if (first)
+    look(p, s);
+  const double error = size(dot(normal, p - closest.point) - distance_);
+  return { normal, dot(normal, closest.point) + distance_, slip(p, s, normal, error) };
+}
 
 }  // namespace frontalis

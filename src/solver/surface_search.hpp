@@ -7,6 +7,19 @@
 namespace frontalis
 {
 
+/// The triangles of a surface nearest to a point, nearest first.
+struct NearTriangles
+{
+  static constexpr int capacity = 24;
+  static constexpr double reach = 2e-3;  ///< none is listed that is so much farther than the nearest [m]
+
+  physics::Vec3<double> at{ 0, 0, 0 };  ///< the point
+  double beyond = -1;                   ///< triangles that are not listed are at least so far from it [m]
+  int count = 0;
+  std::int32_t triangle[capacity] = {};  ///< into SurfaceSearch::triangles
+  double distance[capacity] = {};        ///< [m]
+};
+
 /// Exact closest points over the arrays of a SurfaceTree, with the pseudonormal of the face, edge or corner found
 /// (Baerentzen & Aanaes 2005), which tells the side. Plain pointers: the same search runs on host and GPU.
 struct SurfaceSearch
@@ -143,6 +156,55 @@ struct SurfaceSearch
     if (found >= 0)
       describe(triangles[found], best);
     return best;
+  }
+
+  /// The triangles nearest to p.
+  FRONTALIS_LAW void near(const Point& p, NearTriangles& out) const
+  {
+    out.at = p;
+    out.count = 0;
+    out.beyond = 1e300;
+    std::int32_t stack[64];
+    int depth = 0;
+    if (box_count > 0)
+      stack[depth++] = 0;
+    while (depth > 0)
+    {
+      const std::int32_t self = stack[--depth];
+      const Box box = boxes[self];
+      if (squared_distance(box, p) > out.beyond * out.beyond)
+        continue;
+      for (std::int32_t t = box.first; t < box.first + box.count; ++t)
+      {
+        const Triangle& triangle = triangles[t];
+        insert(t, norm(p - physics::closest_point(p, triangle.corner[0], triangle.corner[1], triangle.corner[2])), out);
+      }
+      if (box.count == 0)
+      {
+        const std::int32_t left = self + 1, right = box.first;
+        const bool left_first = squared_distance(boxes[left], p) <= squared_distance(boxes[right], p);
+        stack[depth++] = left_first ? right : left;
+        stack[depth++] = left_first ? left : right;
+      }
+    }
+  }
+
+private:
+  static FRONTALIS_LAW void insert(std::int32_t triangle, double distance, NearTriangles& out)
+  {
+    if (!(distance < out.beyond))
+      return;
+    int place = out.count < NearTriangles::capacity ? out.count++ : NearTriangles::capacity - 1;
+    for (; place > 0 && out.distance[place - 1] > distance; --place)
+    {
+      out.triangle[place] = out.triangle[place - 1];
+      out.distance[place] = out.distance[place - 1];
+    }
+    out.triangle[place] = triangle;
+    out.distance[place] = distance;
+    out.beyond = out.distance[0] + NearTriangles::reach;
+    if (out.count == NearTriangles::capacity)
+      out.beyond = physics::Number<double>::min(out.beyond, out.distance[out.count - 1]);
   }
 };
 

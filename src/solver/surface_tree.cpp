@@ -83,57 +83,6 @@ SurfaceTree::SurfaceTree(const TriangleMesh& mesh)
     build(0, static_cast<std::int32_t>(triangles_.size()));
 }
 
-void SurfaceTree::near(const Point& p, NearTriangles& out) const
-{
-  out.at = p;
-  out.count = 0;
-  out.beyond = std::numeric_limits<double>::max();
-  struct Entry
-  {
-    std::int32_t box;
-    double squared_distance;
-  };
-  Entry stack[64];
-  int depth = 0;
-  const auto push = [&](std::int32_t box) {
-    stack[depth++] = { box, SurfaceSearch::squared_distance(boxes_[box], p) };
-  };
-  if (!boxes_.empty())
-    push(0);
-  while (depth > 0)
-  {
-    const Entry self = stack[--depth];
-    if (self.squared_distance > out.beyond * out.beyond)
-      continue;
-    const Box& box = boxes_[self.box];
-    if (box.count == 0)
-    {
-      push(box.first);
-      push(self.box + 1);
-      if (stack[depth - 1].squared_distance > stack[depth - 2].squared_distance)
-        std::swap(stack[depth - 1], stack[depth - 2]);
-    }
-    for (std::int32_t t = box.first; t < box.first + box.count; ++t)
-    {
-      const Triangle& triangle = triangles_[t];
-      const double distance = norm(p - closest_point(p, triangle.corner[0], triangle.corner[1], triangle.corner[2]));
-      if (!(distance < out.beyond))
-        continue;
-      int place = out.count < NearTriangles::capacity ? out.count++ : NearTriangles::capacity - 1;
-      for (; place > 0 && out.distance[place - 1] > distance; --place)
-      {
-        out.triangle[place] = out.triangle[place - 1];
-        out.distance[place] = out.distance[place - 1];
-      }
-      out.triangle[place] = t;
-      out.distance[place] = distance;
-      out.beyond = out.distance[0] + NearTriangles::reach;
-      if (out.count == NearTriangles::capacity)
-        out.beyond = std::min(out.beyond, out.distance[out.count - 1]);
-    }
-  }
-}
-
 void SurfaceTree::build(std::int32_t first, std::int32_t last)
 {
   Box box{};

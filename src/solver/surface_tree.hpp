@@ -9,19 +9,6 @@
 namespace frontalis
 {
 
-/// The triangles of a surface nearest to a point, nearest first.
-struct NearTriangles
-{
-  static constexpr int capacity = 24;
-  static constexpr double reach = 2e-3;  ///< none is listed that is so much farther than the nearest [m]
-
-  SurfaceSearch::Point at{ 0, 0, 0 };  ///< the point
-  double beyond = -1;                  ///< triangles that are not listed are at least so far from it [m]
-  int count = 0;
-  std::int32_t triangle[capacity] = {};  ///< into SurfaceTree::triangles()
-  double distance[capacity] = {};        ///< [m]
-};
-
 /// Bounding-box tree over a triangle mesh for exact closest points, with the pseudonormal of the face, edge or corner
 /// found (Baerentzen & Aanaes 2005), which tells the side. Read-only after construction.
 class SurfaceTree
@@ -35,7 +22,7 @@ public:
   /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
   Closest closest(const Point& p, double within) const { return search().closest(p, within); }
 
-  void near(const Point& p, NearTriangles& out) const;
+  void near(const Point& p, NearTriangles& out) const { search().near(p, out); }
 
   const std::vector<SurfaceSearch::Box>& boxes() const { return boxes_; }
   const std::vector<SurfaceSearch::Triangle>& triangles() const { return triangles_; }

@@ -93,8 +93,8 @@ void check_strips(const Model& model, const StripSettings& settings)
 TEST(VoxelStrips, GiveEveryNodeOneOwnerWithAllItsVoxels)
 {
   const Model model = shell();
-  for (const int rows : { 2, 4 })
-    for (const int planes : { 1, 3, 64 })
+  for (const int rows : { 1, 2, 3, 4 })
+    for (const int planes : { 1, 2, 3, 64 })
       check_strips(model, { rows, planes });
 }
 

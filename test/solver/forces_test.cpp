@@ -134,7 +134,7 @@ TEST_P(EnergyGradient, IsTheForce)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, EnergyGradient,
-                         testing::Combine(testing::Values(Backend::reference, Backend::cpu),
+                         testing::Combine(testing::ValuesIn(available_backends()),
                                           testing::Values(HourglassControl::scalar, HourglassControl::assumed_strain)));
 
 TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)

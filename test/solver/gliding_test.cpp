@@ -224,4 +224,4 @@ TEST_P(Gliding, SameInputSameBits)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, Gliding, testing::Values(Backend::reference, Backend::cpu), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, Gliding, testing::ValuesIn(available_backends()), test::backend_name);

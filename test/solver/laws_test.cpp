@@ -167,7 +167,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Laws,
-                         testing::Combine(testing::Values(Backend::reference, Backend::cpu),
+                         testing::Combine(testing::ValuesIn(available_backends()),
                                           testing::Values(Law::neo_hookean, Law::mooney_rivlin, Law::ogden, Law::fung,
                                                           Law::holzapfel, Law::guccione)),
                          law_name);

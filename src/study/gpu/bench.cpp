@@ -1,7 +1,9 @@
 // Kernel time of the CUDA backend on models made in code, beside a yardstick of the same run.
 #include "device_memory.hpp"
 #include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
 #include "frontalis/solver/solver.hpp"
+#include "frontalis/study/dense_block.hpp"
 #include "shell_model.hpp"
 #include "yardstick.hpp"
 
@@ -19,39 +21,6 @@ using namespace frontalis;
 
 namespace
 {
-
-/// A dense block of equal voxels, one face held, under gravity along another axis.
-Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z)
-{
-  Model model;
-  model.size = { { x, y, z } };
-  Material tissue;
-  tissue.name = "tissue";
-  tissue.density = 1100;
-  const double young = 34e3, nu = 0.49;
-  tissue.parameters[0] = young / (2 * (1 + nu));
-  tissue.parameters[1] = young / (3 * (1 - 2 * nu));
-  model.materials.push_back(tissue);
-  const std::size_t count = static_cast<std::size_t>(x) * y * z;
-  model.voxels.reserve(count);
-  for (std::int32_t k = 0; k < z; ++k)
-    for (std::int32_t j = 0; j < y; ++j)
-      for (std::int32_t i = 0; i < x; ++i)
-        model.voxels.push_back({ { i, j, k } });
-  model.fill.assign(count, 1);
-  model.mixture_material.assign(count, 0);
-  model.mixture_proportion.assign(count, 1);
-  model.mixture_begin.resize(count + 1);
-  for (std::size_t e = 0; e <= count; ++e)
-    model.mixture_begin[e] = static_cast<std::int32_t>(e);
-  model.fibre_begin.assign(count + 1, 0);
-  build_nodes(model);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
-  model.gravity = { { 0, 0, -9.81 } };
-  return model;
-}
 
 double median(std::vector<double> values)
 {
@@ -207,6 +176,10 @@ int run(int count, char** arguments)
   for (const Scene& scene : scenes())
     if (is_wanted(scene.name))
       bench(scene);
+  // baked models
+  for (const std::string& name : wanted)
+    if (name.find('.') != std::string::npos)
+      bench({ name.substr(name.rfind('/') + 1), [&] { return read_model(name); }, 10000 });
   return 0;
 }
 

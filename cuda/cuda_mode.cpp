@@ -1,0 +1,92 @@
+#include "cuda_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// The mode is left as long as it comes: products are taken of it divided by `largest`.
+struct CudaSolver::Mode
+{
+  DeviceArray<float4> mode, moved, plus, minus;
+  DeviceArray<double2> seen;
+  double largest, length;
+
+  explicit Mode(std::size_t nodes)
+      : mode(nodes), moved(nodes), plus(nodes), minus(nodes), seen(product_blocks), largest(0), length(0)
+  {
+    for (const auto* forces : { &plus, &minus })
+      require(cudaMemset(forces->data(), 0, forces->bytes()), "clearing forces");
+  }
+};
+
+void CudaSolver::ModeDeleter::operator()(Mode* mode) const { delete mode; }
+
+double CudaSolver::assembled_frequency_squared(int most_iterations)
+{
+  synchronise();
+  if (!mode_)
+  {
+    mode_.reset(new Mode(device_.nodes()));
+    Vectors random(model_->nodes.size());
+    random_mode(random);
+    std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
+    for (std::size_t n = 0; n < random.size(); ++n)
+    {
+      const auto& x = random[n];
+      values[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
+                                           0 };
+      for (const double c : x)
+      {
+        mode_->largest = std::max(mode_->largest, std::abs(c) / std::sqrt(discretisation_.node_mass[n]));
+        mode_->length += c * c;
+      }
+    }
+    mode_->length = std::sqrt(mode_->length);
+    mode_->mode.upload(values.data(), values.size());
+  }
+  Mode& m = *mode_;
+  const auto nodes = static_cast<std::uint32_t>(device_.nodes());
+  const double amplitude = mode_amplitude(*model_);
+  const float4* const u = u_[present_].data();
+  const DeviceArray<float> activation(this->activation());
+  std::vector<double2> seen;
+  double squared = 0;
+  for (int iteration = 0; iteration < most_iterations; ++iteration)
+  {
+    for (const double sign : { 1.0, -1.0 })
+    {
+      require(launch_displace(nodes, u, m.mode.data(), static_cast<float>(sign * amplitude / m.largest), m.moved.data(),
+                              stream_),
+              "displacing nodes");
+      queue_forces(m.moved.data(), activation.data(), (sign > 0 ? m.plus : m.minus).data());
+    }
+    require(launch_product(nodes, u, m.plus.data(), m.minus.data(), static_cast<float>(0.5 / amplitude), m.mode.data(),
+                           m.seen.data(), stream_),
+            "a product with the stiffness");
+    synchronise();
+    m.seen.download(seen);
+    double largest = 0, sum = 0;
+    for (const double2& s : seen)
+    {
+      largest = std::max(largest, s.x);
+      sum += s.y;
+    }
+    const double now = std::sqrt(sum) * m.largest / m.length;
+    m.largest = largest;
+    m.length = std::sqrt(sum);
+    const bool settled = mode_has_settled(iteration, squared, now);
+    squared = now;
+    if (settled || !std::isfinite(now))
+      break;
+  }
+  if (!std::isfinite(squared))
+    mode_.reset();
+  return squared;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

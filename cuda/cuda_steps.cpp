@@ -1,0 +1,232 @@
+#include "cuda_solver.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+StepArguments CudaSolver::arguments(double dt) const
+{
+  StepArguments g = device_.arguments();
+  for (int buffer = 0; buffer < 2; ++buffer)
+    g.u[buffer] = u_[buffer].data();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.v[axis] = v_[axis].data();
+    g.impulse[axis] = static_cast<float>(gain(dt) * gravity_[axis]);
+  }
+  if (account_)
+    account_->describe(g);
+  g.first = present_;
+  g.dt = static_cast<float>(dt);
+  g.dt_exact = dt;
+  g.keep = static_cast<float>(keep(dt));
+  g.gain = static_cast<float>(gain(dt));
+  g.barrier = barrier_.data();
+  return g;
+}
+
+// look (cleared), activations, poses: one copy through page-locked memory
+void CudaSolver::stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g)
+{
+  const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
+  const std::size_t poses_at = sizeof(double) * (1 + muscles);
+  const std::size_t bytes = poses_at + sizeof(double) * 12 * (plan.steps + 1) * bones;
+  if (bytes > slot.staged.size())
+  {
+    slot.staged = PinnedArray<char>(bytes);
+    slot.controls = DeviceArray<char>(bytes);
+  }
+  char* const staged = slot.staged.data();
+  std::memset(staged, 0, sizeof(double));
+  if (muscles > 0)
+  {
+    std::memcpy(staged + sizeof(double), plan.begin.activation.data(), muscles * sizeof(float));
+    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), plan.end.activation.data(), muscles * sizeof(float));
+  }
+  for (int step = 0; bones > 0 && step <= plan.steps; ++step)
+  {
+    const std::vector<RigidTransform> poses = step == 0 ? plan.begin.bone : plan.drive(step - 1).bone;
+    for (std::size_t b = 0; b < bones; ++b)
+    {
+      char* const pose = staged + poses_at + sizeof(double) * 12 * (step * bones + b);
+      std::memcpy(pose, poses[b].rotation.data(), 9 * sizeof(double));
+      std::memcpy(pose + 9 * sizeof(double), poses[b].translation.data(), 3 * sizeof(double));
+    }
+  }
+  require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
+  char* const controls = slot.controls.data();
+  g.look = reinterpret_cast<std::uint32_t*>(controls);
+  g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
+  g.activation_end = g.activation_begin + muscles;
+  g.poses = reinterpret_cast<const double*>(controls + poses_at);
+}
+
+void CudaSolver::step(StepArguments& g, int begin, int end)
+{
+  g.step_begin = begin;
+  g.step_end = end;
+  g.first = present_;
+  g.barrier_base = barrier_base_;
+  require(launch_steps(g, launch_, stream_), "launching steps");
+  barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * launch_.blocks);
+  present_ = (present_ + end - begin) & 1;
+}
+
+// as many steps in one launch as nothing has to be done between them
+void CudaSolver::do_steps(StepArguments& g, int begin, int end)
+{
+  if (launch_.bricks && !account_ && !device_.loads().follow())
+    return step(g, begin, end);
+  for (int s = begin; s < end; ++s)
+  {
+    device_.loads().update(u_[present_].data(), stream_);
+    g.first = present_;
+    if (account_)
+      account_->before_step(g, s, stream_);
+    step(g, s, s + 1);
+    if (account_)
+      account_->after_step(g, damping_, s, stream_);
+  }
+}
+
+// seconds by which viscous stresses relax after each step: after the last, and when the interval is over
+std::vector<double> CudaSolver::renewals(const StepPlan& plan)
+{
+  std::vector<double> elapsed(plan.steps, 0);
+  for (int step = 0; step < plan.steps && !device_.viscosity().empty(); ++step)
+  {
+    viscous_elapsed_ += plan.dt;
+    if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
+      continue;
+    elapsed[step] = settling_ ? 1e9 : viscous_elapsed_;
+    viscous_elapsed_ = 0;
+  }
+  return elapsed;
+}
+
+// long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
+// enough
+int CudaSolver::steps_a_plan() const { return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, 128.0)); }
+
+double CudaSolver::run(const StepPlan& plan)
+{
+  PlanSlot& slot = slots_[plans_ % plan_slots];
+  StepArguments g = arguments(plan.dt);
+  g.time = plan.time;
+  g.steps = plan.steps;
+  stage(plan, slot, g);
+  require(launch_renewals(g, stream_), "renewing contacts");
+  int done = 0;
+  if (still_moved_)
+  {
+    const int before = present_;
+    do_steps(g, 0, 1);
+    require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
+            "holding still nodes");
+    still_moved_ = false;
+    done = 1;
+  }
+  const std::vector<double> elapsed = renewals(plan);
+  if (done == 1 && elapsed[0] > 0)
+    device_.viscosity().relax(g, u_[present_].data(), elapsed[0], stream_);
+  while (done < plan.steps)
+  {
+    int end = done + 1;
+    while (end < plan.steps && elapsed[end - 1] == 0)
+      ++end;
+    do_steps(g, done, end);
+    if (elapsed[end - 1] > 0)
+      device_.viscosity().relax(g, u_[present_].data(), elapsed[end - 1], stream_);
+    done = end;
+  }
+  require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
+          "copying the frequency bound");
+  require(cudaEventRecord(slot.done, stream_), "recording an event");
+  ++plans_;
+  // the plan before, so that the device is never without work; the first one's own
+  const PlanSlot& before = slots_[(plans_ - (plans_ == 1 ? 1 : 2)) % plan_slots];
+  require(cudaEventSynchronize(before.done), "stepping");
+  float squared = 0;
+  std::memcpy(&squared, before.seen.data(), sizeof squared);
+  return squared;
+}
+
+// internal forces at other displacements; `out` must hold zeros where no voxel is
+void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
+{
+  StepArguments g = arguments(0);
+  g.activation_begin = g.activation_end = activation;
+  g.steps = 1;
+  g.forces_only = true;
+  const int present = present_;
+  g.u[present] = at;
+  g.u[1 - present] = out;
+  step(g, 0, 1);
+  present_ = present;
+}
+
+void CudaSolver::forces(float4* at, Vectors& out)
+{
+  synchronise();
+  const DeviceArray<float> activation(this->activation());
+  const DeviceArray<float4> forces(device_.nodes());
+  require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
+  queue_forces(at, activation.data(), forces.data());
+  synchronise();
+  download(forces, out);
+}
+
+void CudaSolver::forces_at(const Vectors& at, Vectors& out)
+{
+  DeviceArray<float4> u(device_.nodes());
+  upload_displacements(&at, u);
+  forces(u.data(), out);
+}
+
+void CudaSolver::external_forces(Vectors& out)
+{
+  out.assign(model_->nodes.size(), {});
+  if (!loads_)
+    loads_ = std::make_unique<NodalLoads>(*model_, discretisation_);
+  if (loads_->empty())
+    return;
+  Vectors u;
+  displacements(u);
+  std::vector<double> component[3];
+  for (int axis = 0; axis < 3; ++axis)
+    for (const auto& x : u)
+      component[axis].push_back(x[axis]);
+  const double* const pointers[3] = { component[0].data(), component[1].data(), component[2].data() };
+  loads_->update(time(), pointers);
+  for (std::size_t l = 0; l < loads_->nodes().size(); ++l)
+    out[loads_->nodes()[l]] = loads_->forces()[l];
+}
+
+// the account begins with what fibres and viscous stresses do now
+void CudaSolver::open_account()
+{
+  synchronise();
+  StepArguments g = arguments(0);
+  const DeviceArray<float> activation(this->activation());
+  g.activation_begin = g.activation_end = activation.data();
+  g.steps = 1;
+  account_->open(g, u_[present_].data(), stream_);
+  device_.viscosity().reset_account();
+  synchronise();
+}
+
+Work CudaSolver::work()
+{
+  device_.viscosity().relax(arguments(0), u_[present_].data(), 0, stream_);
+  synchronise();
+  Work work = account_->work();
+  work.viscous = device_.viscosity().work();
+  return work;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

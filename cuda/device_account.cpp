@@ -1,0 +1,106 @@
+#include "device_account.hpp"
+
+#include <numeric>
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+double sum(const DeviceArray<double>& values)
+{
+  std::vector<double> host;
+  values.download(host);
+  return std::accumulate(host.begin(), host.end(), 0.0);
+}
+
+}  // namespace
+
+DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
+    : damping_(device.nodes()), constraint_(device.nodes()), beside_(3 * device.nodes()), friction_(device.contacts())
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    before_[axis] = DeviceArray<float>(device.nodes());
+    free_[axis] = DeviceArray<float>(device.nodes());
+  }
+  std::vector<std::uint32_t> loaded;
+  for (const auto node : device.loads().nodes())
+    loaded.push_back(device.device_node()[node]);
+  loaded_ = DeviceArray<std::uint32_t>(loaded);
+  load_ = DeviceArray<double>(loaded.size());
+  std::vector<FibreVoxel> voxels;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    const auto first = static_cast<std::uint32_t>(model.fibre_begin[e]);
+    const auto count = static_cast<std::uint32_t>(model.fibre_begin[e + 1]) - first;
+    if (count == 0)
+      continue;
+    FibreVoxel voxel{ {}, first, count };
+    for (int b = 0; b < 8; ++b)
+      voxel.node[b] = device.device_node()[model.voxel_nodes[e][b]];
+    voxels.push_back(voxel);
+  }
+  fibre_voxels_ = DeviceArray<FibreVoxel>(voxels);
+  fibre_work_ = DeviceArray<double>(voxels.size());
+  memory_ = DeviceArray<float2>(model.fibre_muscle.size());
+}
+
+FibreVoxels DeviceAccount::fibres() const
+{
+  return { fibre_voxels_.data(), static_cast<std::uint32_t>(fibre_voxels_.size()), memory_.data(), fibre_work_.data() };
+}
+
+void DeviceAccount::describe(StepArguments& g) const
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.velocity_before[axis] = before_[axis].data();
+    g.velocity_free[axis] = free_[axis].data();
+  }
+  g.friction_work = friction_.data();
+}
+
+void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t stream)
+{
+  for (const auto* values : { &damping_, &constraint_, &beside_, &friction_, &load_ })
+    if (values->size() > 0)
+      require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");
+  // nodes that are not stepped keep these
+  for (int axis = 0; axis < 3; ++axis)
+    for (const auto* values : { &before_[axis], &free_[axis] })
+      require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");
+  if (memory_.size() > 0)
+    require(cudaMemsetAsync(memory_.data(), 0, memory_.bytes(), stream), "clearing an account");
+  require(launch_fibre_work(g, fibres(), u, 0, true, stream), "looking at fibres");
+}
+
+void DeviceAccount::before_step(const StepArguments& g, int step, cudaStream_t stream)
+{
+  require(launch_fibre_work(g, fibres(), g.u[g.first], step, false, stream), "work of fibres");
+}
+
+void DeviceAccount::after_step(const StepArguments& g, double damping, int step, cudaStream_t stream)
+{
+  const NodeAccount account{
+    static_cast<std::uint32_t>(damping_.size()), damping_.data(), constraint_.data(), beside_.data(),
+    static_cast<std::uint32_t>(loaded_.size()),  loaded_.data(),  load_.data()
+  };
+  require(launch_node_account(g, account, damping, step, stream), "work on nodes");
+}
+
+Work DeviceAccount::work() const
+{
+  Work work;
+  work.muscle = sum(fibre_work_);
+  work.load = sum(load_);
+  work.constraint = sum(constraint_);
+  work.friction = sum(friction_);
+  work.damping = sum(damping_);
+  return work;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "device_memory.hpp"
+#include "device_model.hpp"
+#include "energy_account.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Work on nodes and of fibres since the account was opened, in device memory; summed on the host when asked for.
+class DeviceAccount
+{
+public:
+  DeviceAccount(const Model& model, DeviceModel& device);
+
+  /// Fills in what a step keeps for the account.
+  void describe(StepArguments& g) const;
+  /// Begins anew at displacements u with the activations at the end of g's plan.
+  void open(const StepArguments& g, const float4* u, cudaStream_t stream);
+  /// Around each step: g.first is the displacements' buffer before it, after it.
+  void before_step(const StepArguments& g, int step, cudaStream_t stream);
+  void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
+  /// All work but that of viscous stresses; the stream must be idle.
+  Work work() const;
+
+private:
+  FibreVoxels fibres() const;
+
+  DeviceArray<float> before_[3], free_[3];
+  DeviceArray<double> damping_, constraint_, beside_, friction_, load_, fibre_work_;
+  DeviceArray<std::uint32_t> loaded_;
+  DeviceArray<FibreVoxel> fibre_voxels_;
+  DeviceArray<float2> memory_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis

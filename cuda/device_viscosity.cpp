@@ -1,0 +1,101 @@
+#include "device_viscosity.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discretisation,
+                                 const std::vector<std::uint32_t>& device_node, const std::vector<StripSlot>& slots)
+    : terms_(discretisation.viscous_terms)
+{
+  if (terms_ == 0)
+    return;
+  std::vector<std::uint32_t> index(model.voxels.size() + 1, 0);
+  VoxelProperties voxel;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, voxel);
+    if (!(voxel.viscous_share[0] > 0 || voxel.viscous_share[1] > 0))
+      continue;
+    voxel_.push_back(static_cast<std::uint32_t>(e));
+    index[e + 1] = static_cast<std::uint32_t>(voxel_.size());
+    ViscousVoxel v{};
+    for (int b = 0; b < 8; ++b)
+      v.node[b] = device_node[model.voxel_nodes[e][b]];
+    for (int term = 0; term < 2; ++term)
+    {
+      v.share[term] = static_cast<float>(voxel.viscous_share[term]);
+      v.rate[term] = static_cast<float>(voxel.viscous_rate[term]);
+    }
+    host_.push_back(v);
+  }
+  std::vector<std::uint32_t> words(slots.size());
+  for (std::size_t s = 0; s < slots.size(); ++s)
+    words[s] = index[slots[s].voxel];
+  words_ = DeviceArray<std::uint32_t>(words);
+  relaxed_ = DeviceArray<float>(static_cast<std::size_t>(terms_) * 6 * voxel_.size());
+}
+
+void DeviceViscosity::set_palette(const std::vector<std::uint32_t>& entry_of_voxel)
+{
+  for (std::size_t v = 0; v < host_.size(); ++v)
+    host_[v].palette = entry_of_voxel[voxel_[v]];
+  voxels_ = DeviceArray<ViscousVoxel>(host_);
+  host_ = {};
+  reset();
+}
+
+ViscousVoxels DeviceViscosity::view() const
+{
+  return { voxels_.data(), static_cast<std::uint32_t>(voxels_.size()), terms_, relaxed_.data(), account_.data() };
+}
+
+void DeviceViscosity::describe(StepArguments& g) const
+{
+  g.viscous_words = words_.data();
+  g.relaxed = relaxed_.data();
+  g.viscous_count = static_cast<std::uint32_t>(voxels_.size());
+  g.viscous_terms = terms_;
+}
+
+void DeviceViscosity::reset()
+{
+  if (!empty())
+    require(cudaMemset(relaxed_.data(), 0, relaxed_.bytes()), "clearing viscous stresses");
+  reset_account();
+}
+
+void DeviceViscosity::reset_account()
+{
+  if (account_.size() > 0)
+    require(cudaMemset(account_.data(), 0, account_.bytes()), "clearing an account");
+}
+
+void DeviceViscosity::keep_account()
+{
+  account_ = DeviceArray<double>(2 * voxels_.size());
+  reset_account();
+}
+
+void DeviceViscosity::relax(const StepArguments& g, const float4* u, double elapsed, cudaStream_t stream)
+{
+  if (!empty())
+    require(launch_relaxation(g, view(), u, static_cast<float>(elapsed), stream), "relaxing viscous stresses");
+}
+
+// what H : E has changed by while H relaxed, less what it is now
+double DeviceViscosity::work() const
+{
+  if (account_.size() == 0)
+    return 0;
+  std::vector<double> account;
+  account_.download(account);
+  double sum = 0;
+  for (std::size_t v = 0; v < voxels_.size(); ++v)
+    sum += account[2 * v] - account[2 * v + 1];
+  return sum;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "device_memory.hpp"
+#include "discretisation.hpp"
+#include "voxel_kernels.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Relaxed stresses of the voxels that are viscous, in device memory, and what renews them.
+class DeviceViscosity
+{
+public:
+  /// `slots`: as the strips were built, with the model's voxels.
+  DeviceViscosity(const Model& model, const Discretisation& discretisation,
+                  const std::vector<std::uint32_t>& device_node, const std::vector<StripSlot>& slots);
+
+  bool empty() const { return voxels_.size() == 0; }
+  /// Model voxels that are viscous, ascending.
+  const std::vector<std::uint32_t>& voxels() const { return voxel_; }
+  /// Fills in what a step needs.
+  void describe(StepArguments& g) const;
+  /// The voxels' palette entries, once they are known.
+  void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
+  /// Relaxed stresses to zero, and the account of their work.
+  void reset();
+  void reset_account();
+  /// Stresses relax by `elapsed` [s] towards those at displacements u.
+  void relax(const StepArguments& g, const float4* u, double elapsed, cudaStream_t stream);
+  /// Keeps an account of their work from now on.
+  void keep_account();
+  /// Work that viscous stresses have taken up since the account was opened [J].
+  double work() const;
+
+private:
+  ViscousVoxels view() const;
+
+  int terms_ = 0;
+  std::vector<std::uint32_t> voxel_;
+  std::vector<ViscousVoxel> host_;  // until palette entries are known
+  DeviceArray<ViscousVoxel> voxels_;
+  DeviceArray<std::uint32_t> words_;
+  DeviceArray<float> relaxed_;
+  DeviceArray<double> account_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis
