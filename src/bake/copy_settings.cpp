@@ -135,6 +135,7 @@ void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
   model.mass_scaling.factor = from.factor;
+  model.mass_scaling.time_step = from.time_step;
   switch (from.kind)
   {
     case MassScaling::Kind::none:

@@ -268,6 +268,8 @@ void check_settings(const Model& model)
   if (model.mass_scaling.kind > MassScalingSettings::Kind::selective)
     fail("mass_scaling", "kind " + std::to_string(static_cast<int>(model.mass_scaling.kind)) + " is not known");
   check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);
+  if (!(model.mass_scaling.time_step >= 0) || !std::isfinite(model.mass_scaling.time_step))
+    fail("mass_scaling", "time step is " + std::to_string(model.mass_scaling.time_step) + " s; it must be at least 0");
   for (std::size_t m = 0; m < model.mass_scaling.materials.size(); ++m)
     check_index("mass_scaling (materials)", m, model.mass_scaling.materials[m], model.materials.size());
 }

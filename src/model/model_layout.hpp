@@ -120,6 +120,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.group(in("mass_scaling"));
   archive.value(in("mass_scaling/kind"), model.mass_scaling.kind);
   archive.value(in("mass_scaling/factor"), model.mass_scaling.factor);
+  archive.value(in("mass_scaling/time_step"), model.mass_scaling.time_step);
   archive.array(in("mass_scaling/materials"), model.mass_scaling.materials);
 
   archive.group(in("expressions"));

@@ -34,9 +34,11 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   Mapping mapping(node);
   const Node uniform = mapping.optional("uniform");
   const Node selective = mapping.optional("selective");
-  if (node.is_mapping() && uniform.given() == selective.given())
-    node.fault(std::string(uniform.given() ? "found both" : "found neither") +
-               " of uniform, selective; must be 'none' or have exactly one");
+  const Node time_step = mapping.optional("time_step");
+  if (node.is_mapping() && uniform.given() == (selective.given() || time_step.given()))
+    node.fault(
+        std::string(uniform.given() ? "found uniform and another" : "found none") +
+        " of uniform, selective, time_step; must be 'none', have uniform alone, or selective, time_step or both");
   if (uniform.given())
   {
     scaling.kind = MassScaling::Kind::uniform;
@@ -47,6 +49,11 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   {
     scaling.kind = MassScaling::Kind::selective;
     scaling.materials = selective.references(names.materials);
+  }
+  if (time_step.given())
+  {
+    scaling.kind = MassScaling::Kind::selective;
+    scaling.time_step = time_step.number(Dimension::time, positive, 0);
   }
 }
 

@@ -121,6 +121,10 @@ struct CpuElement
   {
     for (auto s = at.tile->fibre_begin; s < at.tile->fibre_end; ++s)
     {
+      // a muscle at rest without passive stress is not computed
+      const std::int32_t muscle = g.fibres[s].muscle;
+      if (g.activation[muscle] == 0 && g.with_passive[muscle] == 0)
+        continue;
       Batch a[3], along[3], squared;
       const Batch S = fibre_stress(g, g.fibres[s], at.offset, k, a, along, squared);
       for (int i = 0; i < 3; ++i)

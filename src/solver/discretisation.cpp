@@ -218,11 +218,13 @@ void Discretisation::choose_mass_factors()
   for (std::size_t e = 0; e < count; ++e)
   {
     mix(e, v);
-    if (contains_any(*model_, e, settings.materials))
+    if (settings.materials.empty() || contains_any(*model_, e, settings.materials))
       chosen[e] = v.frequency_squared;
     else
       allowed = std::max(allowed, v.frequency_squared);
   }
+  if (settings.time_step > 0)
+    allowed = 4 * model_->time_step_share * model_->time_step_share / (settings.time_step * settings.time_step);
   if (allowed == 0 || *std::max_element(chosen.begin(), chosen.end()) <= allowed)
     return;
   for (const double squared : chosen)

@@ -59,7 +59,7 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
   Equilibrium result;
   result.residual = 1;
   const double begin = time_;
-  double lowest = 0;
+  double lowest = 0, fastest = 0;
   Vectors u, f, u_now, f_now;
   const Vectors rest(model_->nodes.size());
   displacements(u);
@@ -77,7 +77,10 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
     const double window = time_ - opened;
     opened = time_;
     internal_forces(f_now);
-    const double squared = rayleigh_quotient(u, f, u_now, f_now);
+    // the motion tells its frequency while it is fast; later rounding errors drown it
+    const double speed = change / window;
+    fastest = std::max(fastest, speed);
+    const double squared = speed > 0.05 * fastest ? rayleigh_quotient(u, f, u_now, f_now) : 0;
     u.swap(u_now);
     f.swap(f_now);
     // critical for the slowest motion seen, and not more: what is faster must not slow it down
@@ -88,7 +91,7 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
     }
     // it creeps by lowest / damping of what is left a second; at the begin nothing has got going yet
     if (lowest > 0)
-      result.residual = change / window * damping_ / lowest / moved;
+      result.residual = speed * damping_ / lowest / moved;
     else if (change == 0)
       result.residual = 0;
     const bool under_way = lowest > 0 && (time_ - begin) * std::sqrt(lowest) < 4;

@@ -237,6 +237,7 @@ TEST(EveryKey, output_time_and_accuracy)
 
   ASSERT_EQ(scene.profiles.size(), 3U);
   EXPECT_EQ(scene.profiles[0].mass_scaling.kind, MassScaling::Kind::selective);
+  EXPECT_NEAR(scene.profiles[0].mass_scaling.time_step, 20e-6, 1e-15);
   EXPECT_EQ(scene.profiles[0].mass_scaling.materials, std::vector<std::string>{ "fat" });
   EXPECT_EQ(scene.accuracy.name, "fine");
   expect_vector(scene.accuracy.voxel, { 0.001, 0.002, 0.003 });

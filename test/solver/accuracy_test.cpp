@@ -110,6 +110,25 @@ TEST_P(Accuracy, a_stiff_layer_among_soft_ones_steps_longer_by_the_assembled_bou
   EXPECT_LT(assembled->monitor().kinetic, 2 * early) << "and is stable";
 }
 
+// a stiff voxel among soft ones gets mass until the wanted step is allowed; its weight stays
+TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
+{
+  Model model = cantilever(2, 0.45);
+  model.materials.push_back(model.materials[0]);
+  for (double& parameter : model.materials[1].parameters)
+    parameter *= 9;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    model.mixture_material[e] = model.voxels[e][0] < 2 ? 1 : 0;
+  const auto plain = solver(model);
+  model.mass_scaling.kind = MassScalingSettings::Kind::selective;
+  model.mass_scaling.time_step = 2.5 * plain->time_step();
+  const auto scaled = solver(model);
+  EXPECT_NEAR(scaled->time_step() / model.mass_scaling.time_step, 1, 1e-6);
+  EXPECT_TRUE(plain->settle({}, 1e-3, 30).reached);
+  EXPECT_TRUE(scaled->settle({}, 1e-3, 30).reached);
+  EXPECT_NEAR(tip(*scaled, model) / tip(*plain, model), 1, 5e-3);
+}
+
 TEST_P(Accuracy, muscles_answer_with_their_rise_and_fall_times)
 {
   test::BlockSettings settings;

@@ -56,7 +56,8 @@ struct MassScalingSettings
   };
   Kind kind = Kind::none;
   double factor = 1;
-  std::vector<std::int32_t> materials;
+  std::vector<std::int32_t> materials;  ///< selective: voxels with one of these; empty: all
+  double time_step = 0;                 ///< selective: that is wanted [s]; 0: until they no longer rule it
 };
 
 /// What gives stiffness to the modes that one-point quadrature leaves without.

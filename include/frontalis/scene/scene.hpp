@@ -40,11 +40,12 @@ struct MassScaling
   {
     none,
     uniform,   ///< every density times `factor`
-    selective  ///< voxels with one of `materials` get mass until they no longer rule the time step
+    selective  ///< voxels with one of `materials` (none given: all) get mass until they allow `time_step`
   };
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::string> materials;
+  double time_step = 0;  ///< that is taken then [s]; 0: until those materials no longer rule it
 };
 
 /// One named setting of accuracy against time.

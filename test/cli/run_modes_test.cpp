@@ -1,0 +1,119 @@
+#include "cli/bar_model.hpp"
+#include "cli/program.hpp"
+
+#include "frontalis/model/model_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace frontalis
+{
+namespace
+{
+
+// number behind a key of run.json
+double number_in(const std::string& json, const std::string& key)
+{
+  const std::size_t place = json.find("\"" + key + "\": ");
+  return place == std::string::npos ? NAN : std::stod(json.substr(place + key.size() + 4));
+}
+
+class RunModes : public testing::Test
+{
+protected:
+  void SetUp() override { write_model(bar_model(), model); }
+
+  std::string file(const std::string& name, const std::string& text) const
+  {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+
+  TemporaryFolder folder;
+  std::string model = folder / "bar.vtkhdf";
+  std::string frames = folder / "frames";
+};
+
+TEST_F(RunModes, a_table_of_activations_is_a_ramp_where_it_says_so)
+{
+  const std::string table = file("pull.csv", "time,pull\n0.05,0.5\n0.2,0.5\n");
+  const std::string other = folder / "other";
+  ASSERT_EQ(run_program({ "run", model, "--activations", table, "--seconds", "0.1", "--frames", frames }).code, 0);
+  ASSERT_EQ(
+      run_program({ "run", model, "--activate", "pull=0.5", "--ramp", "0.05", "--seconds", "0.1", "--frames", other })
+          .code,
+      0);
+  EXPECT_EQ(text_of(frames + "/landmarks.csv"), text_of(other + "/landmarks.csv"));
+}
+
+TEST_F(RunModes, wrong_tables_are_told_with_their_line)
+{
+  const std::pair<const char*, const char*> tables[] = {
+    { "time,push\n0,1\n", ":1: no muscle is called 'push'; the muscles are pull" },
+    { "time,pull\n0,1\n0,1\n", ":3: time is 0; times must ascend from 0" },
+    { "time,pull\n0.1,nan\n", ":2: found 'nan'; must be a number" },
+    { "time,pull\n0.1,1.5\n", ":2: activation of 'pull' is 1.5; must be from 0 to 1" },
+    { "time,pull\n0.1\n", ":2: found 1 fields; the header has 2" },
+    { "seconds,pull\n", ":1: the first column must be called time" },
+    { "", ": cannot be read, or is empty" },
+  };
+  for (const auto& [text, expected] : tables)
+  {
+    const std::string table = file("table.csv", text);
+    const ProgramResult result = run_program({ "run", model, "--activations", table, "--seconds", "0.01" });
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.errors.find(table + expected), std::string::npos) << result.errors;
+  }
+}
+
+TEST_F(RunModes, the_ledger_of_a_shortening_bar_closes)
+{
+  const ProgramResult result =
+      run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "0.2", "--ledger", "--frames", frames });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.output.find("energy balance"), std::string::npos);
+  const std::string json = text_of(frames + "/run.json");
+  const double work = number_in(json, "ledger_muscle_J");
+  EXPECT_GT(work, 0);
+  EXPECT_LT(std::abs(number_in(json, "ledger_imbalance_J")), 0.01 * work);
+}
+
+TEST_F(RunModes, equilibrium_is_where_a_damped_motion_ends)
+{
+  const std::string other = folder / "other";
+  ASSERT_EQ(run_program({ "run", model, "--activate", "pull=0.5", "--to-equilibrium", "--frames", frames }).code, 0);
+  ASSERT_EQ(run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "2", "--frames", other }).code, 0);
+  const double settled =
+      number_in(text_of(frames + "/run.json").substr(text_of(frames + "/run.json").find("tip")), "up_mm");
+  const double damped =
+      number_in(text_of(other + "/run.json").substr(text_of(other + "/run.json").find("tip")), "up_mm");
+  EXPECT_NEAR(settled, damped, 0.01 * std::abs(damped));
+}
+
+TEST_F(RunModes, equilibrium_that_is_not_reached_is_an_error)
+{
+  const ProgramResult result =
+      run_program({ "run", model, "--activate", "pull=0.5", "--to-equilibrium", "--seconds", "0.001" });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.errors.find("no equilibrium after"), std::string::npos) << result.errors;
+}
+
+// the numbers of the system that this package rebuilds, on coarse voxels
+TEST(PublishedForehead, contracts_to_three_quarters_activation_and_its_energies_balance)
+{
+  const TemporaryFolder folder;
+  const std::string frames = folder / "frames";
+  const ProgramResult result =
+      run_program({ "run", FRONTALIS_SOURCE_DIRECTORY "/config/published.yaml", "--accuracy", "draft", "--voxel", "5",
+                    "--expression", "contract", "--ramp", "0.2", "--seconds", "0.25", "--ledger", "--frames", frames });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const std::string json = text_of(frames + "/run.json");
+  EXPECT_GT(number_in(json.substr(json.find("brow_left")), "up_mm"), 5);
+  EXPECT_GT(number_in(json, "worst_jacobian"), 0.1);
+  EXPECT_LT(std::abs(number_in(json, "ledger_imbalance_J")), 0.01 * number_in(json, "ledger_muscle_J"));
+}
+
+}  // namespace
+}  // namespace frontalis
