@@ -104,17 +104,15 @@ void settle(Solver& solver, const Model& model, const RunOptions& options, const
   const auto begin = std::chrono::steady_clock::now();
   look(solver, model, 0, summary);
   summary.rest = summary.end;
-  const double slice = options.seconds / 200 / model.time_scaling;
   Progress progress;
-  // in slices, so that Ctrl-C is heard; the damping found is lost between them, so they are long
-  Equilibrium found;
-  double time = 0;
-  for (int part = 0; part < 200 && !found.reached && !interrupt_requested(); ++part)
-  {
-    found = solver.settle(target, options.tolerance, slice);
-    time += found.seconds * model.time_scaling;
-    progress.update("relaxing", part / 200.0);
-  }
+  const double seconds = options.seconds / model.time_scaling;
+  const Equilibrium found = solver.settle(target, options.tolerance, seconds,
+                                          [&](const Equilibrium& now)
+                                          {
+                                            progress.update("relaxing", now.seconds / seconds);
+                                            return !interrupt_requested();
+                                          });
+  const double time = found.seconds * model.time_scaling;
   look(solver, model, time, summary);
   summary.frames = 1;
   summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -33,7 +33,8 @@ double SteppingSolver::distance(const Vectors& a, const Vectors& b) const
   return std::sqrt(sum);
 }
 
-Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, double seconds)
+Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, double seconds,
+                                   const std::function<bool(const Equilibrium&)>& go_on)
 {
   if (!(tolerance > 0) || !std::isfinite(tolerance))
     throw Error("equilibrium within " + std::to_string(tolerance) + ": allowed are tolerances above 0");
@@ -97,6 +98,9 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
     const bool under_way = lowest > 0 && (time_ - begin) * std::sqrt(lowest) < 4;
     good = result.residual <= tolerance && !under_way ? good + 1 : 0;
     result.reached = good == 4;
+    result.seconds = time_ - begin;
+    if (go_on && !go_on(result))
+      break;
   }
   result.seconds = time_ - begin;
   return result;

@@ -33,7 +33,8 @@ public:
 
   void reset() override;
   void advance(double seconds, const Controls& target) override;
-  Equilibrium settle(const Controls& target, double tolerance, double seconds) override;
+  Equilibrium settle(const Controls& target, double tolerance, double seconds,
+                     const std::function<bool(const Equilibrium&)>& go_on) override;
   double time() const override { return time_; }
   double time_step() const override { return safe_time_step(); }
   const Controls& controls() const override { return controls_; }

@@ -3,6 +3,7 @@
 #include "frontalis/model/model.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -100,7 +101,7 @@ struct Profile
   std::int64_t steps = 0;
 };
 
-/// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). Not thread-safe: one caller.
+/// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). For one caller at a time.
 class Solver
 {
 public:
@@ -115,10 +116,11 @@ public:
   virtual void advance(double seconds, const Controls& target) = 0;
 
   /// Dynamic relaxation: controls go to `target` at once, and the motion is damped critically for the lowest frequency
-  /// that it still shows (Underwood 1983). Ends where the motion that is left, estimated from its speed, damping and
-  /// lowest frequency, stays within `tolerance` of the displacement (norms weighted by mass), or after `seconds` of
-  /// simulated time. Viscous stresses are fully relaxed meanwhile. Throws Error as advance().
-  virtual Equilibrium settle(const Controls& target, double tolerance, double seconds) = 0;
+  /// that it shows (Underwood 1983) until what is left of it, estimated from its speed, damping and lowest frequency,
+  /// stays within `tolerance` of the displacement (norms weighted by mass), or `seconds` are simulated. Viscous stresses
+  /// are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws Error as advance().
+  virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
+                             const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 
   virtual double time() const = 0;       ///< [s] since reset
   virtual double time_step() const = 0;  ///< [s] the largest step that would be taken now
