@@ -1,6 +1,7 @@
 #include "frontalis/bake/bake.hpp"
 
 #include "bind_points.hpp"
+#include "fibres.hpp"
 #include "frontalis/error.hpp"
 #include "length_text.hpp"
 #include "local_frame.hpp"
@@ -130,7 +131,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: take smaller "
                   "ones, or a smaller fill_min");
-    frame = assemble_voxels(scene, grid, voxels, model);
+    frame = assemble_voxels(grid, voxels, model);
   }
   copy_settings(scene, frame, model);
   build_nodes(model);
@@ -138,6 +139,9 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   stages.begin("constraints");
   restrict_nodes(scene, surfaces, frame, model, stages);
   remove_islands(model, stages);
+
+  stages.begin("fibres");
+  add_fibres(scene, find_fibres(scene, volumes, surfaces, stages), frame, model, stages);
 
   stages.begin("layers");
   add_thin_layers(volumes, frame, model, stages);

@@ -1,6 +1,5 @@
 #include "local_frame.hpp"
 
-#include "frontalis/error.hpp"
 #include "voxel_index.hpp"
 
 #include <algorithm>
@@ -32,7 +31,7 @@ int longest_rows(const Grid& grid, const Voxels& voxels)
 
 }  // namespace
 
-LocalFrame assemble_voxels(const Scene& scene, const Grid& grid, const Voxels& voxels, Model& model)
+LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
 {
   LocalFrame frame;
   frame.first = longest_rows(grid, voxels);
@@ -70,15 +69,6 @@ LocalFrame assemble_voxels(const Scene& scene, const Grid& grid, const Voxels& v
               return p[2] != q[2] ? p[2] < q[2] : (p[1] != q[1] ? p[1] < q[1] : p[0] < q[0]);
             });
 
-  std::vector<std::array<float, 3>> directions;
-  for (const SceneMuscle& muscle : scene.muscles)
-  {
-    const Vector3 unit = frame.turn(normalised(muscle.fibre));
-    if (!(norm(unit) > 0.5) || !is_finite(unit))
-      throw Error(scene.file + ":" + std::to_string(muscle.line) + ": muscle '" + muscle.name +
-                  "': the fibre direction has no length");
-    directions.push_back({ static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2]) });
-  }
   model.mixture_begin.push_back(0);
   model.fibre_begin.push_back(0);
   for (const std::uint32_t e : order)
@@ -95,7 +85,7 @@ LocalFrame assemble_voxels(const Scene& scene, const Grid& grid, const Voxels& v
     {
       model.fibre_muscle.push_back(voxels.muscle[m]);
       model.fibre_weight.push_back(voxels.weight[m]);
-      model.fibre_direction.push_back(directions[static_cast<std::size_t>(voxels.muscle[m])]);
+      model.fibre_direction.push_back({ 0, 0, 0 });
     }
     model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
   }

@@ -28,8 +28,8 @@ struct LocalFrame
 };
 
 /// Orders the voxels, chooses the axis with the longest rows on average as local x and fills the model's grid, mixtures
-/// and muscle weights (with the muscles' fixed directions).
-LocalFrame assemble_voxels(const Scene& scene, const Grid& grid, const Voxels& voxels, Model& model);
+/// and muscle weights (directions come from add_fibres).
+LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model);
 
 /// Gives every voxel that a thin layer's surface passes through its share of the layer: thickness times the surface's
 /// area in the voxel, of the tissue there. Area in voxels that were dropped goes to the voxel below.

@@ -56,6 +56,13 @@ public:
       add(text);
     return *this;
   }
+  Line& add(const std::vector<Vector3>& vectors)
+  {
+    add(static_cast<double>(vectors.size()));
+    for (const Vector3& vector : vectors)
+      add(vector);
+    return *this;
+  }
   Line& add(const std::map<std::string, double>& numbers)
   {
     add(static_cast<double>(numbers.size()));
@@ -85,6 +92,24 @@ void add_surface(const Surface& surface, std::string& content)
   line.add(shape.part).add(shape.dimensions);
 }
 
+void add_muscle(const SceneMuscle& muscle, std::string& content)
+{
+  Line line(content, "muscle");
+  line.add(muscle.name).add(muscle.volume).add(muscle.fibre);
+  line.add(muscle.stress_reference).add(muscle.passive).add(muscle.tension_length);
+  line.add(muscle.rise_time).add(muscle.fall_time);
+  for (const MuscleEnd& end : { muscle.origin, muscle.insertion })
+    line.add(end.surface).add(end.points);
+  line.add(muscle.ring ? (*muscle.ring ? "ring" : "open") : "");
+  if (muscle.net)
+  {
+    line.add(muscle.net->size[0]).add(muscle.net->size[1]).add(muscle.net->size[2]).add(muscle.net->ring);
+    line.add(muscle.net->points).add(static_cast<double>(muscle.net->weights.size()));
+    for (const double weight : muscle.net->weights)
+      line.add(weight);
+  }
+}
+
 void add_anatomy(const Scene& scene, std::string& content)
 {
   for (const Surface& surface : scene.surfaces)
@@ -112,15 +137,7 @@ void add_anatomy(const Scene& scene, std::string& content)
         .add(layer.material)
         .add(layer.thickness);
   for (const SceneMuscle& muscle : scene.muscles)
-    Line(content, "muscle")
-        .add(muscle.name)
-        .add(muscle.volume)
-        .add(muscle.fibre)
-        .add(muscle.stress_reference)
-        .add(muscle.passive)
-        .add(muscle.tension_length)
-        .add(muscle.rise_time)
-        .add(muscle.fall_time);
+    add_muscle(muscle, content);
 }
 
 void add_restrictions(const Scene& scene, std::string& content)

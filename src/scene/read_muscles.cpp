@@ -4,6 +4,91 @@
 
 namespace frontalis
 {
+namespace
+{
+
+/// A surface's name, a point, or a list of points.
+MuscleEnd read_end(const Node& node, const SceneNames& names)
+{
+  MuscleEnd end;
+  if (!node.is_list())
+  {
+    end.surface = node.reference(names.surfaces);
+    return end;
+  }
+  const auto entries = node.entries();
+  if (!entries.empty() && entries.front().is_list())
+  {
+    for (const Node& entry : entries)
+      end.points.push_back(entry.vector(Dimension::length, any_number, {}));
+  }
+  else
+    end.points.push_back(node.vector(Dimension::length, any_number, {}));
+  return end;
+}
+
+ControlNet read_net(const Node& node)
+{
+  ControlNet net;
+  Mapping mapping(node);
+  const Node size =
+      mapping.required("size", "three whole numbers: control points along, across and through the muscle");
+  const auto sizes = size.entries();
+  if (size.is_list() && sizes.size() != 3)
+    size.fault("found a list of " + std::to_string(sizes.size()) +
+               "; must be three whole numbers: control points along, across and through the muscle");
+  for (std::size_t a = 0; sizes.size() == 3 && a < 3; ++a)
+    net.size[a] = sizes[a].integer(2, 100, 2);
+  net.ring = mapping.optional("ring").boolean(false);
+  if (net.ring && sizes.size() == 3 && net.size[0] < 4)
+    sizes[0].fault(sizes[0].found() + "; a ring has at least 4 control points along the fibres");
+  const auto count = static_cast<std::size_t>(net.size[0]) * static_cast<std::size_t>(net.size[1]) *
+                     static_cast<std::size_t>(net.size[2]);
+  const Node points = mapping.required("points", "a list of control points [x, y, z]");
+  for (const Node& point : points.entries())
+    net.points.push_back(point.vector(Dimension::length, any_number, {}));
+  if (points.is_list() && count > 0 && net.points.size() != count)
+    points.fault("found " + std::to_string(net.points.size()) + " points; size asks for " + std::to_string(count));
+  const Node weights = mapping.optional("weights");
+  for (const Node& weight : weights.entries())
+    net.weights.push_back(weight.number(Dimension::number, positive, 1));
+  if (weights.is_list() && count > 0 && net.weights.size() != count)
+    weights.fault("found " + std::to_string(net.weights.size()) + " weights; size asks for " + std::to_string(count));
+  return net;
+}
+
+/// What says where the fibres run: at most one way of doing so.
+void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
+{
+  const Node fibre = mapping.optional("fibre"), net = mapping.optional("net"), ring = mapping.optional("ring"),
+             origin = mapping.optional("origin"), insertion = mapping.optional("insertion");
+  if (fibre.given())
+    muscle.fibre = fibre.direction({ 0, 0, 1 });
+  if (net.given())
+    muscle.net = read_net(net);
+  if (ring.given())
+    muscle.ring = ring.boolean(false);
+  if (origin.given())
+    muscle.origin = read_end(origin, names);
+  if (insertion.given())
+    muscle.insertion = read_end(insertion, names);
+  if (origin.given() != insertion.given())
+    (origin.given() ? origin : insertion)
+        .fault(std::string("stands without '") + (origin.given() ? "insertion" : "origin") +
+               "'; give both ends or neither");
+  std::string before;
+  for (const auto& [node, name] : { std::make_pair(fibre, "fibre"), std::make_pair(net, "net"),
+                                    std::make_pair(origin, "origin"), std::make_pair(ring, "ring") })
+  {
+    if (!node.given())
+      continue;
+    if (!before.empty())
+      node.fault("stands beside '" + before + "'; fibres are given in one way only");
+    before = name;
+  }
+}
+
+}  // namespace
 
 void read_muscles(const Node& node, Scene& scene, SceneNames& names)
 {
@@ -20,7 +105,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
       if (!volume.given() && entry.is_mapping() && names.volumes.complete && !names.volumes.has(name))
         volume.fault("missing, and no volume is called '" + name + "'; the volumes are " +
                      list_with_suggestion(name, names.volumes.names));
-      muscle.fibre = mapping.required("fibre", "a direction [x, y, z]").direction(muscle.fibre);
+      read_fibres(mapping, names, muscle);
       muscle.stress_reference =
           mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
       muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, 0);

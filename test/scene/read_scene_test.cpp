@@ -161,10 +161,33 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_NEAR(scene.layers[1].thickness, 1e-3, 1e-15);
 }
 
+TEST(EveryKey, ways_to_give_fibres)
+{
+  const Scene& scene = every_key();
+  ASSERT_EQ(scene.muscles.size(), 5U);
+  EXPECT_FALSE(scene.muscles[0].origin.given() || scene.muscles[0].ring || scene.muscles[0].net);
+  const SceneMuscle& ended = scene.muscles[2];
+  expect_vector(ended.fibre, { 0, 0, 0 });
+  EXPECT_EQ(ended.origin.surface, "sphere");
+  EXPECT_TRUE(ended.origin.points.empty());
+  ASSERT_EQ(ended.insertion.points.size(), 2U);
+  expect_vector(ended.insertion.points[0], { 0.01, 0.02, 0.03 });
+  expect_vector(ended.insertion.points[1], { 0.04, 0.05, 0.006 });
+  EXPECT_EQ(scene.muscles[3].ring, false);
+  ASSERT_TRUE(scene.muscles[4].net);
+  const ControlNet& net = *scene.muscles[4].net;
+  EXPECT_EQ(net.size, (std::array<int, 3>{ 4, 2, 2 }));
+  EXPECT_TRUE(net.ring);
+  ASSERT_EQ(net.points.size(), 16U);
+  expect_vector(net.points[15], { 0, -0.02, 0.01 });
+  ASSERT_EQ(net.weights.size(), 16U);
+  EXPECT_EQ(net.weights[15], 0.5);
+}
+
 TEST(EveryKey, muscles_and_expressions)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.muscles.size(), 2U);
+  ASSERT_EQ(scene.muscles.size(), 5U);
   EXPECT_EQ(scene.muscles[0].volume, "fibres");
   expect_vector(scene.muscles[0].fibre, { 0, 0.6, 0.8 });
   EXPECT_EQ(scene.muscles[0].stress_reference, 5e6);

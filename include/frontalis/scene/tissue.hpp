@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,17 +42,40 @@ struct Layer
   int line = 0;
 };
 
+/// Where the fibres of a muscle start or end: the part of the muscle nearest to a surface, or to points and the lines
+/// between them.
+struct MuscleEnd
+{
+  std::string surface;          ///< empty: points
+  std::vector<Vector3> points;  ///< [m]
+
+  bool given() const { return !surface.empty() || !points.empty(); }
+};
+
+/// Control net of a NURBS volume (cubic where it has points enough, uniform knots) whose fibres run along its first
+/// direction.
+struct ControlNet
+{
+  std::array<int, 3> size{ { 0, 0, 0 } };  ///< points along, across and through the muscle, each at least 2
+  bool ring = false;                       ///< closed along the fibres
+  std::vector<Vector3> points;             ///< [m]; those through the muscle follow each other, then those across
+  std::vector<double> weights;             ///< as many, above 0; empty: all 1
+};
+
 struct SceneMuscle
 {
   std::string name;
   std::string volume;
-  Vector3 fibre{ 0, 0, 1 };         ///< direction in scene coordinates; normalised
+  Vector3 fibre{ 0, 0, 0 };         ///< direction in scene coordinates, length 1; 0: by `net`, or found from the shape
   double stress_reference = 0.3e6;  ///< sigma_max [Pa]
   bool passive = false;             ///< passive fibre stress of Blemker et al. 2005 too
   double rise_time = 0;             ///< time constant with which activation follows what is asked for, growing [s]
   double fall_time = 0;             ///< the same, falling [s]
   bool tension_length = true;       ///< active tension-length curve; without it f = 1
   int line = 0;
+  MuscleEnd origin{}, insertion{};  ///< both or none
+  std::optional<bool> ring{};       ///< whether the fibres run around a hole; not given: found out
+  std::optional<ControlNet> net{};
 };
 
 }  // namespace frontalis
