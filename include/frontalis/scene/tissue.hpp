@@ -69,10 +69,10 @@ struct SceneMuscle
   Vector3 fibre{ 0, 0, 0 };         ///< direction in scene coordinates, length 1; 0: by `net`, or found from the shape
   double stress_reference = 0.3e6;  ///< sigma_max [Pa]
   bool passive = false;             ///< passive fibre stress of Blemker et al. 2005 too
-  double rise_time = 0;             ///< time constant with which activation follows what is asked for, growing [s]
-  double fall_time = 0;             ///< the same, falling [s]
   bool tension_length = true;       ///< active tension-length curve; without it f = 1
   int line = 0;
+  double rise_time = 0;             ///< time constant with which activation follows what is asked for, growing [s]
+  double fall_time = 0;             ///< the same, falling [s]
   MuscleEnd origin{}, insertion{};  ///< both or none
   std::optional<bool> ring{};       ///< whether the fibres run around a hole; not given: found out
   std::optional<ControlNet> net{};
