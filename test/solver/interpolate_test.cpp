@@ -1,4 +1,4 @@
-#include "../../src/solver/restricted_nodes.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
 
