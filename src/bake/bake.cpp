@@ -141,7 +141,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   remove_islands(model, stages);
 
   stages.begin("fibres");
-  add_fibres(scene, find_fibres(scene, volumes, surfaces, stages), frame, model, stages);
+  const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, stages);
+  add_fibres(scene, fibres, frame, model, stages);
 
   stages.begin("layers");
   add_thin_layers(volumes, frame, model, stages);
@@ -155,6 +156,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   {
     stages.begin("muscle volumes");
     report->muscles = measure_muscles(volumes, model, stages);
+    for (std::size_t m = 0; m < fibres.size(); ++m)
+      report->muscles[m].nurbs = fibres[m].fitted_size;
   }
   stages.finish();
   return model;

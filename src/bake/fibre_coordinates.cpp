@@ -81,6 +81,7 @@ Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, co
   if (!shared.empty())
     throw Error("its origin and insertion are at the same place; they must be apart");
   std::vector<std::pair<std::int32_t, double>> fixed;
+  fixed.reserve(origin.size() + insertion.size());
   for (const std::int32_t n : origin)
     fixed.emplace_back(n, 0.0);
   for (const std::int32_t n : insertion)
@@ -149,6 +150,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
 
   // across: next to constant along the fibres
   std::vector<Eigen::Vector3d> fibres;
+  fibres.reserve(trusted.size());
   for (const ShownDirection& fibre : trusted)
     fibres.push_back(fibre.direction);
   const GridField field(grid, fibres, 1e-4);

@@ -103,6 +103,7 @@ std::function<double(const Vector3&)> distance_from(const MuscleEnd& end, const 
 struct Fitted
 {
   NurbsVolume volume;
+  double size;  // [m3]
   std::string finding;
 };
 
@@ -134,8 +135,9 @@ Fitted fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh,
     throw Error("its fibres cannot be found: its shape is " +
                 text("only %.2f times as long as wide", coordinates.distinctness) + remedy);
 
-  Fitted fitted{ fit_nurbs(grid, coordinates, guide.ring.has_value()), {} };
+  Fitted fitted{ fit_nurbs(grid, coordinates, guide.ring.has_value()), 0, {} };
   const NurbsFit fit = measure_fit(fitted.volume, grid, TriangleTree(mesh));
+  fitted.size = fit.volume;
   fitted.finding =
       "muscle '" + muscle.name + "': " + (guide.ring ? "fibres in rings, on average " : "fibres on average ") +
       text("%.1f mm long, %.1f mm across; NURBS volume ", 1e3 * coordinates.length, 1e3 * coordinates.width) +
@@ -172,6 +174,7 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
                                             [m](const auto& e) { return e.muscle == static_cast<int>(m); });
             Fitted fitted = fit_muscle(muscle, mesh_of(*entry, volumes), surfaces);
             fibres[m].volume = std::move(fitted.volume);
+            fibres[m].fitted_size = fitted.size;
             findings[m] = std::move(fitted.finding);
           }
         }

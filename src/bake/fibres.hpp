@@ -16,6 +16,7 @@ struct MuscleFibres
 {
   Vector3 direction{ 0, 0, 0 };  ///< length 1; used without a volume
   std::optional<NurbsVolume> volume;
+  double fitted_size = 0;  ///< of a volume that was fitted [m3]
 
   Vector3 at(const Vector3& p) const { return volume ? volume->fibre(p) : direction; }
 };

@@ -84,6 +84,7 @@ std::vector<ShownDirection> shown_directions(const MuscleGrid& grid, double reac
 std::vector<Eigen::Matrix3d> slow_along(const std::vector<ShownDirection>& shown)
 {
   std::vector<Eigen::Matrix3d> tensors;
+  tensors.reserve(shown.size());
   for (const ShownDirection& s : shown)
     tensors.emplace_back(Eigen::Matrix3d::Identity() - std::min(0.98, s.sure) * s.direction * s.direction.transpose());
   return tensors;
@@ -93,6 +94,7 @@ std::vector<ShownDirection> blend(const MuscleGrid& grid, double reach, const st
                                   const std::vector<Eigen::Vector3d>& gradients)
 {
   std::vector<SymmetricTensor> tensors;
+  tensors.reserve(shown.size());
   for (std::size_t c = 0; c < shown.size(); ++c)
   {
     const Eigen::Vector3d g = gradients[c].stableNormalized();
@@ -103,6 +105,7 @@ std::vector<ShownDirection> blend(const MuscleGrid& grid, double reach, const st
   }
   spread(grid, reach, tensors);
   std::vector<ShownDirection> blended;
+  blended.reserve(tensors.size());
   for (const SymmetricTensor& tensor : tensors)
     blended.push_back({ Solver(matrix_of(tensor)).eigenvectors().col(2), 0.95 });
   return blended;

@@ -56,8 +56,8 @@ struct Surface
 };
 
 /// A set of points: inside the collection `closed_by` taken together (if given), inside at least one of `inside`
-/// (if given), outside each of `outside` and of `without`, at a depth in [depth_min, depth_max] below the surface `within` (if given)
-/// with none of the surfaces `outside` on the straight way there, and inside `crop`.
+/// (if given), outside each of `outside` and of `without`, at a depth in [depth_min, depth_max] below the surface
+/// `within` (if given) with none of the surfaces `outside` on the straight way there, and inside `crop`.
 struct Volume
 {
   std::string name;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/solver/energy_ledger.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -40,7 +41,7 @@ struct Controls
   std::vector<RigidTransform> bone;  ///< one a bone: motion from its rest pose, in the local frame
 };
 
-/// Published surface in the local frame [m], single precision.
+/// Published surface in the local frame [m].
 struct SkinState
 {
   std::vector<std::array<float, 3>> vertices;
@@ -58,30 +59,6 @@ struct Monitor
   std::int32_t worst_voxel = -1;
   double critical_time_step = 0;  ///< [s] now, element bound
   bool finite = true;
-};
-
-/// Where the energy is and where it came from [J], since reset or since displacements or velocities were set.
-struct EnergyLedger
-{
-  double initial = 0;  ///< kinetic, internal, hourglass at the begin
-  double kinetic = 0;  ///< 1/2 m v(n - 1/2) . v(n + 1/2): what central differences conserve
-  double internal = 0;
-  double hourglass = 0;
-  double viscous = 0;     ///< taken up by viscous stresses
-  double damping = 0;     ///< lost
-  double friction = 0;    ///< lost
-  double muscle = 0;      ///< work done by fibres, active and passive
-  double load = 0;        ///< work done by surface loads
-  double gravity = 0;     ///< work done
-  double constraint = 0;  ///< work done by bones, prescribed motion and sliding surfaces, without friction
-  double largest = 0;     ///< largest of the above, in magnitude, that was seen so far
-
-  /// What the terms leave unexplained; 0 for exact arithmetic and small steps.
-  double imbalance() const
-  {
-    return kinetic + internal + hourglass + viscous + damping + friction - muscle - load - gravity - constraint -
-           initial;
-  }
 };
 
 /// How a search for equilibrium ended.
@@ -117,8 +94,8 @@ public:
 
   /// Dynamic relaxation: controls go to `target` at once, and the motion is damped critically for the lowest frequency
   /// that it shows (Underwood 1983) until what is left of it, estimated from its speed, damping and lowest frequency,
-  /// stays within `tolerance` of the displacement (norms weighted by mass), or `seconds` are simulated. Viscous stresses
-  /// are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws Error as advance().
+  /// stays within `tolerance` of the displacement (norms weighted by mass), or `seconds` are simulated. Viscous
+  /// stresses are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws Error as advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 
