@@ -1,12 +1,14 @@
 #include "motion.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <map>
 
 namespace frontalis
 {
@@ -35,26 +37,24 @@ double number(const std::string& text, const std::string& place)
   return value;
 }
 
-// the model's index of each column but the first
-std::vector<std::size_t> columns_of(const std::vector<std::string>& header, const Model& model,
-                                    const std::string& place)
+// activations of a row's columns by name, the first being time
+std::vector<float> row_activation(const Model& model, const std::vector<std::string>& header,
+                                  const std::vector<double>& row, const std::string& place)
 {
-  if (header.empty() || header[0] != "time")
-    throw Error(place + "the first column must be called time");
-  std::vector<std::size_t> columns;
-  for (auto name = header.begin() + 1; name != header.end(); ++name)
+  std::map<std::string, double> named;
+  for (std::size_t c = 1; c < header.size(); ++c)
+    if (!named.emplace(header[c], row[c]).second)
+      throw Error(place + "'" + header[c] + "' is there twice");
+  std::vector<float> activation(model.muscles.size(), 0);
+  try
   {
-    std::string known;
-    std::size_t index = 0;
-    while (index < model.muscles.size() && model.muscles[index].name != *name)
-      known += (known.empty() ? "" : ", ") + model.muscles[index++].name;
-    if (index == model.muscles.size())
-      throw Error(place + "no muscle is called '" + *name + "'; the muscles are " + (known.empty() ? "none" : known));
-    if (std::find(columns.begin(), columns.end(), index) != columns.end())
-      throw Error(place + "'" + *name + "' is there twice");
-    columns.push_back(index);
+    set_activations(model, named, activation);
   }
-  return columns;
+  catch (const Error& error)
+  {
+    throw Error(place + error.what());
+  }
+  return activation;
 }
 
 }  // namespace
@@ -84,29 +84,28 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
   std::string line;
   if (!std::getline(file, line))
     throw Error(path + ": cannot be read, or is empty");
-  const auto columns = columns_of(fields_of(line), model, path + ":1: ");
-  ActivationCurve curve{ { 0 }, { std::vector<float>(model.muscles.size(), 0) } };
+  const auto header = fields_of(line);
+  if (header[0] != "time")
+    throw Error(path + ":1: the first column must be called time");
+  ActivationCurve curve{ { 0 },
+                         { row_activation(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
   for (int row = 2; std::getline(file, line); ++row)
   {
     if (line.find_first_not_of(" \t\r") == std::string::npos)
       continue;
     const std::string place = path + ":" + std::to_string(row) + ": ";
     const auto fields = fields_of(line);
-    if (fields.size() != columns.size() + 1)
+    if (fields.size() != header.size())
       throw Error(place + "found " + std::to_string(fields.size()) + " fields; the header has " +
-                  std::to_string(columns.size() + 1));
-    const double time = number(fields[0], place);
+                  std::to_string(header.size()));
+    std::vector<double> numbers;
+    numbers.reserve(fields.size());
+    for (const std::string& field : fields)
+      numbers.push_back(number(field, place));
+    const double time = numbers[0];
     if (!(time >= 0) || (row > 2 && time <= curve.time.back()))
       throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
-    std::vector<float> activation(model.muscles.size(), 0);
-    for (std::size_t c = 0; c < columns.size(); ++c)
-    {
-      const double value = number(fields[c + 1], place);
-      if (!(value >= 0 && value <= 1))
-        throw Error(place + "activation of '" + model.muscles[columns[c]].name + "' is " + fields[c + 1] +
-                    "; must be from 0 to 1");
-      activation[columns[c]] = static_cast<float>(value);
-    }
+    const std::vector<float> activation = row_activation(model, header, numbers, place);
     if (time == 0)
       curve.activation[0] = activation;
     else

@@ -121,7 +121,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   frame.wall_time = std::chrono::duration<double>(now - start).count();
   frame.time_step = solver->time_step();
   frame.steps = solver->profile().steps;
-  frame.activation = solver->controls().activation;
+  frame.activation = solver->activation();
   ++frame.sequence;
 }
 

@@ -90,11 +90,9 @@ template <class Real>
 void CpuSolver<Real>::open_account()
 {
   account_->open();
-  for (auto& memory : fibre_memory_)
-    std::fill(std::begin(memory.squared), std::end(memory.squared), 0.0f);
   Arguments g = arguments(0, activation().data());
+  g.muscle_work = nullptr;
   team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
-  std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
 }
 
 template <class Real>

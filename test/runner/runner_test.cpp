@@ -72,6 +72,17 @@ TEST(Runner, LockStepAdvancesExactlyAndComesBack)
   EXPECT_NEAR(tip(runner.step(0.2)), 6e-3, 2e-5);
 }
 
+TEST(Runner, PublishesWhatMusclesDoAndNotWhatIsAsked)
+{
+  Model slow = *bar();
+  slow.muscles[0].rise_time = 0.1;
+  Runner runner(std::make_shared<const Model>(slow), settings(Pace::lock_step), {});
+  runner.set_activation({ { slow.muscles[0].name, 1.0 } });
+  const float answered = runner.step(0.02).activation[0];
+  EXPECT_GT(answered, 0);
+  EXPECT_LT(answered, 0.2f);
+}
+
 TEST(Runner, BonesMoveInTheFaceFrame)
 {
   Runner runner(bar(), settings(Pace::lock_step), {});
