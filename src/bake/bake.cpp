@@ -2,6 +2,7 @@
 
 #include "bind_points.hpp"
 #include "fibres.hpp"
+#include "fibre_families.hpp"
 #include "frontalis/error.hpp"
 #include "length_text.hpp"
 #include "local_frame.hpp"
@@ -146,6 +147,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 
   stages.begin("layers");
   add_thin_layers(volumes, frame, model, stages);
+
+  turn_families(scene, surfaces, frame, model, stages);
 
   stages.begin("skin");
   bind_surfaces(scene, surfaces, frame, model, stages);

@@ -69,17 +69,6 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   return bound;
 }
 
-const PreparedSurface& find(const std::vector<std::unique_ptr<PreparedSurface>>& surfaces, const std::string& name,
-                            const std::string& place)
-{
-  for (const auto& surface : surfaces)
-  {
-    if (surface->name() == name)
-      return *surface;
-  }
-  throw Error(place + ": there is no surface '" + name + "'");
-}
-
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
 {
   const TriangleTree tree(model.skin);
@@ -170,7 +159,7 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
 
   if (!scene.skin.surface.empty())
   {
-    const PreparedSurface& skin = find(surfaces, scene.skin.surface, scene.file + ": skin");
+    const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
     BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, stages);
     if (bound.mesh.triangles.empty())
       throw Error(scene.file + ": skin: no triangle of surface '" + scene.skin.surface +
@@ -202,7 +191,8 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
     else
     {
       const std::string place = scene.file + ":" + std::to_string(load.line) + ": load '" + load.name + "'";
-      BoundMesh bound = bind_mesh(find(surfaces, load.surface, place).mesh(), load.crop, frame, binder, stages);
+      BoundMesh bound =
+          bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, stages);
       if (bound.mesh.triangles.empty())
         throw Error(place + ": no triangle of surface '" + load.surface + "' lies in its crop and within " +
                     length_text(extrapolation, scene.unit) + " of the tissue");

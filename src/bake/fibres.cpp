@@ -68,11 +68,7 @@ std::function<double(const Vector3&)> distance_from(const MuscleEnd& end, const 
   std::function<double(const Vector3&)> distance;
   if (!end.surface.empty())
   {
-    const auto found = std::find_if(surfaces.begin(), surfaces.end(),
-                                    [&end](const auto& surface) { return surface->name() == end.surface; });
-    if (found == surfaces.end())
-      throw Error(std::string(name) + ": there is no surface '" + end.surface + "'");
-    const PreparedSurface* surface = found->get();
+    const PreparedSurface* surface = &named_surface(surfaces, end.surface, name);
     // below the surface is at it
     distance = [surface](const Vector3& p)
     { return std::max(0.0, surface->signed_distance(p, surface->tree().closest(p))); };

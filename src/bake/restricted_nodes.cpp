@@ -66,12 +66,7 @@ public:
 
   const PreparedSurface& surface(const std::string& name, const std::string& place) const
   {
-    for (const auto& candidate : surfaces_)
-    {
-      if (candidate->name() == name)
-        return *candidate;
-    }
-    throw Error(place + ": there is no surface '" + name + "'");
+    return named_surface(surfaces_, name, place);
   }
 
   [[noreturn]] void none(const std::string& place, double within) const
@@ -197,11 +192,15 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
   };
   std::vector<Kind> kind(nodes, Kind::free);
   std::vector<std::int32_t> of(nodes, -1);  // bone or surface
+  std::vector<std::int32_t> held_by(nodes, -1);
   std::vector<double> distance(nodes, 0);
   Caught caught;
-
   for (const SceneConstraint& constraint : scene.constraints)
+    model.constraints.push_back(constraint.name);
+
+  for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
+    const SceneConstraint& constraint = scene.constraints[c];
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
@@ -216,6 +215,7 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
           continue;
         kind[n] = Kind::rigid;
         of[n] = bone;
+        held_by[n] = static_cast<std::int32_t>(c);
       }
     }
     if (count == 0)
@@ -239,8 +239,9 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
     }
   }
 
-  for (const SceneConstraint& constraint : scene.constraints)
+  for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
+    const SceneConstraint& constraint = scene.constraints[c];
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
@@ -268,6 +269,7 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
           continue;
         kind[n] = Kind::sliding;
         of[n] = index;
+        held_by[n] = static_cast<std::int32_t>(c);
         distance[n] = caught[n];
       }
     }
@@ -278,9 +280,9 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
   for (std::size_t n = 0; n < nodes; ++n)
   {
     if (kind[n] == Kind::rigid)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), of[n] });
+      model.rigid.push_back({ static_cast<std::int32_t>(n), of[n], held_by[n] });
     else if (kind[n] == Kind::sliding)
-      model.sliding.push_back({ static_cast<std::int32_t>(n), of[n], distance[n] });
+      model.sliding.push_back({ static_cast<std::int32_t>(n), of[n], distance[n], held_by[n] });
   }
 }
 

@@ -103,4 +103,15 @@ double PreparedSurface::signed_distance(const Vector3& p, const ClosestPoint& cl
   return dot(p - closest.point, pseudonormal(closest)) < 0 ? -closest.distance : closest.distance;
 }
 
+const PreparedSurface& named_surface(const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
+                                     const std::string& name, const std::string& place)
+{
+  for (const auto& surface : surfaces)
+  {
+    if (surface->name() == name)
+      return *surface;
+  }
+  throw Error(place + ": there is no surface '" + name + "'");
+}
+
 }  // namespace frontalis

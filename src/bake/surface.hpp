@@ -52,6 +52,10 @@ private:
 /// file and what is wrong.
 std::vector<std::unique_ptr<PreparedSurface>> prepare_surfaces(const Scene& scene, Stages& stages);
 
+/// The surface of that name; throws Error beginning with `place` where there is none.
+const PreparedSurface& named_surface(const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
+                                     const std::string& name, const std::string& place);
+
 /// One mesh of several surfaces that close a volume together, each turned so that the winding numbers of all are as
 /// near to whole numbers as they can be.
 TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);

@@ -93,13 +93,11 @@ void Volumes::add_layers(const Scene& scene, double sample_spacing)
     const std::string name = scene.file + ":" + std::to_string(layer.line) + ": layer '" + layer.name + "'";
     const int volume = index_of(scene.volumes, layer.volume);
     const int material = index_of(scene.materials, layer.material);
-    const PreparedSurface* below = surface(layer.surface);
+    const PreparedSurface* below = &named_surface(*surfaces_, layer.surface, name);
     if (volume < 0)
       throw Error(name + ": there is no volume '" + layer.volume + "'");
     if (material < 0)
       throw Error(name + ": there is no material '" + layer.material + "'");
-    if (below == nullptr)
-      throw Error(name + ": there is no surface '" + layer.surface + "'");
     if (!(layer.thickness > 0))
       throw Error(name + ": thickness is " + std::to_string(layer.thickness) + " m; it must be above 0");
     auto& [bottom, band_begin] =
@@ -120,16 +118,6 @@ void Volumes::add_layers(const Scene& scene, double sample_spacing)
   }
 }
 
-const PreparedSurface* Volumes::surface(const std::string& name) const
-{
-  for (const auto& candidate : *surfaces_)
-  {
-    if (candidate->name() == name)
-      return candidate.get();
-  }
-  return nullptr;
-}
-
 int Volumes::solid(const std::vector<std::string>& names)
 {
   const auto known = std::find(solid_names_.begin(), solid_names_.end(), names);
@@ -139,9 +127,7 @@ int Volumes::solid(const std::vector<std::string>& names)
   std::string together;
   for (const std::string& name : names)
   {
-    parts.push_back(surface(name));
-    if (parts.back() == nullptr)
-      throw Error("there is no surface '" + name + "'");
+    parts.push_back(&named_surface(*surfaces_, name, "volume"));
     together += (together.empty() ? "" : " + ") + name;
   }
   const PreparedSurface* body = parts.front();
@@ -157,9 +143,7 @@ int Volumes::solid(const std::vector<std::string>& names)
 
 int Volumes::depth(const std::string& name)
 {
-  const PreparedSurface* below = surface(name);
-  if (below == nullptr)
-    throw Error("there is no surface '" + name + "'");
+  const PreparedSurface* below = &named_surface(*surfaces_, name, "volume");
   for (std::size_t d = 0; d < depths_.size(); ++d)
   {
     if (depths_[d].surface == below)

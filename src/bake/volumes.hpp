@@ -74,7 +74,6 @@ public:
 private:
   int solid(const std::vector<std::string>& names);
   int depth(const std::string& name);
-  const PreparedSurface* surface(const std::string& name) const;
   void add_layers(const Scene& scene, double sample_spacing);
 
   const Scene* scene_;

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -36,6 +37,18 @@ void check_output(const BakeOptions& options)
     throw Error(options.output + ": is the scene itself; must be another file");
 }
 
+// how many nodes each constraint holds, with the number by which the file calls it
+void print_constraints(const Model& model)
+{
+  for (std::size_t c = 0; c < model.constraints.size(); ++c)
+  {
+    const auto holds = [c](const auto& node) { return node.constraint == static_cast<std::int32_t>(c); };
+    std::printf("held by  %zu %s: rigid %td, sliding %td\n", c, model.constraints[c].c_str(),
+                std::count_if(model.rigid.begin(), model.rigid.end(), holds),
+                std::count_if(model.sliding.begin(), model.sliding.end(), holds));
+  }
+}
+
 void bake_to_file(const BakeOptions& options)
 {
   check_output(options);
@@ -56,6 +69,7 @@ void bake_to_file(const BakeOptions& options)
   {
     for (const std::string& finding : summary.findings)
       std::printf("finding  %s\n", finding.c_str());
+    print_constraints(model);
     for (const std::string& muscle : summary.muscles)
       std::printf("muscle   %s\n", muscle.c_str());
   }

@@ -204,12 +204,14 @@ void check_constraints(const Model& model)
   {
     check_index("rigid (node)", n, model.rigid[n].node, model.nodes.size());
     check_index("rigid (bone)", n, model.rigid[n].bone, model.bones.size(), -1);
+    check_index("rigid (constraint)", n, model.rigid[n].constraint, model.constraints.size(), -1);
   }
   for (std::size_t n = 0; n < model.sliding.size(); ++n)
   {
     check_index("sliding (node)", n, model.sliding[n].node, model.nodes.size());
     check_index("sliding (surface)", n, model.sliding[n].surface, model.constraint_surfaces.size());
     check_finite("sliding (distance)", n, model.sliding[n].distance);
+    check_index("sliding (constraint)", n, model.sliding[n].constraint, model.constraints.size(), -1);
   }
   for (std::size_t n = 0; n < model.prescribed.size(); ++n)
   {

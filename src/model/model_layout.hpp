@@ -57,6 +57,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.array(in("fibre_direction"), model.fibre_direction);
 
   archive.strings(in("bones"), model.bones);
+  archive.strings(in("constraints"), model.constraints);
   archive.group(in("constraint_surfaces"));
   archive.column(in("constraint_surfaces/name"), model.constraint_surfaces, &ConstraintSurface::name);
   archive.column(in("constraint_surfaces/bone"), model.constraint_surfaces, &ConstraintSurface::bone);
@@ -70,10 +71,12 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.group(in("rigid"));
   archive.column(in("rigid/node"), model.rigid, &RigidNode::node);
   archive.column(in("rigid/bone"), model.rigid, &RigidNode::bone);
+  archive.column(in("rigid/constraint"), model.rigid, &RigidNode::constraint);
   archive.group(in("sliding"));
   archive.column(in("sliding/node"), model.sliding, &SlidingNode::node);
   archive.column(in("sliding/surface"), model.sliding, &SlidingNode::surface);
   archive.column(in("sliding/distance"), model.sliding, &SlidingNode::distance);
+  archive.column(in("sliding/constraint"), model.sliding, &SlidingNode::constraint);
 
   archive.value(in("gravity"), model.gravity);
   archive.group(in("loads"));

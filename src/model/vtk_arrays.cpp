@@ -85,19 +85,28 @@ void write_cell_data(Hdf5File& file, const Model& model)
 
 void write_point_data(Hdf5File& file, const Model& model)
 {
-  // 0 free, 1 rigid, 2 sliding, 3 prescribed
+  // 0 free, 1 rigid, 2 sliding, 3 prescribed; by what: constraints, then loads; -1: nothing
   std::vector<std::uint8_t> constraint(model.nodes.size(), 0);
+  std::vector<std::int32_t> held_by(model.nodes.size(), -1);
   std::vector<float> distance(model.nodes.size(), 0.f);
   for (const SlidingNode& node : model.sliding)
   {
     constraint[static_cast<std::size_t>(node.node)] = 2;
     distance[static_cast<std::size_t>(node.node)] = static_cast<float>(node.distance);
+    held_by[static_cast<std::size_t>(node.node)] = node.constraint;
   }
   for (const PrescribedNode& node : model.prescribed)
+  {
     constraint[static_cast<std::size_t>(node.node)] = 3;
+    held_by[static_cast<std::size_t>(node.node)] = static_cast<std::int32_t>(model.constraints.size()) + node.load;
+  }
   for (const RigidNode& node : model.rigid)
+  {
     constraint[static_cast<std::size_t>(node.node)] = 1;
+    held_by[static_cast<std::size_t>(node.node)] = node.constraint;
+  }
   file.write("/VTKHDF/PointData/constraint", constraint.data(), constraint.size(), 1);
+  file.write("/VTKHDF/PointData/held_by", held_by.data(), held_by.size(), 1);
   file.write("/VTKHDF/PointData/sliding_distance", distance.data(), distance.size(), 1);
 }
 

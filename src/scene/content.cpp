@@ -125,7 +125,7 @@ void add_anatomy(const Scene& scene, std::string& content)
   {
     Line line(content, "material");
     line.add(material.name).add(material.law).add(material.density).add(material.parameters);
-    line.add(material.families[0]).add(material.families[1]);
+    line.add(material.families[0]).add(material.families[1]).add(material.along);
     for (const auto& term : material.viscosity)
       line.add(term.share).add(term.time);
   }

@@ -40,7 +40,7 @@ void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& t
 }
 
 // the law's parameters, in SI units; a law more is a branch more
-void read_parameters(const std::string& law, Mapping& mapping, SceneMaterial& material)
+void read_parameters(const std::string& law, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   const auto read = [&](const std::string& key, const std::string& what, Dimension dimension, const Bound& bound)
   { material.parameters[key] = mapping.required(key, what).number(dimension, bound, 0); };
@@ -81,6 +81,14 @@ void read_parameters(const std::string& law, Mapping& mapping, SceneMaterial& ma
     number("k2", "a number greater than 0", positive);
     number("dispersion", "a number from 0 to 1/3", Bound{ 0, 1.0 / 3, true, true });
     read_families(mapping.required("families", "two directions"), material.families);
+    if (const Node along = mapping.optional("along"); along.given())
+    {
+      material.along = along.reference(names.surfaces);
+      const auto& [a, b] = material.families;
+      const double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+      if (cosine * cosine > 0.9999)
+        along.fault("the two families have the same direction; along a surface they must span a plane");
+    }
   }
   else if (law == "guccione")
   {
@@ -112,7 +120,7 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names)
         mapping.ignore_rest();
       else
       {
-        read_parameters(material.law, mapping, material);
+        read_parameters(material.law, mapping, names, material);
         read_viscosity(mapping.optional("viscosity"), material.viscosity);
         material.density =
             mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);

@@ -86,3 +86,62 @@ TEST(Materials, FibreFamiliesTurnIntoLocalAxes)
       EXPECT_NEAR(x, skin.families[family][row], 1e-12);
     }
 }
+
+TEST(Materials, FibreFamiliesFollowASurface)
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { sphere_surface("ball", { 0, 0, 0 }, 8e-3, 0.5e-3) };
+  SceneMaterial skin = of_law("holzapfel", { { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 } });
+  skin.families = { { { 0, 0.8, 0.6 }, { 0, 0.8, -0.6 } } };
+  skin.along = "ball";
+  scene.materials = { skin };
+  scene.volumes = { volume_inside("tissue", { "ball" }, "stuff", true) };
+  scene.skin.surface = "ball";
+  const Model model = bake(scene);
+  ASSERT_EQ(model.material_directions.size(), model.voxels.size());
+  double most_normal = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    Vector3 p{}, out{};
+    for (std::size_t a = 0; a < 3; ++a)
+      p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
+    out = transformed(model.to_scene, p);
+    const double radius = std::sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    // deep inside the mesh's facets rule
+    if (radius < 4e-3)
+      continue;
+    const auto& d = model.material_directions[e];
+    double between = 0;
+    for (std::size_t family = 0; family < 2; ++family)
+    {
+      double along = 0;
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+          along += model.to_scene.rotation[3 * row + column] * double(d[3 * family + column]) * out[row] / radius;
+      most_normal = std::max(most_normal, std::abs(along));
+    }
+    for (std::size_t a = 0; a < 3; ++a)
+      between += double(d[a]) * double(d[3 + a]);
+    EXPECT_NEAR(between, 0.28, 1e-5);
+  }
+  // the normals of a mesh with edges of 0.5 mm are less off
+  EXPECT_LT(most_normal, 0.07);
+  // on the side that the plane faces they are as given
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    Vector3 p{};
+    for (std::size_t a = 0; a < 3; ++a)
+      p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
+    p = transformed(model.to_scene, p);
+    if (p[0] < 6e-3 || std::abs(p[1]) > 0.6e-3 || std::abs(p[2]) > 0.6e-3)
+      continue;
+    const auto& d = model.material_directions[e];
+    for (std::size_t row = 0; row < 3; ++row)
+    {
+      double x = 0;
+      for (std::size_t column = 0; column < 3; ++column)
+        x += model.to_scene.rotation[3 * row + column] * double(d[column]);
+      EXPECT_NEAR(std::abs(x), std::abs(skin.families[0][row]), 0.15);
+    }
+  }
+}

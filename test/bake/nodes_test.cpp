@@ -45,6 +45,7 @@ TEST(RestrictedNodes, RigidFloorSlidingRoof)
   {
     EXPECT_NEAR(transformed(model.to_scene, node_position(model, node.node))[2], 0, 1e-12);
     EXPECT_EQ(node.bone, 0);
+    EXPECT_EQ(model.constraints.at(static_cast<std::size_t>(node.constraint)), "hold");
   }
   // the roof's lower face is 0.3 mm above the tissue, its outward normal points down to it
   ASSERT_EQ(model.sliding.size(), 21u * 13u);
@@ -52,6 +53,7 @@ TEST(RestrictedNodes, RigidFloorSlidingRoof)
   {
     EXPECT_NEAR(transformed(model.to_scene, node_position(model, node.node))[2], 8e-3, 1e-12);
     EXPECT_NEAR(node.distance, 0.3e-3, 1e-12);
+    EXPECT_EQ(model.constraints.at(static_cast<std::size_t>(node.constraint)), "glide");
   }
   ASSERT_EQ(model.constraint_surfaces.size(), 1u);
   EXPECT_EQ(model.constraint_surfaces[0].name, "roof");

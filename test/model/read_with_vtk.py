@@ -52,6 +52,9 @@ def main(program):
     constraint = [int(points.GetArray('constraint').GetValue(node)) for node in range(nodes)]
     assert constraint.count(RIGID) == rigid and constraint.count(SLIDING) == sliding
     assert constraint.count(FREE) == nodes - rigid - sliding
+    held_by = [int(points.GetArray('held_by').GetValue(node)) for node in range(nodes)]
+    assert set(held_by) == set(range(-1, 6)), set(held_by)
+    assert all((by < 0) == (kind == FREE) for by, kind in zip(held_by, constraint))
     print(voxels, 'voxels and', nodes, 'nodes read back')
 
 

@@ -117,6 +117,7 @@ TEST(EveryLaw, has_its_parameters)
             (Parameters{ { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 }, { "poisson", 0.49 } }));
   expect_vector(scene.materials[3].families[0], { 0.8, 0.6, 0 });
   expect_vector(scene.materials[3].families[1], { 0.8, -0.6, 0 });
+  EXPECT_EQ(scene.materials[3].along, "bar");
   EXPECT_EQ(scene.materials[4].parameters,
             (Parameters{ { "c", 2e3 }, { "bf", 8 }, { "bt", 2 }, { "bfs", 4 }, { "poisson", 0.49 } }));
   expect_vector(scene.materials[4].families[0], { 0, 0, 1 });

@@ -48,6 +48,7 @@ struct Model
 
   // constraints
   std::vector<std::string> bones;
+  std::vector<std::string> constraints;  ///< names, in the scene's order
   std::vector<ConstraintSurface> constraint_surfaces;
   std::vector<RigidNode> rigid;
   std::vector<SlidingNode> sliding;

@@ -20,14 +20,16 @@ struct ConstraintSurface
 struct RigidNode
 {
   std::int32_t node = 0;
-  std::int32_t bone = -1;  ///< index into Model::bones; -1: still
+  std::int32_t bone = -1;        ///< index into Model::bones; -1: still
+  std::int32_t constraint = -1;  ///< index into Model::constraints: why it is held; -1: not said
 };
 
 struct SlidingNode
 {
   std::int32_t node = 0;
-  std::int32_t surface = 0;  ///< index into Model::constraint_surfaces
-  double distance = 0;       ///< kept from the surface [m], positive on the side of its outward normals
+  std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
+  double distance = 0;           ///< kept from the surface [m], positive on the side of its outward normals
+  std::int32_t constraint = -1;  ///< index into Model::constraints: why it is held; -1: not said
 };
 
 struct PrescribedNode

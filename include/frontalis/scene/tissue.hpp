@@ -28,6 +28,9 @@ struct SceneMaterial
   };
   std::vector<ViscousTerm> viscosity;  ///< up to two terms
   std::array<Vector3, 2> families{};   ///< holzapfel: the two fibre families; guccione: the fibre; scene axes, length 1
+  /// holzapfel: the families are turned with this surface, by the shortest rotation from their common normal to its own
+  /// at the closest point; empty: they are the same everywhere.
+  std::string along;
   int line = 0;
 };
 
