@@ -1,4 +1,4 @@
-#include "cuda_solver.hpp"
+#include "cuda_mode.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,21 +7,6 @@ namespace frontalis
 {
 namespace cuda
 {
-
-// The mode is left as long as it comes: products are taken of it divided by `largest`.
-struct CudaSolver::Mode
-{
-  DeviceArray<float4> mode, moved, plus, minus;
-  DeviceArray<double2> seen;
-  double largest, length;
-
-  explicit Mode(std::size_t nodes)
-      : mode(nodes), moved(nodes), plus(nodes), minus(nodes), seen(product_blocks), largest(0), length(0)
-  {
-    for (const auto* forces : { &plus, &minus })
-      require(cudaMemset(forces->data(), 0, forces->bytes()), "clearing forces");
-  }
-};
 
 void CudaSolver::ModeDeleter::operator()(Mode* mode) const { delete mode; }
 

@@ -38,6 +38,8 @@ public:
 
 protected:
   double run(const StepPlan& plan) override;
+  void save_fields(std::unique_ptr<Fields>& to) const override;
+  void restore_fields(const Fields& from) override;
   int steps_a_plan() const override;
   void rest() override;
   void velocities(Vectors& out) const override;
@@ -61,6 +63,7 @@ private:
   void upload_displacements(const Vectors* in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
+  struct Kept;
   struct Mode;
   struct ModeDeleter
   {

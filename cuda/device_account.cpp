@@ -18,9 +18,23 @@ double sum(const DeviceArray<double>& values)
 
 }  // namespace
 
-DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
-    : damping_(device.nodes()), constraint_(device.nodes()), beside_(3 * device.nodes()), friction_(device.contacts())
+void DeviceBook::assign(const DeviceBook& from, cudaStream_t stream)
 {
+  damping.assign(from.damping, stream);
+  constraint.assign(from.constraint, stream);
+  beside.assign(from.beside, stream);
+  friction.assign(from.friction, stream);
+  load.assign(from.load, stream);
+  fibre_work.assign(from.fibre_work, stream);
+  memory.assign(from.memory, stream);
+}
+
+DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
+{
+  book_.damping = DeviceArray<double>(device.nodes());
+  book_.constraint = DeviceArray<double>(device.nodes());
+  book_.beside = DeviceArray<double>(3 * device.nodes());
+  book_.friction = DeviceArray<double>(device.contacts());
   for (int axis = 0; axis < 3; ++axis)
   {
     before_[axis] = DeviceArray<float>(device.nodes());
@@ -30,7 +44,7 @@ DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
   for (const auto node : device.loads().nodes())
     loaded.push_back(device.device_node()[node]);
   loaded_ = DeviceArray<std::uint32_t>(loaded);
-  load_ = DeviceArray<double>(loaded.size());
+  book_.load = DeviceArray<double>(loaded.size());
   std::vector<FibreVoxel> voxels;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
@@ -44,13 +58,14 @@ DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
     voxels.push_back(voxel);
   }
   fibre_voxels_ = DeviceArray<FibreVoxel>(voxels);
-  fibre_work_ = DeviceArray<double>(voxels.size());
-  memory_ = DeviceArray<float2>(model.fibre_muscle.size());
+  book_.fibre_work = DeviceArray<double>(voxels.size());
+  book_.memory = DeviceArray<float2>(model.fibre_muscle.size());
 }
 
 FibreVoxels DeviceAccount::fibres() const
 {
-  return { fibre_voxels_.data(), static_cast<std::uint32_t>(fibre_voxels_.size()), memory_.data(), fibre_work_.data() };
+  return { fibre_voxels_.data(), static_cast<std::uint32_t>(fibre_voxels_.size()), book_.memory.data(),
+           book_.fibre_work.data() };
 }
 
 void DeviceAccount::describe(StepArguments& g) const
@@ -60,20 +75,20 @@ void DeviceAccount::describe(StepArguments& g) const
     g.velocity_before[axis] = before_[axis].data();
     g.velocity_free[axis] = free_[axis].data();
   }
-  g.friction_work = friction_.data();
+  g.friction_work = book_.friction.data();
 }
 
 void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t stream)
 {
-  for (const auto* values : { &damping_, &constraint_, &beside_, &friction_, &load_ })
+  for (const auto* values : { &book_.damping, &book_.constraint, &book_.beside, &book_.friction, &book_.load })
     if (values->size() > 0)
       require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");
   // nodes that are not stepped keep these
   for (int axis = 0; axis < 3; ++axis)
     for (const auto* values : { &before_[axis], &free_[axis] })
       require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");
-  if (memory_.size() > 0)
-    require(cudaMemsetAsync(memory_.data(), 0, memory_.bytes(), stream), "clearing an account");
+  if (book_.memory.size() > 0)
+    require(cudaMemsetAsync(book_.memory.data(), 0, book_.memory.bytes(), stream), "clearing an account");
   require(launch_fibre_work(g, fibres(), u, 0, true, stream), "looking at fibres");
 }
 
@@ -84,21 +99,24 @@ void DeviceAccount::before_step(const StepArguments& g, int step, cudaStream_t s
 
 void DeviceAccount::after_step(const StepArguments& g, double damping, int step, cudaStream_t stream)
 {
-  const NodeAccount account{
-    static_cast<std::uint32_t>(damping_.size()), damping_.data(), constraint_.data(), beside_.data(),
-    static_cast<std::uint32_t>(loaded_.size()),  loaded_.data(),  load_.data()
-  };
+  const NodeAccount account{ static_cast<std::uint32_t>(book_.damping.size()),
+                             book_.damping.data(),
+                             book_.constraint.data(),
+                             book_.beside.data(),
+                             static_cast<std::uint32_t>(loaded_.size()),
+                             loaded_.data(),
+                             book_.load.data() };
   require(launch_node_account(g, account, damping, step, stream), "work on nodes");
 }
 
 Work DeviceAccount::work() const
 {
   Work work;
-  work.muscle = sum(fibre_work_);
-  work.load = sum(load_);
-  work.constraint = sum(constraint_);
-  work.friction = sum(friction_);
-  work.damping = sum(damping_);
+  work.muscle = sum(book_.fibre_work);
+  work.load = sum(book_.load);
+  work.constraint = sum(book_.constraint);
+  work.friction = sum(book_.friction);
+  work.damping = sum(book_.damping);
   return work;
 }
 

@@ -9,7 +9,16 @@ namespace frontalis
 namespace cuda
 {
 
-/// Work on nodes and of fibres since the account was opened, in device memory; summed on the host when asked for.
+/// Work on nodes and of fibres since the account was opened.
+struct DeviceBook
+{
+  DeviceArray<double> damping, constraint, beside, friction, load, fibre_work;
+  DeviceArray<float2> memory;
+
+  void assign(const DeviceBook& from, cudaStream_t stream);
+};
+
+/// Keeps such a book in device memory; summed on the host when asked for.
 class DeviceAccount
 {
 public:
@@ -22,17 +31,18 @@ public:
   /// Around each step: g.first is the displacements' buffer before it, after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
+  const DeviceBook& book() const { return book_; }
+  void restore(const DeviceBook& book, cudaStream_t stream) { book_.assign(book, stream); }
   /// All work but that of viscous stresses; the stream must be idle.
   Work work() const;
 
 private:
   FibreVoxels fibres() const;
 
+  DeviceBook book_;
   DeviceArray<float> before_[3], free_[3];
-  DeviceArray<double> damping_, constraint_, beside_, friction_, load_, fibre_work_;
   DeviceArray<std::uint32_t> loaded_;
   DeviceArray<FibreVoxel> fibre_voxels_;
-  DeviceArray<float2> memory_;
 };
 
 }  // namespace cuda

@@ -60,6 +60,15 @@ public:
       require(cudaMemcpy(host.data(), data_, bytes(), cudaMemcpyDeviceToHost), "copying from the device");
   }
 
+  /// Takes size and values of another, in the stream's order and on the device.
+  void assign(const DeviceArray& from, cudaStream_t stream)
+  {
+    if (size_ != from.size_)
+      *this = DeviceArray(from.size_);
+    if (size_ > 0)
+      require(cudaMemcpyAsync(data_, from.data_, bytes(), cudaMemcpyDeviceToDevice, stream), "copying on the device");
+  }
+
 private:
   void swap(DeviceArray& other)
   {

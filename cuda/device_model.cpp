@@ -252,6 +252,18 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
   reset_contacts();
 }
 
+void DeviceModel::save(Contacts& to, cudaStream_t stream) const
+{
+  to.sliding.assign(sliding_, stream);
+  to.planes.assign(contact_planes_, stream);
+}
+
+void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
+{
+  sliding_.assign(from.sliding, stream);
+  contact_planes_.assign(from.planes, stream);
+}
+
 void DeviceModel::reset_contacts()
 {
   const std::vector<TangentPlane> unknown(contact_planes_.size(), TangentPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, -1 } });

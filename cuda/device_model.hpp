@@ -33,6 +33,14 @@ public:
   StepArguments arguments() const;
   /// Contacts as they are at rest.
   void reset_contacts();
+  /// What sliding nodes know of their surfaces.
+  struct Contacts
+  {
+    DeviceArray<SlidingContact> sliding;
+    DeviceArray<TangentPlane> planes;
+  };
+  void save(Contacts& to, cudaStream_t stream) const;
+  void restore(const Contacts& from, cudaStream_t stream);
 
   const CutChoice& cut() const { return cut_; }
   Effects effects() const { return effects_; }
@@ -44,6 +52,7 @@ public:
   std::size_t contacts() const { return sliding_.size(); }
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
+  const DeviceViscosity& viscosity() const { return viscosity_; }
 
 private:
   DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut, VoxelStrips&& strips);

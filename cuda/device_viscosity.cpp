@@ -72,6 +72,18 @@ void DeviceViscosity::reset_account()
     require(cudaMemset(account_.data(), 0, account_.bytes()), "clearing an account");
 }
 
+void DeviceViscosity::save(Kept& to, cudaStream_t stream) const
+{
+  to.relaxed.assign(relaxed_, stream);
+  to.account.assign(account_, stream);
+}
+
+void DeviceViscosity::restore(const Kept& from, cudaStream_t stream)
+{
+  relaxed_.assign(from.relaxed, stream);
+  account_.assign(from.account, stream);
+}
+
 void DeviceViscosity::keep_account()
 {
   account_ = DeviceArray<double>(2 * voxels_.size());

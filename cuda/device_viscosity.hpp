@@ -36,6 +36,15 @@ public:
   /// Work that viscous stresses have taken up since the account was opened [J].
   double work() const;
 
+  /// Relaxed stresses and their account, into `to` or back from it.
+  struct Kept
+  {
+    DeviceArray<float> relaxed;
+    DeviceArray<double> account;
+  };
+  void save(Kept& to, cudaStream_t stream) const;
+  void restore(const Kept& from, cudaStream_t stream);
+
 private:
   ViscousVoxels view() const;
 

@@ -83,6 +83,49 @@ void CpuSolver<Real>::rest()
 }
 
 template <class Real>
+struct CpuSolver<Real>::Kept : SteppingSolver::Fields
+{
+  Components u, v, rounding;
+  typename RestrictedNodes<Real>::Contacts contacts;
+  std::vector<float> relaxed;
+  double viscous_elapsed = 0;
+  typename EnergyAccount<Real>::Book book;
+  std::vector<FibreMemory> fibre_memory;
+};
+
+template <class Real>
+void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
+{
+  if (!to)
+    to = std::make_unique<Kept>();
+  Kept& kept = static_cast<Kept&>(*to);
+  kept.u = u_;
+  kept.v = v_;
+  kept.rounding = rounding_;
+  kept.contacts = restricted_.contacts();
+  kept.relaxed = relaxed_;
+  kept.viscous_elapsed = viscous_elapsed_;
+  kept.fibre_memory = fibre_memory_;
+  if (account_)
+    kept.book = account_->book();
+}
+
+template <class Real>
+void CpuSolver<Real>::restore_fields(const Fields& from)
+{
+  const Kept& kept = static_cast<const Kept&>(from);
+  u_ = kept.u;
+  v_ = kept.v;
+  rounding_ = kept.rounding;
+  restricted_.restore(kept.contacts);
+  relaxed_ = kept.relaxed;
+  viscous_elapsed_ = kept.viscous_elapsed;
+  fibre_memory_ = kept.fibre_memory;
+  if (account_)
+    account_->restore(kept.book);
+}
+
+template <class Real>
 void CpuSolver<Real>::interleave(const Components& in, Vectors& out) const
 {
   out.resize(model_->nodes.size());

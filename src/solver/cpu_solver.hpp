@@ -30,6 +30,8 @@ public:
 
 protected:
   double run(const StepPlan& plan) override;
+  void save_fields(std::unique_ptr<Fields>& to) const override;
+  void restore_fields(const Fields& from) override;
   void rest() override;
   void velocities(Vectors& out) const override { interleave(v_, out); }
   void forces_at(const Vectors& at, Vectors& out) override;
@@ -53,6 +55,8 @@ private:
   void relax(double elapsed);
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
+
+  struct Kept;
 
   VoxelRows rows_;
   std::vector<float> inverse_mass_, with_length_, with_passive_, relaxed_;

@@ -22,12 +22,12 @@ EnergyAccount<Real>::EnergyAccount(const Model& model, const Discretisation& dis
 template <class Real>
 void EnergyAccount<Real>::open()
 {
-  const std::size_t planes = plane_nodes_.size() - 1;
-  planes_.assign(planes, {});
-  for (auto& component : beside_)
+  const std::size_t count = plane_nodes_.size() - 1;
+  planes.assign(count, {});
+  for (auto& component : beside)
     component.assign(mass_.size(), 0);
-  muscle.assign(planes, 0);
-  viscous.assign(2 * planes, 0);
+  muscle.assign(count, 0);
+  viscous.assign(2 * count, 0);
 }
 
 template <class Real>
@@ -52,14 +52,14 @@ void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Rea
         const double impulse = mass_[n] * 0.5 * (double(old[n]) + double(v[axis][n]));
         damped += impulse * 0.5 * (double(old[n]) + double(free[n]));
         constrained += impulse * (double(v[axis][n]) - double(free[n]));
-        const double beside = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
+        const double apart = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
         const double change =
             double(free[n]) - double(old[n]) + 0.5 * damping * dt * (double(old[n]) + double(free[n]));
-        displaced += mass_[n] * change * 0.5 * (beside + beside_[axis][n]);
-        beside_[axis][n] = beside;
+        displaced += mass_[n] * change * 0.5 * (apart + beside[axis][n]);
+        beside[axis][n] = apart;
       }
-      planes_[k].damping += damping * dt * damped;
-      planes_[k].constraint += constrained - displaced / dt;
+      planes[k].damping += damping * dt * damped;
+      planes[k].constraint += constrained - displaced / dt;
     }
 }
 
@@ -68,19 +68,19 @@ void EnergyAccount<Real>::load(std::int32_t plane, std::int32_t node, const std:
                                const Real* const v[3], double dt)
 {
   for (int axis = 0; axis < 3; ++axis)
-    planes_[plane].load += dt * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
+    planes[plane].load += dt * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
 }
 
 template <class Real>
 Work EnergyAccount<Real>::work() const
 {
   Work sum;
-  for (std::size_t k = 0; k < planes_.size(); ++k)
+  for (std::size_t k = 0; k < planes.size(); ++k)
   {
-    sum.load += planes_[k].load;
-    sum.constraint += planes_[k].constraint;
-    sum.friction += planes_[k].friction;
-    sum.damping += planes_[k].damping;
+    sum.load += planes[k].load;
+    sum.constraint += planes[k].constraint;
+    sum.friction += planes[k].friction;
+    sum.damping += planes[k].damping;
     sum.muscle += muscle[k];
     sum.viscous += viscous[2 * k] - viscous[2 * k + 1];
   }

@@ -19,13 +19,25 @@ struct Work
   double viscous = 0;     ///< taken up by viscous stresses
 };
 
+/// Work up to now, plane by plane.
+struct WorkBook
+{
+  std::vector<double> muscle;   ///< one a plane, filled by the backend
+  std::vector<double> viscous;  ///< two a plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
+  std::vector<Work> planes;
+  std::array<std::vector<double>, 3>
+      beside;  ///< how far constraints moved each node beside dt v in the latest step [m]
+};
+
 /// Work of a step's impulses on the nodes, each along the mean of the velocities before and after the step: with that
 /// the change of kinetic energy is their sum exactly. Summed plane by plane in double, so that the result does not
 /// depend on who sums which planes. Real is the backend's number type.
 template <class Real>
-class EnergyAccount
+class EnergyAccount : public WorkBook
 {
 public:
+  using Book = WorkBook;
+
   EnergyAccount(const Model& model, const Discretisation& discretisation);
 
   /// Nodes of plane k: plane_nodes()[k] .. plane_nodes()[k + 1].
@@ -46,15 +58,16 @@ public:
   {
     const Real* const old[3] = { before_[0].data(), before_[1].data(), before_[2].data() };
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
-    planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
+    planes[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
   /// Adds the work of a force on a node of a plane over the step, after after().
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double dt);
   Work work() const;
 
-  std::vector<double> muscle;   ///< one a plane, filled by the backend
-  std::vector<double> viscous;  ///< two a plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
+  /// All that is in the account between two steps.
+  const Book& book() const { return *this; }
+  void restore(const Book& book) { static_cast<Book&>(*this) = book; }
 
 private:
   using Field = std::array<std::vector<Real>, 3>;
@@ -63,8 +76,6 @@ private:
   const std::vector<double>& mass_;
   std::vector<std::int32_t> plane_nodes_;
   Field before_, free_;
-  std::array<std::vector<double>, 3> beside_;  // d of the latest step [m]
-  std::vector<Work> planes_;
 };
 
 }  // namespace frontalis

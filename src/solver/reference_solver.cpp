@@ -47,6 +47,47 @@ void ReferenceSolver::rest()
   restricted_.reset();
 }
 
+struct ReferenceSolver::Kept : Fields
+{
+  Components u, v;
+  RestrictedNodes<double>::Contacts contacts;
+  std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed;
+  double viscous_elapsed = 0;
+  EnergyAccount<double>::Book book;
+  std::vector<std::array<double, 2>> fibre_memory;
+  double frequency_squared = 0;
+};
+
+void ReferenceSolver::save_fields(std::unique_ptr<Fields>& to) const
+{
+  if (!to)
+    to = std::make_unique<Kept>();
+  Kept& kept = static_cast<Kept&>(*to);
+  kept.u = u_;
+  kept.v = v_;
+  kept.contacts = restricted_.contacts();
+  kept.relaxed = relaxed_;
+  kept.viscous_elapsed = viscous_elapsed_;
+  kept.fibre_memory = fibre_memory_;
+  kept.frequency_squared = frequency_squared_;
+  if (account_)
+    kept.book = account_->book();
+}
+
+void ReferenceSolver::restore_fields(const Fields& from)
+{
+  const Kept& kept = static_cast<const Kept&>(from);
+  u_ = kept.u;
+  v_ = kept.v;
+  restricted_.restore(kept.contacts);
+  relaxed_ = kept.relaxed;
+  viscous_elapsed_ = kept.viscous_elapsed;
+  fibre_memory_ = kept.fibre_memory;
+  frequency_squared_ = kept.frequency_squared;
+  if (account_)
+    account_->restore(kept.book);
+}
+
 void ReferenceSolver::interleave(const Components& in, Vectors& out) const
 {
   out.resize(model_->nodes.size());

@@ -23,6 +23,8 @@ public:
 
 protected:
   double run(const StepPlan& plan) override;
+  void save_fields(std::unique_ptr<Fields>& to) const override;
+  void restore_fields(const Fields& from) override;
   void rest() override;
   void velocities(Vectors& out) const override { interleave(v_, out); }
   void forces_at(const Vectors& at, Vectors& out) override;
@@ -49,6 +51,8 @@ private:
   void forces_at_components(const Components& u, Vectors& out);
   void look(std::size_t e, const Kinematics& k);
   void relax(double elapsed);
+
+  struct Kept;
 
   std::vector<VoxelProperties> voxels_;
   Components u_, v_, f_;

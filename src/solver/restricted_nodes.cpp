@@ -55,16 +55,16 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   {
     const auto rest = rest_position(model, node->node);
     const auto& surface = model.constraint_surfaces[node->surface];
-    gliding_.add({ node->node,
-                   surface.bone,
-                   surface.friction,
-                   { rest[0], rest[1], rest[2] },
-                   { *trees_[node->surface], node->distance },
-                   {},
-                   {},
-                   0,
-                   {},
-                   {} });
+    contacts_.gliding.add({ node->node,
+                            surface.bone,
+                            surface.friction,
+                            { rest[0], rest[1], rest[2] },
+                            { *trees_[node->surface], node->distance },
+                            {},
+                            {},
+                            0,
+                            {},
+                            {} });
   }
   make_blocks({ plain, sliding.end() });
   reset();
@@ -96,30 +96,31 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
       block_sliding_.emplace_back().fill(-1);
       covered = first + block_count_.back();
     }
-    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(sliding_.size());
+    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(contacts_.sliding.size());
     const auto rest = rest_position(model_, node.node);
-    sliding_.push_back({ { rest[0], rest[1], rest[2] }, { *trees_[node.surface], node.distance } });
+    contacts_.sliding.push_back({ { rest[0], rest[1], rest[2] }, { *trees_[node.surface], node.distance } });
   }
 }
 
 template <class Real>
 void RestrictedNodes<Real>::reset()
 {
-  gliding_.reset();
-  for (auto& sliding : sliding_)
+  contacts_.gliding.reset();
+  for (auto& sliding : contacts_.sliding)
     sliding.contact.forget();
-  blocks_.assign(block_node_.size(), {});
-  for (std::size_t block = 0; block < blocks_.size(); ++block)
+  contacts_.blocks.assign(block_node_.size(), {});
+  for (std::size_t block = 0; block < contacts_.blocks.size(); ++block)
     for (int lane = 0; lane < Block::width; ++lane)
-      blocks_[block].slip_squared[lane] = block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
+      contacts_.blocks[block].slip_squared[lane] =
+          block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
 }
 
 template <class Real>
 void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3])
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
-  Sliding& s = nodes.sliding_[nodes.block_sliding_[block][lane]];
-  Block& b = nodes.blocks_[block];
+  Sliding& s = nodes.contacts_.sliding[nodes.block_sliding_[block][lane]];
+  Block& b = nodes.contacts_.blocks[block];
   const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
   const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
                                                      plane.normal, { v[0], v[1], v[2] });
@@ -144,7 +145,7 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
     return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -
                                      block_node_.begin());
   };
-  kernel_({ blocks_.data(),
+  kernel_({ contacts_.blocks.data(),
             block_node_.data(),
             block_count_.data(),
             { u[0], u[1], u[2] },
@@ -152,7 +153,7 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
             renew,
             this },
           block_of(first), block_of(last));
-  gliding_.apply(first, last, u, v, drive);
+  contacts_.gliding.apply(first, last, u, v, drive);
 
   const auto prescriptions = range(prescribed_, first, last);
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)

@@ -16,10 +16,26 @@ template <class Real>
 class RestrictedNodes
 {
 public:
+  using Block = SlidingBlock<Real>;
+  struct Sliding
+  {
+    SurfaceTree::Point rest;
+    SurfaceContact contact;
+  };
+  /// What sliding nodes know of their surfaces.
+  struct Contacts
+  {
+    GlidingNodes<Real> gliding;    ///< those whose surface follows a bone or has friction
+    std::vector<Sliding> sliding;  ///< the others
+    std::vector<Block> blocks;
+  };
+
   /// The kernel may read and write, unchanged, what lies between sliding nodes of one node plane.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset();
+  const Contacts& contacts() const { return contacts_; }
+  void restore(const Contacts& contacts) { contacts_ = contacts; }
   /// Applies to nodes in [first, last), whole node planes; u holds the displacements after the step's update, before
   /// those before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
@@ -30,18 +46,14 @@ public:
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
   {
-    return gliding_.friction_loss(first, last, mass, before, without, after);
+    return contacts_.gliding.friction_loss(first, last, mass, before, without, after);
   }
-  bool empty() const { return rigid_.empty() && prescribed_.empty() && sliding_.empty() && gliding_.empty(); }
+  bool empty() const
+  {
+    return rigid_.empty() && prescribed_.empty() && contacts_.sliding.empty() && contacts_.gliding.empty();
+  }
 
 private:
-  using Block = SlidingBlock<Real>;
-  struct Sliding
-  {
-    SurfaceTree::Point rest;
-    SurfaceContact contact;
-  };
-
   void make_blocks(const std::vector<SlidingNode>& nodes);
   static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
 
@@ -50,11 +62,9 @@ private:
   std::vector<std::unique_ptr<SurfaceTree>> trees_;
   std::vector<RigidNode> rigid_;  // all lists sorted by node
   std::vector<PrescribedNode> prescribed_;
-  GlidingNodes<Real> gliding_;
-  std::vector<Sliding> sliding_;  // the others: surfaces that stand still and have no friction
-  std::vector<Block> blocks_;
+  Contacts contacts_;
   std::vector<std::int32_t> block_node_, block_count_;
-  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into sliding_; -1: does not slide
+  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into contacts_.sliding; -1: does not slide
 };
 
 }  // namespace frontalis

@@ -20,6 +20,16 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 
 }  // namespace
 
+Controls interpolate(const Controls& from, const Controls& to, double fraction)
+{
+  Controls result = to;
+  for (std::size_t m = 0; m < result.activation.size(); ++m)
+    result.activation[m] = from.activation[m] + static_cast<float>(fraction) * (to.activation[m] - from.activation[m]);
+  for (std::size_t b = 0; b < result.bone.size(); ++b)
+    result.bone[b] = interpolate(from.bone[b], to.bone[b], fraction);
+  return result;
+}
+
 Controls rest_controls(const Model& model)
 {
   return { std::vector<float>(model.muscles.size(), 0), std::vector<RigidTransform>(model.bones.size()) };
@@ -49,11 +59,11 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
       wants_ledger_(settings.ledger),
       damping_(model_->damping),
       gravity_(model_->gravity),
-      forced_time_step_(settings.time_step),
-      frequency_squared_(discretisation_.frequency_squared_max),
-      controls_(rest_controls(*model_)),
-      activation_(controls_.activation)
+      forced_time_step_(settings.time_step)
 {
+  frequency_squared_ = discretisation_.frequency_squared_max;
+  controls_ = rest_controls(*model_);
+  activation_ = controls_.activation;
   if (model_->mass_scaling.kind == MassScalingSettings::Kind::uniform)
     for (double& component : gravity_)
       component /= model_->mass_scaling.factor;
@@ -72,7 +82,8 @@ double SteppingSolver::critical_frequency_squared() const { return frequency_squ
 double SteppingSolver::safe_time_step() const
 {
   const double critical = 2 / std::sqrt(critical_frequency_squared());
-  return forced_time_step_ > 0 ? std::min(forced_time_step_, critical) : model_->time_step_share * critical;
+  return slow_share_ *
+         (forced_time_step_ > 0 ? std::min(forced_time_step_, critical) : model_->time_step_share * critical);
 }
 
 double SteppingSolver::keep(double dt) const { return (1 - 0.5 * damping_ * dt) / (1 + 0.5 * damping_ * dt); }
@@ -127,17 +138,6 @@ void SteppingSolver::check(double seconds, const Controls& target) const
     throw Error("the motion has diverged earlier: reset the solver first");
 }
 
-Controls SteppingSolver::between(const Controls& from, const Controls& target, double fraction) const
-{
-  Controls result = target;
-  for (std::size_t m = 0; m < result.activation.size(); ++m)
-    result.activation[m] =
-        from.activation[m] + static_cast<float>(fraction) * (target.activation[m] - from.activation[m]);
-  for (std::size_t b = 0; b < result.bone.size(); ++b)
-    result.bone[b] = interpolate(from.bone[b], target.bone[b], fraction);
-  return result;
-}
-
 // first-order response of the muscles to activations asked for that go linearly from one to another:
 // da/dt = (e - a) / time, with the rise or the fall time (as in Zajac 1989, Crit. Rev. Biomed. Eng. 17:359)
 void SteppingSolver::respond(const std::vector<float>& from, const std::vector<float>& to, double seconds)
@@ -177,7 +177,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     plan.time = time_;
     const bool last = steps_left <= steps_a_plan();
     const double reached = last ? end : time_ + plan.steps * plan.dt;
-    const Controls next = last ? target : between(from, target, (reached - begin) / seconds);
+    const Controls next = last ? target : interpolate(from, target, (reached - begin) / seconds);
     plan.begin = { activation_, controls_.bone };
     respond(controls_.activation, next.activation, plan.steps * plan.dt);
     plan.end = { activation_, next.bone };
@@ -189,7 +189,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     if (!std::isfinite(squared))
     {
       failed_ = true;
-      throw Error("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
+      throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
     frequency_squared_ = std::max(squared, discretisation_.frequency_squared_max);
   }
@@ -204,6 +204,7 @@ Monitor SteppingSolver::monitor()
   displacements(u);
   velocities(v);
   Monitor result = monitor_voxels(*model_, discretisation_, u, v);
+  result.step_share = latest_step_ * std::sqrt(assembled_share_) / result.critical_time_step;
   profile_.monitor += seconds_since(start);
   return result;
 }

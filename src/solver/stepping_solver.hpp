@@ -23,18 +23,45 @@ struct StepPlan
   Drive drive(int step) const;
 };
 
+/// How far a motion has come, besides what its nodes and voxels do: copied as one into a snapshot and back.
+struct Course
+{
+  double time_ = 0;
+  double latest_step_ = 0;        // [s]
+  double frequency_squared_ = 0;  // of the stiffest voxel
+  double assembled_share_ = 1;    // of the assembled model over it
+  std::int64_t assembled_at_step_ = 0;
+  double assembled_at_frequency_ = 0;
+  std::vector<std::array<double, 3>> assembled_mode_;
+  bool failed_ = false;
+  Controls controls_;
+  std::vector<float> activation_;
+  EnergyLedger ledger_;
+  double initial_ = 0;
+};
+
 /// What the backends on the host share: time, controls, the choice of the time step, equilibrium, energies.
-class SteppingSolver : public Solver
+class SteppingSolver : public Solver, private Course
 {
 public:
   using Vectors = std::vector<std::array<double, 3>>;
+
+  /// State of nodes and voxels, in a backend's own form.
+  struct Fields
+  {
+    virtual ~Fields() = default;
+  };
 
   SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
 
   void reset() override;
   void advance(double seconds, const Controls& target) override;
+  void check(double seconds, const Controls& target) const override;
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on) override;
+  void save(std::unique_ptr<Snapshot>& to) override;
+  void restore(const Snapshot& snapshot) override;
+  void slow_down(double share) override;
   double time() const override { return time_; }
   double time_step() const override { return safe_time_step(); }
   const Controls& controls() const override { return controls_; }
@@ -49,6 +76,9 @@ protected:
   /// Most steps between two looks at how far the voxels have stiffened.
   virtual int steps_a_plan() const { return 32; }
   virtual void rest() = 0;  ///< displacements and velocities to zero
+  /// What a backend keeps of its motion for a snapshot; `to` may hold an earlier one of its own, for its memory.
+  virtual void save_fields(std::unique_ptr<Fields>& to) const = 0;
+  virtual void restore_fields(const Fields& from) = 0;
   virtual void velocities(Vectors& out) const = 0;
   /// Internal forces [N] at displacements that are not the state's.
   virtual void forces_at(const Vectors& displacements, Vectors& out);
@@ -82,7 +112,6 @@ protected:
   std::array<double, 3> gravity_{};
 
 private:
-  void check(double seconds, const Controls& target) const;
   double safe_time_step() const;
   double critical_frequency_squared() const;
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
@@ -90,21 +119,11 @@ private:
   double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
   double distance(const Vectors& a, const Vectors& b) const;
   void open_ledger();
-  Controls between(const Controls& from, const Controls& target, double fraction) const;
+
+  struct Motion;
 
   double forced_time_step_ = 0;
-  double time_ = 0;
-  double latest_step_ = 0;        // [s]
-  double frequency_squared_ = 0;  // of the stiffest voxel
-  double assembled_share_ = 1;    // of the assembled model over it
-  std::int64_t assembled_at_step_ = 0;
-  double assembled_at_frequency_ = 0;
-  Vectors assembled_mode_;
-  bool failed_ = false;
-  Controls controls_;
-  std::vector<float> activation_;
-  EnergyLedger ledger_;
-  double initial_ = 0;
+  double slow_share_ = 1;  // of the safe time step
 };
 
 /// Of the power iteration: what it begins with; how far nodes move for a product with K, large for float and small for

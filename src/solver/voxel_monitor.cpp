@@ -81,7 +81,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
       physics::walsh_hadamard(mode[axis]);
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
-    double worst = k.J;
+    double worst = k.J, squared = 0;
     if (d.selective_reduced)
     {
       result.internal += voxel.tissue_volume * 0.5 * voxel.kappa * (k.J - 1) * (k.J - 1);
@@ -91,7 +91,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
         physics::at_gauss_point(point, mode, moved);
         const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
         result.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
-        frequency_squared = std::max(frequency_squared, frequency_squared_now(voxel, at_point, weight, shortest));
+        squared = std::max(squared, frequency_squared_now(voxel, at_point, weight, shortest));
         worst = std::min(worst, at_point.J);
       }
     }
@@ -99,8 +99,12 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     {
       result.internal += voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
       result.hourglass += hourglass_energy(d, voxel, k, mode);
-      frequency_squared = std::max(frequency_squared, frequency_squared_now(voxel, k, weight, shortest));
+      squared = frequency_squared_now(voxel, k, weight, shortest);
     }
+    if (squared > frequency_squared)
+      result.stiffest_voxel = static_cast<std::int32_t>(e);
+    frequency_squared = std::max(frequency_squared, squared);
+    result.inverted += worst <= 0 ? 1 : 0;
     if (!(worst >= result.worst_jacobian))
     {
       result.worst_jacobian = worst;

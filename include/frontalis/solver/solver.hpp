@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/error.hpp"
 #include "frontalis/model/model.hpp"
 #include "frontalis/solver/energy_ledger.hpp"
 
@@ -41,6 +42,9 @@ struct Controls
   std::vector<RigidTransform> bone;  ///< one a bone: motion from its rest pose, in the local frame
 };
 
+/// Controls at a fraction of the way between two; bones turn about the shortest axis.
+Controls interpolate(const Controls& from, const Controls& to, double fraction);
+
 /// Published surface in the local frame [m].
 struct SkinState
 {
@@ -57,7 +61,10 @@ struct Monitor
   double hourglass = 0;
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
-  double critical_time_step = 0;  ///< [s] now, element bound
+  std::int64_t inverted = 0;         ///< voxels with J <= 0
+  double critical_time_step = 0;     ///< [s] now, element bound
+  std::int32_t stiffest_voxel = -1;  ///< that sets it
+  double step_share = 0;             ///< latest time step over the critical now, by the model's estimate
   bool finite = true;
 };
 
@@ -78,6 +85,20 @@ struct Profile
   std::int64_t steps = 0;
 };
 
+/// All that the motion depends on at one moment; what is in it only the solver knows that made it.
+class Snapshot
+{
+public:
+  virtual ~Snapshot() = default;
+};
+
+/// The motion is no longer finite.
+class Diverged : public Error
+{
+public:
+  using Error::Error;
+};
+
 /// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). For one caller at a time.
 class Solver
 {
@@ -89,8 +110,12 @@ public:
 
   /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step; activations and bone
   /// poses go linearly (poses: rotation about the shortest axis) from where they are to `target` over that time.
-  /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length.
+  /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length; throws
+  /// Diverged, after which only reset() and restore() help.
   virtual void advance(double seconds, const Controls& target) = 0;
+
+  /// Throws Error where advance() would: a state that diverged, a bad duration or target.
+  virtual void check(double seconds, const Controls& target) const = 0;
 
   /// Dynamic relaxation: controls go to `target` at once, and the motion is damped critically for the lowest frequency
   /// that it shows (Underwood 1983) until what is left of it, estimated from its speed, damping and lowest frequency,
@@ -98,6 +123,13 @@ public:
   /// stresses are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws Error as advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
+
+  /// What the motion depends on now, into `to`, whose memory is used again where it holds a snapshot of this solver.
+  virtual void save(std::unique_ptr<Snapshot>& to) = 0;
+  /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on another's.
+  virtual void restore(const Snapshot& snapshot) = 0;
+  /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
+  virtual void slow_down(double share) = 0;
 
   virtual double time() const = 0;       ///< [s] since reset
   virtual double time_step() const = 0;  ///< [s] the largest step that would be taken now

@@ -1,0 +1,103 @@
+#pragma once
+
+#include "frontalis/solver/solver.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// What a check of the motion may find.
+enum class Instability
+{
+  none,
+  not_finite,  ///< a displacement is NaN or Inf
+  energy,      ///< more energy than muscles, loads and bones can have brought, or than the ledger explains
+  hourglass,   ///< the same in hourglass modes alone
+  inverted,    ///< more voxels are inside out than may be
+  time_step    ///< steps were longer than critical
+};
+
+/// In words that go on "the motion is unstable: ".
+std::string words_for(Instability instability);
+
+struct GuardSettings
+{
+  int interval = 512;            ///< steps between two checks
+  double slower = 0.5;           ///< share of the time step after a finding; each further try takes it once more
+  int recovery = 2048;           ///< steps for which it is taken
+  int tries = 3;                 ///< in a row, before the motion is stopped
+  double inverted_share = 0.05;  ///< of voxels that may be inside out (J <= 0), if not more were so before
+  bool ledger = false;           ///< judge energy by the ledger's imbalance: needs SolverSettings::ledger
+};
+
+/// What happened since the guard was made.
+struct GuardCounts
+{
+  std::int64_t checks = 0;
+  std::int64_t rollbacks = 0;
+  Instability latest = Instability::none;  ///< of the latest rollback
+  double seconds = 0;                      ///< wall seconds spent in checks and snapshots
+};
+
+/// Why a motion was stopped.
+struct InstabilityReport
+{
+  Instability kind = Instability::none;
+  double time = 0;                    ///< [s] simulated, of the finding
+  std::int32_t voxel = -1;            ///< that is worst off
+  double jacobian = 1;                ///< its J
+  std::array<double, 3> scene{};      ///< its centre at rest, scene frame [m]
+  std::array<double, 3> face{};       ///< the same in the face frame [m]
+  std::vector<std::string> material;  ///< its materials, that with the largest proportion first
+  std::vector<std::string> muscle;    ///< muscles with fibres in it, that with the most tension first
+  std::string effect;                 ///< most likely at fault, by name
+  std::string advice;                 ///< what to change
+  std::string text() const;           ///< all of it, two or three sentences
+};
+
+/// The motion was stopped; the solver is at its last good state.
+class Unstable : public Error
+{
+public:
+  explicit Unstable(const InstabilityReport& why) : Error(why.text()), report(why) {}
+  InstabilityReport report;
+};
+
+/// Watches a solver's motion: every so many steps it looks for what must not be (Instability), keeps a snapshot where
+/// there is nothing, and otherwise goes back to the last good one and takes shorter steps for a while.
+///
+/// Energy, without a ledger: kinetic, internal and hourglass energy E may have grown since the last good check, t ago,
+/// to no more than twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2, where W is what the fibres can give (tension
+/// times volume times a stretch of 1.2), what bones and prescribed nodes that moved by d can have brought (half the
+/// bound of frequency squared times mass times d^2 of the voxels that hang on them) and what viscous stresses can give
+/// back; f are gravity and surface loads on nodes of mass m.
+class Guard
+{
+public:
+  /// Solver and guard belong together until the guard is gone: advance the solver through the guard alone. Throws Error
+  /// on settings out of range.
+  explicit Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings = {});
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+  /// As Solver::advance, in parts, so that checks are in time. After a rollback controls go linearly from those of the
+  /// snapshot to `target`. Throws Error as advance() does; throws Unstable when `tries` in a row were in vain, with the
+  /// last good state restored.
+  void advance(double seconds, const Controls& target);
+  /// The present state is good: to be called after reset(), settle(), or displacements were set.
+  void restart();
+
+  const GuardCounts& counts() const;
+  const Monitor& latest() const;  ///< of the latest check that found nothing
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+
+/// Bounds what a motion's energy can have become: see Guard.
+class EnergyBound
+{
+public:
+  explicit EnergyBound(const Model& model);
+
+  /// Since when, and what may have driven the motion since.
+  struct Interval
+  {
+    double energy = 0;              ///< at its begin [J]
+    double begin = 0, end = 0;      ///< [s]
+    std::vector<float> activation;  ///< largest of each muscle
+    std::vector<RigidTransform> bone_begin, bone_end;
+    double largest_internal = 0;  ///< up to its begin [J]
+  };
+  double most(const Interval& interval) const;  ///< [J]
+  double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
+
+private:
+  // voxels that hang on a bone or on prescribed nodes: sum of frequency bound squared times mass [N/m]
+  struct Driven
+  {
+    std::int32_t index;  // bone or load
+    double stiffness;
+  };
+
+  const Model& model_;
+  double push_ = 0;  // root of the sum of f^2 / (2 m) [W / sqrt(J)]
+  double floor_ = 0;
+  bool viscous_ = false;
+  std::vector<double> fibres_;  // one a muscle: tension times volume [J]
+  std::vector<Driven> bones_, prescribed_;
+};
+
+}  // namespace frontalis

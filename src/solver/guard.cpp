@@ -1,0 +1,236 @@
+#include "frontalis/solver/guard.hpp"
+
+#include "energy_bound.hpp"
+#include "instability_report.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+// the bound on the time step is renewed every few dozen steps and is on the safe side
+constexpr double step_share_allowed = 1.1;
+// of the largest term of the ledger, in one interval
+constexpr double imbalance_allowed = 0.2;
+
+}  // namespace
+
+struct Guard::Implementation
+{
+  /// A state in which nothing was found.
+  struct Good
+  {
+    std::unique_ptr<Snapshot> snapshot;
+    Monitor monitor;
+    double time = 0;
+    double imbalance = 0;  // [J]
+    std::vector<RigidTransform> bone;
+    std::vector<float> activation;
+    double largest_internal = 0;
+  };
+
+  Solver& solver;
+  std::shared_ptr<const Model> model;
+  GuardSettings settings;
+  EnergyBound bound;
+  Good good, before;              // the latest, and the one before
+  std::vector<float> activation;  // largest of each muscle since `before`
+  std::int64_t checked_at = 0;    // steps
+  std::int64_t recovered_at = 0;  // steps
+  int tries = 0;
+  GuardCounts counts;
+
+  double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass; }
+  std::int64_t steps() const { return solver.profile().steps; }
+  void keep(const Monitor& monitor, double imbalance);
+  Instability judged(const Monitor& monitor, double imbalance, double largest) const;
+  Instability check();
+  void go_back(Instability finding, const Controls& target);
+  InstabilityReport examined(Instability finding, const Controls& target);
+};
+
+void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
+{
+  std::swap(good, before);
+  solver.save(good.snapshot);
+  good.monitor = monitor;
+  good.time = solver.time();
+  good.imbalance = imbalance;
+  good.bone = solver.controls().bone;
+  good.activation = solver.activation();
+  good.largest_internal = std::max(before.largest_internal, monitor.internal);
+  activation = good.activation;
+}
+
+Instability Guard::Implementation::judged(const Monitor& m, double imbalance, double largest) const
+{
+  if (!m.finite)
+    return Instability::not_finite;
+  const auto voxels = static_cast<double>(model->voxels.size());
+  const double inverted = std::max(settings.inverted_share * voxels, static_cast<double>(good.monitor.inverted));
+  if (static_cast<double>(m.inverted) > inverted)
+    return Instability::inverted;
+  const double most = bound.most({ energy(good.monitor), good.time, solver.time(), activation, good.bone,
+                                   solver.controls().bone, good.largest_internal });
+  if (m.hourglass > most)
+    return Instability::hourglass;
+  if (energy(m) > most || std::abs(imbalance - good.imbalance) > imbalance_allowed * largest + bound.floor())
+    return Instability::energy;
+  return m.step_share > step_share_allowed ? Instability::time_step : Instability::none;
+}
+
+Instability Guard::Implementation::check()
+{
+  const auto start = std::chrono::steady_clock::now();
+  ++counts.checks;
+  checked_at = steps();
+  const Monitor monitor = solver.monitor();
+  EnergyLedger ledger;
+  if (settings.ledger && monitor.finite)
+    ledger = solver.ledger();
+  const Instability finding = judged(monitor, ledger.imbalance(), ledger.largest);
+  if (finding == Instability::none)
+    keep(monitor, ledger.imbalance());
+  counts.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return finding;
+}
+
+// the first try begins at the latest good state, later ones earlier: what was found there may have begun before
+void Guard::Implementation::go_back(Instability finding, const Controls& target)
+{
+  if (tries > 0 && before.snapshot)
+    std::swap(good, before);
+  if (tries == settings.tries)
+  {
+    const InstabilityReport report = examined(finding, target);
+    solver.restore(*good.snapshot);
+    solver.slow_down(1);
+    tries = 0;
+    checked_at = steps();
+    throw Unstable(report);
+  }
+  ++tries;
+  ++counts.rollbacks;
+  counts.latest = finding;
+  solver.restore(*good.snapshot);
+  solver.slow_down(std::pow(settings.slower, tries));
+  before.snapshot.reset();
+  checked_at = steps();
+  recovered_at = steps() + settings.recovery;
+}
+
+// where the motion goes wrong: the worst voxel of the last state that is finite
+InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target)
+{
+  std::vector<bool> moved;
+  for (std::size_t b = 0; b < target.bone.size(); ++b)
+    moved.push_back(target.bone[b].rotation != good.bone[b].rotation ||
+                    target.bone[b].translation != good.bone[b].translation);
+  const double time = solver.time();
+  Monitor last = solver.monitor();
+  if (!last.finite)
+  {
+    solver.restore(*good.snapshot);
+    last = good.monitor;
+    try
+    {
+      for (int part = 0; part < settings.interval / 16; ++part)
+      {
+        solver.advance(16 * solver.time_step(), target);
+        const Monitor now = solver.monitor();
+        if (!now.finite)
+          break;
+        last = now;
+      }
+    }
+    catch (const Diverged&)
+    {
+      // the state before it is known
+    }
+  }
+  // crushed, or stretched until it is stiffer than all others
+  constexpr double crushed = 0.2;
+  const std::int32_t voxel =
+      last.worst_jacobian < crushed || last.stiffest_voxel < 0 ? last.worst_voxel : last.stiffest_voxel;
+  return describe(*model, finding, time, std::max(voxel, 0), last.worst_jacobian, activation, moved);
+}
+
+Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)
+    : self_(new Implementation{ solver, model, settings, EnergyBound(*model), {}, {}, {}, 0, 0, 0, {} })
+{
+  const auto refuse = [](const char* what, double value, const char* allowed)
+  { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
+  if (settings.interval < 1)
+    refuse("interval", settings.interval, "1 step or more");
+  if (!(settings.slower > 0 && settings.slower < 1))
+    refuse("share of the time step", settings.slower, "above 0 and below 1");
+  if (settings.recovery < settings.interval)
+    refuse("recovery", settings.recovery, "its interval or more");
+  if (settings.tries < 0 || settings.tries > 20)
+    refuse("number of tries", settings.tries, "0 to 20");
+  if (!(settings.inverted_share >= 0 && settings.inverted_share <= 1))
+    refuse("share of inverted voxels", settings.inverted_share, "0 to 1");
+  restart();
+}
+
+Guard::~Guard() = default;
+
+void Guard::restart()
+{
+  Implementation& g = *self_;
+  const Monitor monitor = g.solver.monitor();
+  const double imbalance = g.settings.ledger ? g.solver.ledger().imbalance() : 0;
+  g.good.largest_internal = g.before.largest_internal = 0;
+  g.keep(monitor, imbalance);
+  g.before.snapshot.reset();
+  g.tries = 0;
+  g.solver.slow_down(1);
+  g.checked_at = g.steps();
+}
+
+void Guard::advance(double seconds, const Controls& target)
+{
+  Implementation& g = *self_;
+  g.solver.check(seconds, target);
+  const double end = g.solver.time() + seconds;
+  for (bool done = false; !done;)
+  {
+    const double left = end - g.solver.time();
+    const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
+    done = part >= left;
+    Instability finding = Instability::none;
+    try
+    {
+      const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
+      g.solver.advance(done ? left : part, to);
+      for (std::size_t m = 0; m < to.activation.size(); ++m)
+        g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
+      if (g.steps() - g.checked_at >= g.settings.interval)
+        finding = g.check();
+    }
+    catch (const Diverged&)
+    {
+      finding = Instability::not_finite;
+    }
+    if (finding != Instability::none)
+    {
+      g.go_back(finding, target);
+      done = false;
+    }
+    else if (g.tries > 0 && g.steps() >= g.recovered_at)
+    {
+      g.tries = 0;
+      g.solver.slow_down(1);
+    }
+  }
+}
+
+const GuardCounts& Guard::counts() const { return self_->counts; }
+const Monitor& Guard::latest() const { return self_->good.monitor; }
+
+}  // namespace frontalis

@@ -1,0 +1,46 @@
+#include "stepping_solver.hpp"
+
+namespace frontalis
+{
+
+struct SteppingSolver::Motion : Snapshot
+{
+  const SteppingSolver* owner = nullptr;
+  Course course;
+  std::int64_t steps = 0;
+  std::unique_ptr<Fields> fields;
+};
+
+void SteppingSolver::save(std::unique_ptr<Snapshot>& to)
+{
+  auto* motion = dynamic_cast<Motion*>(to.get());
+  if (motion == nullptr || motion->owner != this)
+  {
+    to = std::make_unique<Motion>();
+    motion = static_cast<Motion*>(to.get());
+    motion->owner = this;
+  }
+  motion->course = *this;
+  motion->steps = profile_.steps;
+  save_fields(motion->fields);
+}
+
+void SteppingSolver::restore(const Snapshot& snapshot)
+{
+  const auto* const motion = dynamic_cast<const Motion*>(&snapshot);
+  if (motion == nullptr || motion->owner != this)
+    throw Error("a snapshot of another solver: allowed are those that this one saved");
+  static_cast<Course&>(*this) = motion->course;
+  // steps are counted as they are taken, those given up too
+  assembled_at_step_ += profile_.steps - motion->steps;
+  restore_fields(*motion->fields);
+}
+
+void SteppingSolver::slow_down(double share)
+{
+  if (!(share > 0 && share <= 1))
+    throw Error("time step to be taken " + std::to_string(share) + " times: allowed are shares above 0 up to 1");
+  slow_share_ = share;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "block_model.hpp"
+
+namespace frontalis
+{
+namespace test
+{
+
+/// Effects that a scene may have, to be combined.
+enum Effect : unsigned
+{
+  viscosity = 1,
+  other_law = 2,
+  contraction = 4,
+  passive_fibres = 8,
+  gravity = 16,
+  pressure = 32,
+  prescribed = 64,
+  sliding = 128,
+  all_effects = 256
+};
+
+// strips of several lengths, so that tiles are full, half full and empty in places; each effect has its own part of it
+inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
+                      Integration integration = Integration::one_point)
+{
+  BlockSettings settings;
+  settings.voxels = { { 11, 3, 3 } };
+  settings.damping = 20;
+  settings.keep = [](std::int32_t i, std::int32_t j, std::int32_t k) { return i < 11 - 2 * j || k == 1; };
+  Model model = block_model(settings);
+  model.hourglass = hourglass;
+  model.integration = integration;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][0] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  if (effects & other_law)
+  {
+    Material other = model.materials[0];
+    other.law = Law::mooney_rivlin;
+    other.parameters[0] /= 4;
+    other.parameters[2] = other.parameters[0];
+    model.materials.push_back(other);
+  }
+  if (effects & viscosity)
+  {
+    model.materials.back().viscous_share = { { 0.4, 0.2 } };
+    model.materials.back().viscous_time = { { 2e-4, 1e-2 } };
+  }
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    if (model.voxels[e][0] > 6)
+      model.mixture_material[e] = static_cast<std::int16_t>(model.materials.size() - 1);
+  if (effects & (contraction | passive_fibres))
+  {
+    Muscle muscle;
+    muscle.name = "strand";
+    muscle.stress_reference = 20e3;
+    muscle.passive = effects & passive_fibres;
+    add_muscle(model, { { 0.8f, 0.6f, 0 } }, muscle);
+    for (float& weight : model.fibre_weight)
+      weight = 0.5f;
+  }
+  if (effects & gravity)
+    model.gravity = { { 1, -2, 9.81 } };
+  if (effects & pressure)
+  {
+    Load press;
+    press.name = "press";
+    press.kind = Load::Kind::pressure;
+    press.value = { { 500, 0, 0 } };
+    press.mesh.vertices = { { { 2e-3, 0, 3e-3 } }, { { 4e-3, 0, 3e-3 } }, { { 3e-3, 2e-3, 3e-3 } } };
+    press.mesh.triangles = { { { 0, 1, 2 } } };
+    for (const auto& corner : press.mesh.vertices)
+      for (std::size_t e = 0; e < model.voxels.size(); ++e)
+        if (model.voxels[e] == std::array<std::int32_t, 3>{ { static_cast<std::int32_t>(corner[0] * 1e3 + 0.5),
+                                                              static_cast<std::int32_t>(corner[1] * 1e3 + 0.5), 2 } })
+        {
+          press.binding.voxel.push_back(static_cast<std::int32_t>(e));
+          press.binding.coordinates.push_back({ { 0, 0, 1 } });
+        }
+    model.loads.push_back(press);
+  }
+  if (effects & prescribed)
+  {
+    Load pull;
+    pull.name = "pull";
+    pull.kind = Load::Kind::displacement;
+    pull.value = { { 0, 3e-4, 0 } };
+    pull.fixed = { { false, true, false } };
+    pull.ramp = 1e-3;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n][0] == 11)
+        model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(model.loads.size()) });
+    model.loads.push_back(pull);
+  }
+  if (effects & sliding)
+  {
+    ConstraintSurface floor;
+    floor.name = "floor";
+    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
+    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
+    model.constraint_surfaces.push_back(floor);
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][0] < 9)
+        model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
+  }
+  return model;
+}
+
+}  // namespace test
+}  // namespace frontalis

@@ -1,0 +1,184 @@
+#include "backends.hpp"
+#include "effect_scene.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vectors = std::vector<std::array<double, 3>>;
+
+class Guarded : public test::EveryBackend
+{
+protected:
+  static GuardSettings close() { return { 64, 0.5, 128 }; }
+  static Controls full(const Solver& solver, float activation)
+  {
+    Controls controls = solver.controls();
+    std::fill(controls.activation.begin(), controls.activation.end(), activation);
+    return controls;
+  }
+  static Vectors displacements(const Solver& solver)
+  {
+    Vectors u;
+    solver.displacements(u);
+    return u;
+  }
+};
+
+double farthest(const Vectors& a, const Vectors& b)
+{
+  double worst = 0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      worst = std::max(worst, std::abs(a[n][axis] - b[n][axis]));
+  return worst;
+}
+
+// two planes of nodes are driven through each other: no time step helps
+Model crushed()
+{
+  test::BlockSettings settings;
+  settings.voxels = { { 1, 2, 2 } };
+  settings.damping = 200;
+  Model model = test::block_model(settings);
+  model.to_scene.translation = { { 0.1, 0, 0 } };
+  Load press;
+  press.name = "press";
+  press.kind = Load::Kind::displacement;
+  press.value = { { -1.5e-3, 0, 0 } };
+  press.ramp = 0.02;
+  model.loads.push_back(press);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    if (model.nodes[n][0] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+    if (model.nodes[n][0] == 1)
+      model.prescribed.push_back({ static_cast<std::int32_t>(n), 0 });
+  }
+  return model;
+}
+
+TEST_P(Guarded, sound_motion_is_left_alone)
+{
+  for (const bool ledger : { false, true })
+  {
+    const auto model = std::make_shared<const Model>(test::scene_of(test::all_effects - 1));
+    const auto solver = make_solver(model, { GetParam(), 2, 0, ledger });
+    GuardSettings settings = close();
+    settings.ledger = ledger;
+    Guard guard(*solver, model, settings);
+    for (const float activation : { 1.0f, 0.0f, 0.7f })
+      guard.advance(3e-3, full(*solver, activation));
+    EXPECT_DOUBLE_EQ(solver->time(), 9e-3);
+    EXPECT_GT(guard.counts().checks, 4);
+    EXPECT_EQ(guard.counts().rollbacks, 0) << words_for(guard.counts().latest);
+    EXPECT_TRUE(guard.latest().finite);
+  }
+}
+
+TEST_P(Guarded, motion_goes_on_where_it_was_disturbed)
+{
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  const auto undisturbed = make_solver(model, { GetParam(), 2 });
+  for (int part = 0; part < 3; ++part)
+    undisturbed->advance(4e-3, full(*undisturbed, 0.7f));
+  const Vectors expected = displacements(*undisturbed);
+
+  using Disturb = std::function<void(Solver&)>;
+  const auto all = [&](double x) { return Vectors(model->nodes.size(), { { x, -x, x } }); };
+  Vectors inside_out(model->nodes.size());
+  for (std::size_t n = 0; n < inside_out.size(); ++n)
+    inside_out[n][0] = -2 * test::rest(*model, n)[0];
+  const std::pair<Instability, Disturb> disturbances[] = {
+    { Instability::not_finite, [&](Solver& s) { s.set_velocities(all(std::nan(""))); } },
+    { Instability::not_finite, [&](Solver& s) { s.set_displacements(all(std::numeric_limits<double>::infinity())); } },
+    { Instability::energy, [&](Solver& s) { s.set_velocities(all(20)); } },
+    { Instability::inverted, [&](Solver& s) { s.set_displacements(inside_out); } },
+  };
+  for (const auto& [kind, disturb] : disturbances)
+  {
+    const auto solver = make_solver(model, { GetParam(), 2 });
+    Guard guard(*solver, model, close());
+    guard.advance(4e-3, full(*solver, 0.7f));
+    guard.advance(4e-3, full(*solver, 0.7f));
+    disturb(*solver);
+    guard.advance(4e-3, full(*solver, 0.7f));
+    EXPECT_EQ(guard.counts().rollbacks, 1) << words_for(kind);
+    EXPECT_EQ(guard.counts().latest, kind) << words_for(guard.counts().latest);
+    EXPECT_DOUBLE_EQ(solver->time(), 12e-3);
+    EXPECT_LT(farthest(displacements(*solver), expected), 2e-6) << words_for(kind);
+    // back to the full time step once all has been well for a while
+    guard.advance(4e-3, full(*solver, 0.7f));
+    EXPECT_NEAR(solver->time_step(), undisturbed->time_step(), 0.1 * undisturbed->time_step());
+  }
+}
+
+TEST_P(Guarded, a_motion_that_no_time_step_helps_is_stopped_and_explained)
+{
+  const auto model = std::make_shared<const Model>(crushed());
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  GuardSettings settings = close();
+  settings.inverted_share = 0;
+  Guard guard(*solver, model, settings);
+  try
+  {
+    guard.advance(0.02, solver->controls());
+    FAIL() << "voxels were turned inside out";
+  }
+  catch (const Unstable& stopped)
+  {
+    const InstabilityReport& r = stopped.report;
+    EXPECT_EQ(r.kind, Instability::inverted);
+    EXPECT_LE(r.jacobian, 0);
+    ASSERT_GE(r.voxel, 0);
+    EXPECT_NEAR(r.scene[0], 0.1 + (model->voxels[r.voxel][0] + 0.5) * 1e-3, 1e-12);
+    EXPECT_EQ(r.material, std::vector<std::string>{ "tissue" });
+    EXPECT_TRUE(r.muscle.empty());
+    const std::string text = stopped.what();
+    for (const char* part : { "turn inside out", "voxel", "mm in the scene", "tissue", "fault", "press" })
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+  }
+  EXPECT_GE(guard.counts().rollbacks, settings.tries);
+  // the last good state is there, and serves
+  EXPECT_TRUE(solver->monitor().finite);
+  EXPECT_EQ(solver->monitor().inverted, 0);
+  EXPECT_LT(solver->time(), 0.02);
+  SkinState skin;
+  solver->skin(skin);
+  EXPECT_THROW(guard.advance(0.02, solver->controls()), Unstable);
+  solver->reset();
+  guard.restart();
+  guard.advance(1e-3, solver->controls());
+  EXPECT_DOUBLE_EQ(solver->time(), 1e-3);
+}
+
+TEST_P(Guarded, bad_input_changes_nothing)
+{
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  Guard guard(*solver, model, close());
+  guard.advance(1e-3, full(*solver, 0.5f));
+  const Vectors before = displacements(*solver);
+  for (const float bad : { -0.1f, 1.1f, std::nanf("") })
+    EXPECT_THROW(guard.advance(1e-2, full(*solver, bad)), Error);
+  EXPECT_THROW(guard.advance(1e-2, {}), Error);
+  EXPECT_THROW(guard.advance(std::nan(""), solver->controls()), Error);
+  EXPECT_EQ(displacements(*solver), before);
+  for (const GuardSettings& bad : { GuardSettings{ 0 }, GuardSettings{ 64, 1.0 }, GuardSettings{ 64, 0.5, 32 },
+                                    GuardSettings{ 64, 0.5, 64, -1 }, GuardSettings{ 64, 0.5, 64, 3, 1.5 } })
+    EXPECT_THROW(Guard(*solver, model, bad), Error);
+}
+
+FRONTALIS_EVERY_BACKEND(Guarded);
+
+}  // namespace
+}  // namespace frontalis

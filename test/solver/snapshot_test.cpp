@@ -1,0 +1,154 @@
+#include "backends.hpp"
+#include "effect_scene.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vectors = std::vector<std::array<double, 3>>;
+
+/// What a motion shows of itself.
+struct Seen
+{
+  Vectors u;
+  std::vector<float> activation;
+  double time, time_step, work;
+
+  bool operator==(const Seen& other) const
+  {
+    return u == other.u && activation == other.activation && time == other.time && time_step == other.time_step &&
+           work == other.work;
+  }
+};
+
+struct Variant
+{
+  std::string name;
+  std::function<void(Model&)> change;
+  bool ledger = false;
+};
+
+// every effect at once; a floor that a bone moves, with friction; all precisions; what is renewed now and then
+std::vector<Variant> variants()
+{
+  return { { "plain", [](Model&) {} },
+           { "ledger", [](Model&) {}, true },
+           { "assembled", [](Model& m) { m.time_step_estimate = TimeStepEstimate::assembled; } },
+           { "compensated", [](Model& m) { m.precision = Precision::compensated; } },
+           { "double", [](Model& m) { m.precision = Precision::double_precision; } },
+           { "reduced", [](Model& m) { m.integration = Integration::selective_reduced; } },
+           { "moved",
+             [](Model& m)
+             {
+               m.bones = { "jaw" };
+               m.constraint_surfaces[0].bone = 0;
+               m.constraint_surfaces[0].friction = 0.4;
+             },
+             true },
+           { "slow muscle", [](Model& m) { m.muscles[0].rise_time = 5e-4; } } };
+}
+
+class Snapshots : public test::EveryBackend
+{
+protected:
+  std::unique_ptr<Solver> solver_of(const Variant& variant) const
+  {
+    Model model = test::scene_of(test::all_effects - 1);
+    variant.change(model);
+    return make_solver(std::make_shared<const Model>(model), { GetParam(), 2, 0, variant.ledger });
+  }
+  static Seen play(Solver& solver, bool ledger, float activation, double along)
+  {
+    Controls controls = solver.controls();
+    std::fill(controls.activation.begin(), controls.activation.end(), activation);
+    for (auto& bone : controls.bone)
+      bone = rigid_motion({ { 0, 0, 0 } }, { { along, 0, 2e-5 } });
+    // steps of about 5 us
+    solver.advance(5e-4, controls);
+    Seen seen{ {}, solver.activation(), solver.time(), solver.time_step(), 0 };
+    solver.displacements(seen.u);
+    if (ledger)
+    {
+      const EnergyLedger l = solver.ledger();
+      seen.work = l.muscle + 3 * l.constraint + 5 * l.viscous + 7 * l.damping + 11 * l.friction + 13 * l.load;
+    }
+    return seen;
+  }
+};
+
+TEST_P(Snapshots, motion_goes_on_with_the_same_bits)
+{
+  for (const Variant& variant : variants())
+  {
+    const auto solver = solver_of(variant);
+    play(*solver, variant.ledger, 0.7f, 1e-4);
+    std::unique_ptr<Snapshot> snapshot;
+    solver->save(snapshot);
+    const Seen first = play(*solver, variant.ledger, 0.2f, 3e-4);
+    solver->restore(*snapshot);
+    const Seen second = play(*solver, variant.ledger, 0.2f, 3e-4);
+    EXPECT_TRUE(first == second) << variant.name;
+    // whatever happened in between
+    solver->set_displacements(Vectors(first.u.size(), { { 1e-5, 0, 0 } }));
+    play(*solver, variant.ledger, 1, 0);
+    solver->reset();
+    solver->restore(*snapshot);
+    EXPECT_TRUE(play(*solver, variant.ledger, 0.2f, 3e-4) == first) << variant.name;
+    // a snapshot does not show in the motion, nor does its memory in the next
+    const auto plain = solver_of(variant);
+    play(*plain, variant.ledger, 0.7f, 1e-4);
+    EXPECT_TRUE(play(*plain, variant.ledger, 0.2f, 3e-4) == first) << variant.name;
+    solver->save(snapshot);
+    const Seen third = play(*solver, variant.ledger, 0.5f, 0);
+    EXPECT_FALSE(third == first);
+    solver->restore(*snapshot);
+    EXPECT_TRUE(play(*solver, variant.ledger, 0.5f, 0) == third) << variant.name;
+  }
+}
+
+TEST_P(Snapshots, belong_to_their_solver)
+{
+  const auto one = solver_of(variants()[0]), other = solver_of(variants()[0]);
+  std::unique_ptr<Snapshot> snapshot;
+  one->save(snapshot);
+  EXPECT_THROW(other->restore(*snapshot), Error);
+}
+
+TEST_P(Snapshots, lead_back_from_a_motion_that_diverged)
+{
+  const auto solver = solver_of(variants()[0]);
+  play(*solver, false, 0.7f, 0);
+  std::unique_ptr<Snapshot> snapshot;
+  solver->save(snapshot);
+  const Seen first = play(*solver, false, 0.2f, 0);
+  solver->set_displacements(Vectors(first.u.size(), { { std::nan(""), 0, 0 } }));
+  EXPECT_THROW(play(*solver, false, 0.2f, 0), Diverged);
+  EXPECT_THROW(play(*solver, false, 0.2f, 0), Error);
+  solver->restore(*snapshot);
+  EXPECT_TRUE(play(*solver, false, 0.2f, 0) == first);
+}
+
+TEST_P(Snapshots, the_time_step_can_be_taken_shorter)
+{
+  const auto solver = solver_of(variants()[0]);
+  const double full = solver->time_step();
+  solver->slow_down(0.25);
+  EXPECT_DOUBLE_EQ(solver->time_step(), 0.25 * full);
+  for (const double bad : { 0.0, -1.0, 1.5, std::nan("") })
+    EXPECT_THROW(solver->slow_down(bad), Error);
+  solver->slow_down(1);
+  EXPECT_EQ(solver->time_step(), full);
+}
+
+FRONTALIS_EVERY_BACKEND(Snapshots);
+
+}  // namespace
+}  // namespace frontalis
