@@ -1,6 +1,7 @@
 #include "stepping_solver.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "voxel_monitor.hpp"
 
@@ -191,7 +192,8 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       failed_ = true;
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
-    frequency_squared_ = std::max(squared, discretisation_.frequency_squared_max);
+    if (!mutation::time_step_of_rest)
+      frequency_squared_ = std::max(squared, discretisation_.frequency_squared_max);
   }
   controls_ = target;
   profile_.stepping += seconds_since(start);

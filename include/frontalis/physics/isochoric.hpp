@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/number.hpp"
 
 namespace frontalis
@@ -24,7 +25,7 @@ template <class T>
 FRONTALIS_LAW IsochoricScale<T> isochoric_scale(T J)
 {
   using N = Number<T>;
-  const double j0 = continuation_jacobian;
+  const double j0 = mutation::laws_not_continued ? -1e6 : continuation_jacobian;
   const T y = N::inverse_cube_root(N::max(J, N::of(j0)));
   const T y2 = y * y;
   const T slope = N::of(-2.0 / 3.0) * y2 * y2 * y;
