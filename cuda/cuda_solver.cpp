@@ -27,7 +27,6 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
   for (const auto node : device_.still_nodes())
     still.push_back(device_.device_node()[node]);
   still_ = DeviceArray<std::uint32_t>(still);
-  barrier_ = DeviceArray<std::uint32_t>(std::vector<std::uint32_t>(1, 0));
   // ordered with the default stream, so that events recorded there enclose this solver's work
   require(cudaStreamCreate(&stream_), "making a stream");
   const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2);
@@ -170,9 +169,9 @@ std::string CudaSolver::description() const
 {
   cudaDeviceProp device{};
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
-  return std::string("cuda (float, ") + device.name + ", " + std::to_string(device_.strips()) +
-         (launch_.bricks ? " bricks of " : " strips of ") + std::to_string(launch_.rows) + " by " +
-         std::to_string(launch_.planes) + " rows)";
+  return std::string("cuda (float, ") + device.name + ", " +
+         (launch_.patches ? std::to_string(device_.patches()) + " patches)"
+                          : std::to_string(device_.strips()) + " strips)");
 }
 
 }  // namespace cuda

@@ -77,8 +77,7 @@ private:
   DeviceArray<float> skin_output_;  // vertices, normals, landmarks
   PinnedArray<float> skin_staged_;
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
-  DeviceArray<std::uint32_t> barrier_;
-  std::uint32_t barrier_base_ = 0;
+  std::uint32_t steps_before_ = 0;    // steps that the device was asked for
   cudaStream_t stream_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;

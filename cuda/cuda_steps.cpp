@@ -25,7 +25,6 @@ StepArguments CudaSolver::arguments(double dt) const
   g.dt_exact = dt;
   g.keep = static_cast<float>(keep(dt));
   g.gain = static_cast<float>(gain(dt));
-  g.barrier = barrier_.data();
   return g;
 }
 
@@ -70,16 +69,16 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   g.step_begin = begin;
   g.step_end = end;
   g.first = present_;
-  g.barrier_base = barrier_base_;
+  g.steps_before = steps_before_;
   require(launch_steps(g, launch_, stream_), "launching steps");
-  barrier_base_ += static_cast<std::uint32_t>((end - begin - 1) * launch_.blocks);
+  steps_before_ += static_cast<std::uint32_t>(end - begin);
   present_ = (present_ + end - begin) & 1;
 }
 
 // as many steps in one launch as nothing has to be done between them
 void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 {
-  if (launch_.bricks && !account_ && !device_.loads().follow())
+  if (launch_.patches && !account_ && !device_.loads().follow())
     return step(g, begin, end);
   for (int s = begin; s < end; ++s)
   {

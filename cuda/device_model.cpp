@@ -36,13 +36,18 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node)
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
 
-// the bulk of what a model needs: nodes, strips, fibres
-void expect_room(const Model& model, const VoxelStrips& strips)
+// the bulk of what a model needs: nodes, patches or strips, fibres
+void expect_room(const Model& model, const VoxelCut& cut)
 {
   const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
-  const std::size_t wanted = (model.nodes.size() + 1) * node_bytes + strips.slots.size() * sizeof(StripSlot) +
-                             strips.fibre_words.size() * sizeof(std::uint32_t) +
-                             model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
+  std::size_t wanted =
+      (model.nodes.size() + 1) * node_bytes + model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
+  if (cut.patches)
+    wanted += cut.patches->voxel.size() * (sizeof(uint4) + sizeof(uint2)) +
+              cut.patches->halo.size() * sizeof(std::uint32_t) +
+              model.nodes.size() * (sizeof(uint4) + sizeof(std::int32_t));
+  else
+    wanted += cut.strips->slots.size() * sizeof(StripSlot) + cut.strips->fibre_words.size() * sizeof(std::uint32_t);
   std::size_t free = 0, total = 0;
   require(cudaMemGetInfo(&free, &total), "asking for free memory");
   if (wanted > free)
@@ -61,29 +66,35 @@ Effects effects_of(const Model& model, const Discretisation& discretisation)
 }
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut)
-    : DeviceModel(model, discretisation, cut, VoxelStrips(model, cut.strips))
+    : DeviceModel(model, discretisation, VoxelCut(model, cut))
 {
 }
 
-DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut,
-                         VoxelStrips&& strips)
-    : cut_(cut),
-      effects_(effects_of(model, discretisation)),
-      filled_(strips.filled()),
-      device_node_((expect_room(model, strips), std::move(strips.device_node))),
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
+    : effects_(effects_of(model, discretisation)),
+      device_node_((expect_room(model, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
-      viscosity_(model, discretisation, device_node_, strips.slots)
+      viscosity_(model, discretisation, device_node_,
+                 discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>())
 {
-  add_palette(model, discretisation, strips.slots);
-  add_fibres(model, discretisation, strips);
-  add_tasks(model, strips);
-  strips_ = DeviceArray<Strip>(strips.strips);
-  strips.slots.resize(strips.slots.size() + planes_ahead * static_cast<std::size_t>(strips.rows + 2) * 32,
-                      StripSlot{ 0, 0 });
-  slots_ = DeviceArray<StripSlot>(strips.slots);
-  fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
+  launch_.effects = effects_;
+  const auto palette_entry = add_palette(model, discretisation);
+  add_fibres(model, discretisation);
+  std::vector<NodeTask> tasks = add_tasks(model);
+  if (cut.patches)
+    add_patches(model, *cut.patches, tasks, palette_entry);
+  else
+    add_strips(*cut.strips, tasks, palette_entry);
+  tasks_ = DeviceArray<NodeTask>(tasks);
 
   StepArguments& g = constants_;
+  g.patches = patches_.data();
+  g.patch_count = static_cast<std::uint32_t>(patches_.size());
+  g.patch_corners = patch_corners_.data();
+  g.patch_makes = patch_makes_.data();
+  g.halo = halo_.data();
+  g.node_voxels = node_voxels_.data();
+  g.patch_tasks = patch_tasks_.data();
   g.strips = strips_.data();
   static_assert(sizeof(StripSlot) == sizeof(uint2), "a slot is read as two words");
   g.slots = reinterpret_cast<const uint2*>(slots_.data());
@@ -105,7 +116,6 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.contact_planes = contact_planes_.data();
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
   g.load_relief = loads_.relief();
-  g.brick_tasks = brick_tasks_.data();
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   g.prescribed = prescribed_.data();
@@ -125,8 +135,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 StepArguments DeviceModel::arguments() const { return constants_; }
 
-// voxels of equal make share an entry; entry 0 has no stiffness
-void DeviceModel::add_palette(const Model& model, const Discretisation& d, std::vector<StripSlot>& slots)
+// voxels of equal make share an entry; entry 0 has no stiffness. Returns the entry of each voxel.
+std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
 {
   const bool stabilised = d.assumed_strain;
   const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
@@ -185,20 +195,18 @@ void DeviceModel::add_palette(const Model& model, const Discretisation& d, std::
     entry_of[e] = index;
   }
   viscosity_.set_palette(entry_of);
-  for (auto& slot : slots)
-    slot.voxel = slot.voxel > 0 ? entry_of[slot.voxel - 1] : 0;
   palette_ = DeviceArray<float4>(entries);
   stabilisation_ = DeviceArray<float4>(more);
-  if (laws.empty())
-    return;
-  law_begin_ = DeviceArray<std::uint32_t>(law_begin);
-  laws_ = DeviceArray<LawEntry>(laws);
+  if (!laws.empty())
+  {
+    law_begin_ = DeviceArray<std::uint32_t>(law_begin);
+    laws_ = DeviceArray<LawEntry>(laws);
+  }
+  return entry_of;
 }
 
-void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips)
+void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation)
 {
-  if (strips.fibre_words.empty())
-    return;
   std::vector<float4> fibres;
   std::vector<std::uint32_t> muscles;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
@@ -270,7 +278,8 @@ void DeviceModel::reset_contacts()
   contact_planes_.upload(unknown.data(), unknown.size());
 }
 
-void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
+// what holds or moves nodes, by device node; those that never move are not stepped at all
+std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, -1, -1, -1, -1 });
   add_sliding(model, task_of);
@@ -309,74 +318,20 @@ void DeviceModel::add_tasks(const Model& model, VoxelStrips& strips)
     rigid.push_back(motion);
   }
 
-  // tasks strip by strip; nodes that never move are not stepped at all
-  std::vector<std::uint32_t> count(strips.strips.size() + 1, 0);
-  const auto has_task = [&](std::size_t n)
-  {
-    const NodeTask& t = task_of[n];
-    return still[n] == 0 && (t.load >= 0 || t.sliding >= 0 || t.prescribed >= 0 || t.rigid >= 0);
-  };
-  std::vector<bool> still_device(model.nodes.size() + 1, false);
+  std::vector<NodeTask> tasks;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
   {
+    NodeTask& t = task_of[n];
+    t.node = device_node_[n];
     if (still[n] != 0)
-    {
       still_nodes_.push_back(static_cast<std::uint32_t>(n));
-      still_device[device_node_[n]] = true;
-    }
-    if (has_task(n))
-      ++count[strips.strip_of_node[n] + 1];
+    else if (t.load >= 0 || t.sliding >= 0 || t.prescribed >= 0 || t.rigid >= 0)
+      tasks.push_back(t);
   }
-  for (std::size_t s = 0; s < strips.strips.size(); ++s)
-  {
-    count[s + 1] += count[s];
-    strips.strips[s].task_begin = count[s];
-    strips.strips[s].task_end = count[s + 1];
-  }
-  std::vector<NodeTask> tasks(count.back());
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (has_task(n))
-    {
-      task_of[n].node = device_node_[n];
-      tasks[count[strips.strip_of_node[n]]++] = task_of[n];
-    }
   std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });
-  if (!still_nodes_.empty())
-    for (auto& slot : strips.slots)
-      if (still_device[slot.node & StripSlot::node_mask])
-        slot.node &= ~StripSlot::updated;
-  if (cut_.bricks)
-    add_brick_tasks(strips, tasks);
-  tasks_ = DeviceArray<NodeTask>(tasks);
   prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
   rigid_ = DeviceArray<RigidMotion>(rigid);
-}
-
-// what the brick kernel finds at each owned place: [brick][plane][row][lane]
-void DeviceModel::add_brick_tasks(const VoxelStrips& strips, const std::vector<NodeTask>& tasks)
-{
-  std::vector<std::int32_t> task_of(device_node_.size() + 1, brick_task::none);
-  for (std::size_t t = 0; t < tasks.size(); ++t)
-  {
-    const NodeTask& task = tasks[t];
-    const bool slides_only =
-        task.sliding >= 0 && glides_[task.sliding] == 0 && task.load < 0 && task.prescribed < 0 && task.rigid < 0;
-    task_of[task.node] = slides_only ? task.sliding : brick_task::other - static_cast<std::int32_t>(t);
-  }
-  const auto rows = static_cast<std::size_t>(cut_.strips.rows),
-             planes = static_cast<std::size_t>(cut_.strips.planes) + 2;
-  std::vector<std::int32_t> words(strips.strips.size() * planes * rows * 32, brick_task::none);
-  for (std::size_t s = 0; s < strips.strips.size(); ++s)
-    for (std::size_t plane = 0; plane < strips.strips[s].planes; ++plane)
-      for (std::size_t row = 0; row < rows; ++row)
-        for (std::size_t lane = 0; lane < 32; ++lane)
-        {
-          const StripSlot& slot =
-              strips.slots[strips.strips[s].slot_begin + (plane * (rows + 2) + row + 1) * 32 + lane];
-          if (slot.node & StripSlot::owned)
-            words[((s * planes + plane) * rows + row) * 32 + lane] = task_of[slot.node & StripSlot::node_mask];
-        }
-  brick_tasks_ = DeviceArray<std::int32_t>(words);
+  return tasks;
 }
 
 }  // namespace cuda

@@ -6,6 +6,7 @@
 #include "discretisation.hpp"
 #include "step_kernel.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace frontalis
@@ -16,10 +17,24 @@ namespace cuda
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
+/// Patches where there are any, else strips.
 struct CutChoice
 {
-  bool bricks = false;
+  PatchSettings patches{ 0, 0 };
   StripSettings strips;
+};
+
+/// A model, cut up.
+struct VoxelCut
+{
+  VoxelCut(const Model& model, const CutChoice& choice);
+
+  std::unique_ptr<VoxelPatches> patches;
+  std::unique_ptr<VoxelStrips> strips;  ///< one of both
+
+  std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
+  /// 1 + the model voxel at each place, 0: none.
+  std::vector<std::uint32_t> voxel_at() const;
 };
 
 /// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
@@ -42,10 +57,11 @@ public:
   void save(Contacts& to, cudaStream_t stream) const;
   void restore(const Contacts& from, cudaStream_t stream);
 
-  const CutChoice& cut() const { return cut_; }
   Effects effects() const { return effects_; }
+  /// How the step kernel is launched: all but how many blocks the device holds.
+  const StepLaunch& launch() const { return launch_; }
+  std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
-  double filled() const { return filled_; }
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
@@ -55,20 +71,26 @@ public:
   const DeviceViscosity& viscosity() const { return viscosity_; }
 
 private:
-  DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut, VoxelStrips&& strips);
-  void add_palette(const Model& model, const Discretisation& discretisation, std::vector<StripSlot>& slots);
-  void add_fibres(const Model& model, const Discretisation& discretisation, const VoxelStrips& strips);
-  void add_tasks(const Model& model, VoxelStrips& strips);
-  void add_brick_tasks(const VoxelStrips& strips, const std::vector<NodeTask>& tasks);
+  DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut);
+  std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
+  void add_fibres(const Model& model, const Discretisation& discretisation);
+  std::vector<NodeTask> add_tasks(const Model& model);
+  void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
+  void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
+                   const std::vector<std::uint32_t>& palette_entry);
   void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
 
-  CutChoice cut_;
   Effects effects_;
-  double filled_;
+  StepLaunch launch_{};
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
   StepArguments constants_{};
 
+  DeviceArray<Patch> patches_;
+  DeviceArray<uint4> patch_corners_, node_voxels_;
+  DeviceArray<uint2> patch_makes_;
+  DeviceArray<std::uint32_t> halo_;
+  DeviceArray<std::int32_t> patch_tasks_;
   DeviceArray<Strip> strips_;
   DeviceArray<StripSlot> slots_;
   DeviceArray<float4> palette_, stabilisation_;
@@ -80,7 +102,6 @@ private:
   DeviceArray<SlidingContact> sliding_;
   DeviceArray<TangentPlane> contact_planes_;
   std::vector<char> glides_;  // contacts
-  DeviceArray<std::int32_t> brick_tasks_;
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
   DeviceArray<PrescribedMotion> prescribed_;

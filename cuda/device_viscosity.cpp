@@ -6,7 +6,8 @@ namespace cuda
 {
 
 DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discretisation,
-                                 const std::vector<std::uint32_t>& device_node, const std::vector<StripSlot>& slots)
+                                 const std::vector<std::uint32_t>& device_node,
+                                 const std::vector<std::uint32_t>& voxel_at)
     : terms_(discretisation.viscous_terms)
 {
   if (terms_ == 0)
@@ -30,9 +31,9 @@ DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discr
     }
     host_.push_back(v);
   }
-  std::vector<std::uint32_t> words(slots.size());
-  for (std::size_t s = 0; s < slots.size(); ++s)
-    words[s] = index[slots[s].voxel];
+  std::vector<std::uint32_t> words(voxel_at.size());
+  for (std::size_t p = 0; p < voxel_at.size(); ++p)
+    words[p] = index[voxel_at[p]];
   words_ = DeviceArray<std::uint32_t>(words);
   relaxed_ = DeviceArray<float>(static_cast<std::size_t>(terms_) * 6 * voxel_.size());
 }

@@ -15,9 +15,9 @@ namespace cuda
 class DeviceViscosity
 {
 public:
-  /// `slots`: as the strips were built, with the model's voxels.
+  /// `voxel_at`: 1 + the model voxel at each place of the strips or patches, 0: none.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
-                  const std::vector<std::uint32_t>& device_node, const std::vector<StripSlot>& slots);
+                  const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at);
 
   bool empty() const { return voxels_.size() == 0; }
   /// Model voxels that are viscous, ascending.

@@ -82,13 +82,13 @@ __global__ void renew_contacts(const __grid_constant__ StepArguments g)
 
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
 {
-  if (launch.bricks)
-    return launch_bricks(arguments, launch, stream);
+  if (launch.patches)
+    return launch_patches(arguments, launch, stream);
   const auto kernel = launch.effects == Effects::none ? cuda::step_kernel<strip_rows(Effects::none), Effects::none>
                       : launch.effects == Effects::fibres
                           ? cuda::step_kernel<strip_rows(Effects::fibres), Effects::fibres>
                           : cuda::step_kernel<strip_rows(Effects::all), Effects::all>;
-  kernel<<<launch.blocks, step_block, 0, stream>>>(arguments);
+  kernel<<<launch.blocks, launch.threads, 0, stream>>>(arguments);
   return cudaGetLastError();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "surface_contact.hpp"
+#include "voxel_patches.hpp"
 #include "voxel_strips.hpp"
 
 #include <cuda_runtime_api.h>
@@ -79,7 +80,14 @@ struct LawEntry
 /// Steps of equal length, or the internal forces alone. Pointers are to device memory.
 struct StepArguments
 {
-  // what is where
+  // what is where: patches, or strips
+  const Patch* patches;
+  std::uint32_t patch_count;
+  const uint4* patch_corners;       ///< VoxelPatches::corner
+  const uint2* patch_makes;         ///< of each voxel of each patch: palette entry, word of its fibres
+  const std::uint32_t* halo;        ///< VoxelPatches::halo
+  const uint4* node_voxels;         ///< VoxelPatches::node_voxel
+  const std::int32_t* patch_tasks;  ///< of each device node: see patch_task
   const Strip* strips;
   const uint2* slots;  ///< StripSlot: node and palette entry
   std::uint32_t strip_count;
@@ -93,9 +101,10 @@ struct StepArguments
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
   const LawEntry* laws;
-  bool selective_reduced;              ///< isochoric stress at eight points
-  const std::uint32_t* viscous_words;  ///< laid out as slots: 1 + viscous voxel, 0: none; null: no voxel is viscous
-  const float* relaxed;                ///< [term][component][viscous voxel] times tissue volume [N m]
+  bool selective_reduced;  ///< isochoric stress at eight points
+  const std::uint32_t*
+      viscous_words;     ///< laid out as slots or patch_makes: 1 + viscous voxel, 0: none; null: no voxel is viscous
+  const float* relaxed;  ///< [term][component][viscous voxel] times tissue volume [N m]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
   const std::uint32_t* fibre_words;
@@ -132,9 +141,7 @@ struct StepArguments
   float* velocity_before[3];                 ///< velocities before the update; null: no account of work is kept
   float* velocity_free[3];                   ///< after it and the loads, before constraints
   double* friction_work;                     ///< lost to friction, one a contact [J]; null: no account of work is kept
-  const std::int32_t* brick_tasks;           ///< [brick][plane][owned row][lane]: see brick_task
-  std::uint32_t* barrier;
-  std::uint32_t barrier_base;
+  std::uint32_t steps_before;                ///< that this solver's launches have done before this one
 };
 
 /// Threads of a block of the strip kernel; a warp walks one strip.
@@ -143,19 +150,20 @@ constexpr int step_block = 128;
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most warps of a brick, a row of voxels each.
-constexpr int most_brick_warps = 16;
+/// Most threads of a patch; the registers of a warp are left to kernels beside it.
+constexpr std::uint32_t most_patch_threads = 480;
 
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;
 
-/// Entries of brick_tasks: 0 and up: the node slides on this contact and nothing else; none: nothing holds it; below
-/// that: other_task - index of its NodeTask.
-namespace brick_task
+/// Entries of patch_tasks: 0 and up: the node slides on this contact and nothing else; none: nothing holds it; still:
+/// it never moves; else other - index of its NodeTask.
+namespace patch_task
 {
 constexpr std::int32_t none = -1;
 constexpr std::int32_t other = -2;
-}  // namespace brick_task
+constexpr std::int32_t still = -0x7fffffff;
+}  // namespace patch_task
 
 /// Kernels by what voxels need, so that those of a plain model hold no registers for more.
 enum class Effects : std::uint8_t
@@ -168,35 +176,30 @@ enum class Effects : std::uint8_t
 /// How the step kernel is launched for a model.
 struct StepLaunch
 {
-  bool bricks;  ///< a block of threads a strip, many steps a launch; else a warp a strip
-  int rows;     ///< of a strip
-  int planes;   ///< most of a strip
+  bool patches;  ///< a block of threads a patch, many steps a launch; else a warp a strip
   Effects effects;
-  std::size_t shared_bytes;  ///< of a block
-  bool cached;               ///< a block keeps what its bricks are made of in shared memory
-  int blocks;
+  int blocks, threads;
+  // of patches
+  std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
+  std::size_t shared_bytes;                          ///< of a block
 };
 
 /// Rows of a strip that the strip kernel takes.
 constexpr int strip_rows(Effects effects) { return effects == Effects::none ? 4 : 2; }
 
-/// Shared memory [bytes] of a block for the forces of a brick, and for what a brick is made of.
-FRONTALIS_LAW constexpr std::size_t brick_force_bytes(int rows, int planes)
+/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners.
+constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
 {
-  return 2 * sizeof(float) * 12 * 32 * static_cast<std::size_t>((rows + 1) * (planes + 1));
-}
-FRONTALIS_LAW constexpr std::size_t brick_bytes(int rows, int planes)
-{
-  return 16 + 32 * static_cast<std::size_t>(planes + 2) *
-                  ((rows + 2) * sizeof(uint2) + (rows + 1) * sizeof(std::uint32_t) + rows * sizeof(std::int32_t));
+  return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
+         24 * sizeof(float) * (most_voxels + 1);
 }
 
-/// Blocks of the brick kernel that a device holds at once; 0 where it has no code for the device.
+/// Blocks of the patch kernel that a device holds at once; 0 where it has no code for the device.
 int resident_blocks(const StepLaunch& launch);
 
-/// Launches steps [step_begin, step_end) of the plan; several of them need bricks.
+/// Launches steps [step_begin, step_end) of the plan; several of them need patches.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
-cudaError_t launch_bricks(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
+cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
 /// Exact closest points for the sliding nodes for which a step of the plan would else have to find them itself.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);

@@ -154,10 +154,9 @@ struct Builder
   }
 };
 
-// packs pieces of about equal length into warps, in order; short ones of any length
-std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces, const StripSettings& settings)
+// packs pieces of about equal length into warps, in order
+std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
 {
-  const bool any_length = settings.planes <= 3;
   // a few warps stay open, so that a large piece does not close one that small ones could fill
   constexpr std::size_t open_warps = 16;
   std::vector<std::vector<Piece>> warps;
@@ -167,7 +166,7 @@ std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces, const Str
   {
     std::size_t found = warps.size();
     for (std::size_t w = std::max(first_open, warps.size() - std::min(warps.size(), open_warps)); w < warps.size(); ++w)
-      if (used[w] + p.lanes <= lanes && (any_length || warps[w][0].planes * 3 <= p.planes * 4))
+      if (used[w] + p.lanes <= lanes && warps[w][0].planes * 3 <= p.planes * 4)
       {
         found = w;
         break;
@@ -185,14 +184,21 @@ std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces, const Str
 
 }  // namespace
 
+std::uint32_t fibre_word(const Model& model, std::uint32_t voxel)
+{
+  const auto first = static_cast<std::uint32_t>(model.fibre_begin[voxel]);
+  const std::uint32_t count = static_cast<std::uint32_t>(model.fibre_begin[voxel + std::size_t{ 1 }]) - first;
+  if (count > 15)
+    throw Error("backend cuda: voxel " + std::to_string(voxel) + " has " + std::to_string(count) +
+                " muscles; allowed are 15");
+  return count > 0 ? first * 16 + count : 0;
+}
+
 VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : rows(settings.rows)
 {
-  if (model.nodes.size() >= StripSlot::node_mask || model.fibre_muscle.size() >= (1u << 28))
-    throw Error("backend cuda: " + std::to_string(model.nodes.size()) + " nodes and " +
-                std::to_string(model.fibre_muscle.size()) + " fibre entries; allowed are below 2^30 and 2^28");
   Builder builder(model, settings);
   builder.cut();
-  const auto warps = pack(builder.pieces, settings);
+  const auto warps = pack(builder.pieces);
   builder.pieces = {};
 
   // owned nodes, numbered as a warp meets them
@@ -261,26 +267,9 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
         for (int lane = 0; lane < lanes; ++lane)
         {
           const auto& place = slots[strips.back().slot_begin + (plane * (rows + 2) + r) * lanes + lane];
-          std::uint32_t word = 0;
-          if (place.voxel > 0)
-          {
-            const auto first = model.fibre_begin[place.voxel - 1];
-            const auto count = model.fibre_begin[place.voxel] - first;
-            if (count > 15)
-              throw Error("backend cuda: voxel " + std::to_string(place.voxel - 1) + " has " + std::to_string(count) +
-                          " muscles; allowed are 15");
-            word = count > 0 ? static_cast<std::uint32_t>(first) * 16 + static_cast<std::uint32_t>(count) : 0;
-          }
-          fibre_words.push_back(word);
+          fibre_words.push_back(place.voxel > 0 ? fibre_word(model, place.voxel - 1) : 0);
         }
   }
-}
-
-std::size_t VoxelStrips::count(const Model& model, const StripSettings& settings)
-{
-  Builder builder(model, settings);
-  builder.cut();
-  return pack(builder.pieces, settings).size();
 }
 
 double VoxelStrips::filled() const

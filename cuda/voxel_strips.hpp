@@ -40,6 +40,9 @@ struct Strip
   std::uint32_t task_end;
 };
 
+/// First fibre entry of a voxel * 16 + number of entries; 0: none. Throws Error where there are more than 15.
+std::uint32_t fibre_word(const Model& model, std::uint32_t voxel);
+
 /// The strips of a model. Device nodes are numbered in the order in which strips own them, from 1; node 0 is a place
 /// holder that never moves.
 struct VoxelStrips
@@ -49,13 +52,9 @@ struct VoxelStrips
   int rows = 0;
   std::vector<Strip> strips;  ///< long ones first
   std::vector<StripSlot> slots;
-  std::vector<std::uint32_t>
-      fibre_words;  ///< first fibre entry * 16 + number of entries, of the voxel in the place; 0: none
+  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of the voxel in the place; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
   std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
-
-  /// How many strips a model is cut into.
-  static std::size_t count(const Model& model, const StripSettings& settings);
 
   /// Share of the places of voxels that hold one: what a sparse shell loses.
   double filled() const;

@@ -1,0 +1,290 @@
+#include "element_stress.cuh"
+#include "node_tasks.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// A block of threads keeps its patch in shared memory, halo included, for as many steps as a launch has: a thread a
+// voxel, forces of the corners through shared memory, then a thread a node. Between steps only the nodes on the border
+// go from block to block. Displacement and the number of the step travel in one word of 16 bytes, so that whoever waits
+// for a node waits for its data and for nothing else: there is no barrier of all blocks and no fence. Each node's
+// writer also waits for its readers, a step later, because who reads a patch is read by it: two buffers are enough.
+
+/// Marks what is written during a launch: the inverse masses that stand there otherwise are not negative.
+__device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
+{
+  return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
+}
+
+__device__ __forceinline__ void send(float4* to, const float* u, std::uint32_t mark)
+{
+  asm volatile(
+      "{ .reg .b64 low, high; .reg .b128 all; mov.b64 low, {%1, %2}; mov.b64 high, {%3, %4};"
+      " mov.b128 all, {low, high}; st.relaxed.gpu.global.b128 [%0], all; }" ::"l"(to),
+      "r"(__float_as_uint(u[0])), "r"(__float_as_uint(u[1])), "r"(__float_as_uint(u[2])), "r"(mark)
+      : "memory");
+}
+
+__device__ __forceinline__ float4 receive(const float4* from, std::uint32_t mark)
+{
+  std::uint32_t word[4];
+  do
+    asm volatile(
+        "{ .reg .b64 low, high; .reg .b128 all; ld.relaxed.gpu.global.b128 all, [%4];"
+        " mov.b128 {low, high}, all; mov.b64 {%0, %1}, low; mov.b64 {%2, %3}, high; }"
+        : "=r"(word[0]), "=r"(word[1]), "=r"(word[2]), "=r"(word[3])
+        : "l"(from)
+        : "memory");
+  while (word[3] != mark);
+  return make_float4(__uint_as_float(word[0]), __uint_as_float(word[1]), __uint_as_float(word[2]), 0);
+}
+
+/// A block's shared memory: see patch_bytes().
+struct PatchMemory
+{
+  float4* place;        // halo, then own nodes: displacement and, of own nodes, inverse mass
+  float* v[3];          // of own nodes
+  float* force;         // [corner][component][voxel]; the last column is no voxel's and stays 0
+  std::uint32_t width;  // of a row of it
+};
+
+__device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
+{
+  extern __shared__ float4 all[];
+  float* const v = reinterpret_cast<float*>(all + launch.most_halo + launch.most_nodes);
+  return {
+    all, { v, v + launch.most_nodes, v + 2 * launch.most_nodes }, v + 3 * launch.most_nodes, launch.most_voxels + 1
+  };
+}
+
+__device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8])
+{
+  const std::uint32_t word[4] = { words.x, words.y, words.z, words.w };
+#pragma unroll
+  for (int i = 0; i < 4; ++i)
+  {
+    out[2 * i] = word[i] & 0xffffu;
+    out[2 * i + 1] = word[i] >> 16;
+  }
+}
+
+/// What a voxel needs besides its corners' displacements.
+struct VoxelFetch
+{
+  uint4 corner;
+  ElementPlace place;
+};
+
+template <Effects With>
+__device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::uint32_t index)
+{
+  VoxelFetch voxel{};
+  voxel.corner = __ldg(g.patch_corners + index);
+  if (With == Effects::none)
+    voxel.place.palette = __ldg(&g.patch_makes[index].x);
+  else
+  {
+    const uint2 make = __ldg(g.patch_makes + index);
+    voxel.place.palette = make.x;
+    if (g.fibres != nullptr)
+      fetch_fibre(g, make.y, voxel.place);
+  }
+  if (With == Effects::all && g.viscous_words != nullptr)
+    voxel.place.viscous = __ldg(g.viscous_words + index);
+  return voxel;
+}
+
+template <Effects With>
+__device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel, const float* activation,
+                                           bool look, std::uint32_t& frequency_bits, const PatchMemory& memory,
+                                           std::uint32_t column)
+{
+  std::uint32_t corner[8];
+  split(voxel.corner, corner);
+  float mode[3][8];
+#pragma unroll
+  for (int b = 0; b < 8; ++b)
+  {
+    const float4 u = memory.place[corner[b]];
+    mode[0][b] = u.x;
+    mode[1][b] = u.y;
+    mode[2][b] = u.z;
+  }
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+    physics::walsh_hadamard(mode[c]);
+  element_forces<With>(g, voxel.place, activation, mode, look, frequency_bits);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    physics::walsh_hadamard_transposed(mode[c]);
+#pragma unroll
+    for (int b = 0; b < 8; ++b)
+      memory.force[(3 * b + c) * memory.width + column] = mode[c][b];
+  }
+}
+
+/// Force on a node: its voxels in the order of the corner that it is of them.
+__device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
+{
+  std::uint32_t column[8];
+  split(voxels, column);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    force[c] = 0;
+#pragma unroll
+    for (int b = 0; b < 8; ++b)
+      force[c] += memory.force[(3 * b + c) * memory.width + column[b]];
+  }
+}
+
+/// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
+__device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
+                                                std::uint32_t own, std::uint32_t most_halo, bool on_border, bool last,
+                                                float4* next, int step)
+{
+  const std::int32_t task = __ldg(g.patch_tasks + node);
+  TangentPlane plane{};
+  if (task >= 0)
+    plane = g.contact_planes[task];
+  float force[3];
+  sum_forces(memory, __ldg(g.node_voxels + node), force);
+  if (g.forces_only)
+  {
+    next[node] = make_float4(force[0], force[1], force[2], 0);
+    return;
+  }
+  float4& place = memory.place[most_halo + own];
+  const NodeFetch fetch{ place, { memory.v[0][own], memory.v[1][own], memory.v[2][own] } };
+  NodeState n{ { place.x, place.y, place.z }, { fetch.v[0], fetch.v[1], fetch.v[2] } };
+  if (task != patch_task::still)
+  {
+    n = updated(g, node, fetch, force);
+    if (task >= 0)
+      slide(g, task, plane, n);
+    else if (task != patch_task::none)
+    {
+      const float old[3] = { fetch.own.x, fetch.own.y, fetch.own.z };
+      apply_task(g, g.tasks[patch_task::other - task], old, fetch.own.w, step, n);
+    }
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      memory.v[i][own] = n.v[i];
+    place = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
+  }
+  if (last)
+  {
+    next[node] = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = n.v[i];
+  }
+  else if (on_border)
+    send(next + node, n.u, mark(g, step + 1));
+}
+
+template <Effects With>
+__global__ void __launch_bounds__(512, 1)
+    patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
+{
+  __shared__ float activation[With != Effects::none ? most_muscles : 1];
+  const PatchMemory memory = patch_memory(launch);
+  std::uint32_t filled = 0;
+  for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
+  {
+    const Patch patch = g.patches[p];
+    for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+    {
+      const std::uint32_t node = patch.first_node + n;
+      memory.place[launch.most_halo + filled + n] = g.u[g.first][node];
+#pragma unroll
+      for (int i = 0; i < 3; ++i)
+        memory.v[i][filled + n] = g.v[i][node];
+    }
+    filled += patch.nodes;
+  }
+  if (threadIdx.x < 24)
+    memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
+  for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
+  {
+    const int present = (g.first + step - g.step_begin) & 1;
+    const float4* const u = g.u[present];
+    const bool look = g.look != nullptr && step + 1 == g.steps;
+    std::uint32_t frequency_bits = 0;
+    filled = 0;
+    if (With != Effects::none)
+      set_activations(g, step, activation);
+    for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
+    {
+      const Patch patch = g.patches[p];
+      VoxelFetch voxel{};
+      if (threadIdx.x < patch.voxels)
+        voxel = fetch_voxel<With>(g, patch.voxel_begin + threadIdx.x);
+      for (std::uint32_t h = threadIdx.x; h < patch.halo; h += blockDim.x)
+      {
+        const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
+        memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
+      }
+      __syncthreads();
+      for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += blockDim.x)
+      {
+        if (v != threadIdx.x)
+          voxel = fetch_voxel<With>(g, patch.voxel_begin + v);
+        put_forces<With>(g, voxel, activation, look, frequency_bits, memory, v);
+      }
+      __syncthreads();
+      for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+        step_patch_node(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
+                        step + 1 == g.step_end, g.u[1 - present], step);
+      filled += patch.nodes;
+    }
+    if (look)
+    {
+      const std::uint32_t largest = __reduce_max_sync(0xffffffffu, frequency_bits);
+      if ((threadIdx.x & 31) == 0)
+        atomicMax(g.look, largest);
+    }
+  }
+}
+
+namespace
+{
+
+const void* kernel(Effects effects)
+{
+  return effects == Effects::none     ? reinterpret_cast<const void*>(patch_kernel<Effects::none>)
+         : effects == Effects::fibres ? reinterpret_cast<const void*>(patch_kernel<Effects::fibres>)
+                                      : reinterpret_cast<const void*>(patch_kernel<Effects::all>);
+}
+
+}  // namespace
+}  // namespace cuda
+
+int resident_blocks(const StepLaunch& launch)
+{
+  int device = 0, processors = 0, blocks = 0;
+  const void* const kernel = cuda::kernel(launch.effects);
+  if (cudaGetDevice(&device) != cudaSuccess ||
+      cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
+      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                           static_cast<int>(launch.shared_bytes)) != cudaSuccess ||
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, launch.threads, launch.shared_bytes) !=
+          cudaSuccess)
+    return 0;
+  return processors * blocks;
+}
+
+cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
+{
+  void* parameters[] = { const_cast<StepArguments*>(&arguments), const_cast<StepLaunch*>(&launch) };
+  const void* const kernel = cuda::kernel(launch.effects);
+  const dim3 grid(launch.blocks), block(launch.threads);
+  if (arguments.step_end - arguments.step_begin > 1)
+    return cudaLaunchCooperativeKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
+  return cudaLaunchKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,114 @@
+#include "../../cuda/voxel_patches.hpp"
+#include "../../src/study/gpu/shell_model.hpp"
+#include "block_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+using namespace frontalis;
+
+namespace
+{
+
+// everything that the kernel takes from the patches, followed back to the model's voxels and nodes
+void check_patches(const Model& model, const PatchSettings& settings)
+{
+  const VoxelPatches patches(model, settings);
+  ASSERT_EQ(patches.patches.size(), static_cast<std::size_t>(settings.blocks) * settings.turns);
+  std::vector<std::uint32_t> node_of(model.nodes.size() + 1, 0);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    ASSERT_TRUE(patches.device_node[n] >= 1 && patches.device_node[n] <= model.nodes.size());
+    node_of[patches.device_node[n]] = static_cast<std::uint32_t>(n);
+  }
+  std::vector<std::uint32_t> filled(settings.blocks, patches.most_halo);
+  std::vector<int> valence(model.nodes.size(), 0), found(model.nodes.size(), 0);
+  for (const auto& corners : model.voxel_nodes)
+    for (const auto n : corners)
+      ++valence[n];
+  std::set<std::uint32_t> border, read;
+  std::uint32_t next = 1;
+  for (std::size_t p = 0; p < patches.patches.size(); ++p)
+  {
+    const Patch& patch = patches.patches[p];
+    ASSERT_EQ(patch.first_node, next);
+    next += patch.nodes;
+    ASSERT_LE(patch.halo, patches.most_halo);
+    ASSERT_LE(patch.voxels, patches.most_voxels);
+    const std::uint32_t first_place = filled[p % settings.blocks];
+    filled[p % settings.blocks] += patch.nodes;
+    ASSERT_LE(filled[p % settings.blocks], patches.most_halo + patches.most_nodes);
+    const auto device_node_at = [&](std::uint32_t place) {
+      return place < patches.most_halo ? patches.halo[patch.halo_begin + place]
+                                       : patch.first_node + place - first_place;
+    };
+    for (std::uint32_t v = 0; v < patch.voxels; ++v)
+      for (int b = 0; b < 8; ++b)
+        ASSERT_EQ(node_of[device_node_at(patches.corner[patch.voxel_begin + v][b])],
+                  static_cast<std::uint32_t>(model.voxel_nodes[patches.voxel[patch.voxel_begin + v]][b]));
+    for (std::uint32_t n = patch.first_node; n < patch.first_node + patch.nodes; ++n)
+      for (int b = 0; b < 8; ++b)
+      {
+        const auto v = patches.node_voxel[n][b];
+        if (v == patches.most_voxels)
+          continue;
+        ASSERT_LT(v, patch.voxels);
+        ASSERT_EQ(static_cast<std::uint32_t>(model.voxel_nodes[patches.voxel[patch.voxel_begin + v]][b]), node_of[n]);
+        ++found[node_of[n]];
+      }
+    for (std::uint32_t n = 0; n < patch.border; ++n)
+      border.insert(patch.first_node + n);
+    read.insert(patches.halo.begin() + patch.halo_begin, patches.halo.begin() + patch.halo_begin + patch.halo);
+  }
+  EXPECT_EQ(next, model.nodes.size() + 1);
+  EXPECT_EQ(found, valence);
+  EXPECT_TRUE(std::includes(border.begin(), border.end(), read.begin(), read.end()));
+}
+
+}  // namespace
+
+TEST(VoxelPatches, GiveEveryNodeOneOwnerWithAllItsVoxels)
+{
+  ShellSettings settings;
+  settings.voxel = 3e-3;
+  const Model shell = shell_model(settings);
+  for (const int turns : { 1, 2, 3 })
+    for (const int blocks : { 1, 7, 132 })
+      check_patches(shell, { blocks, turns });
+}
+
+TEST(VoxelPatches, MayBeMoreThanNodes)
+{
+  test::BlockSettings s;
+  s.voxels = { { 2, 1, 1 } };
+  check_patches(test::block_model(s), { 132, 2 });
+}
+
+TEST(VoxelPatches, CostAboutTheSameEach)
+{
+  const Model shell = shell_model({});
+  const VoxelPatches patches(shell, { 132, 1 });
+  const double mean = static_cast<double>(patches.voxel.size()) / 132;
+  EXPECT_LT(patches.most_voxels, 1.15 * mean);
+  EXPECT_LT(mean * 132, 1.35 * static_cast<double>(shell.voxels.size()));
+}
+
+TEST(VoxelPatches, TakeVoxelsWithFibresFirst)
+{
+  ShellSettings settings;
+  settings.voxel = 3e-3;
+  const Model shell = shell_model(settings);
+  const VoxelPatches patches(shell, { 7, 1 });
+  const auto fibres = [&](std::uint32_t e) { return shell.fibre_begin[e + 1] - shell.fibre_begin[e]; };
+  std::size_t with = 0;
+  for (const Patch& patch : patches.patches)
+    for (std::uint32_t v = patch.voxel_begin + 1; v < patch.voxel_begin + patch.voxels; ++v)
+    {
+      EXPECT_GE(fibres(patches.voxel[v - 1]), fibres(patches.voxel[v]));
+      with += fibres(patches.voxel[v]) > 0;
+    }
+  EXPECT_GT(with, 100u);
+}
