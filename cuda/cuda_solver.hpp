@@ -1,6 +1,7 @@
 #pragma once
 
 #include "device_account.hpp"
+#include "device_monitor.hpp"
 #include "device_model.hpp"
 #include "nodal_loads.hpp"
 #include "stepping_solver.hpp"
@@ -48,6 +49,7 @@ protected:
   void external_forces(Vectors& out) override;
   void open_account() override;
   Work work() override;
+  Monitor measure() override;
 
 private:
   static constexpr int plan_slots = 3;
@@ -85,6 +87,7 @@ private:
   bool still_moved_ = false;  // displacements were set from outside, those of still nodes too
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
+  std::unique_ptr<DeviceMonitor> monitor_;   // made when it is asked for
   std::unique_ptr<NodalLoads> loads_;        // on the host, where somebody asks for them
   std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
   double viscous_elapsed_ = 0;               // since viscous stresses were renewed [s]

@@ -227,5 +227,12 @@ Work CudaSolver::work()
   return work;
 }
 
+Monitor CudaSolver::measure()
+{
+  if (!monitor_)
+    monitor_ = std::make_unique<DeviceMonitor>(*model_, device_);
+  return monitor_->look(arguments(0), u_[present_].data(), stream_);
+}
+
 }  // namespace cuda
 }  // namespace frontalis

@@ -78,13 +78,13 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>())
 {
   launch_.effects = effects_;
-  const auto palette_entry = add_palette(model, discretisation);
+  palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
   if (cut.patches)
-    add_patches(model, *cut.patches, tasks, palette_entry);
+    add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
-    add_strips(*cut.strips, tasks, palette_entry);
+    add_strips(*cut.strips, tasks, palette_of_voxel_);
   tasks_ = DeviceArray<NodeTask>(tasks);
 
   StepArguments& g = constants_;

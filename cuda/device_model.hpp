@@ -64,6 +64,7 @@ public:
   std::size_t strips() const { return strips_.size(); }
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
+  const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   std::size_t contacts() const { return sliding_.size(); }
   DeviceLoads& loads() { return loads_; }
@@ -84,6 +85,7 @@ private:
   StepLaunch launch_{};
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
+  std::vector<std::uint32_t> palette_of_voxel_;
   StepArguments constants_{};
 
   DeviceArray<Patch> patches_;

@@ -133,7 +133,11 @@ void Motion::advance(double time)
   controls.activation = curve_.at(time);
   for (std::size_t b = 0; b < bones_.size(); ++b)
     controls.bone[b] = time < ramp_ ? interpolate({}, bones_[b], time / ramp_) : bones_[b];
-  solver_.advance((time - time_) / scaling_, controls);
+  const double seconds = (time - time_) / scaling_;
+  if (guard_ != nullptr)
+    guard_->advance(seconds, controls);
+  else
+    solver_.advance(seconds, controls);
   time_ = time;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/solver/solver.hpp"
+#include "frontalis/solver/guard.hpp"
 
 #include <string>
 #include <vector>
@@ -24,12 +24,18 @@ ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
 /// go linearly from rest. Throws Error with the file's line.
 ActivationCurve read_activation_curve(const std::string& path, const Model& model);
 
-/// Plays a curve on a solver, and takes bones to their place over the first `ramp` seconds.
+/// Plays a curve on a solver, watched by a guard or not, and takes bones to their place over the first `ramp` seconds.
 class Motion
 {
 public:
-  Motion(Solver& solver, const Model& model, ActivationCurve curve, std::vector<RigidTransform> bones, double ramp)
-      : solver_(solver), scaling_(model.time_scaling), curve_(std::move(curve)), bones_(std::move(bones)), ramp_(ramp)
+  Motion(Solver& solver, Guard* guard, const Model& model, ActivationCurve curve, std::vector<RigidTransform> bones,
+         double ramp)
+      : solver_(solver),
+        guard_(guard),
+        scaling_(model.time_scaling),
+        curve_(std::move(curve)),
+        bones_(std::move(bones)),
+        ramp_(ramp)
   {
   }
 
@@ -40,6 +46,7 @@ private:
   void advance(double time);
 
   Solver& solver_;
+  Guard* guard_;  // may be none
   double scaling_;
   ActivationCurve curve_;
   std::vector<RigidTransform> bones_;

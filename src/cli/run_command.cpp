@@ -41,6 +41,7 @@ struct RunOptions
   double frame_rate = 0;  ///< [1/s]; 0: the model's
   std::string backend = "auto";
   int threads = 0;
+  int guard_interval = GuardSettings().interval;  ///< steps; 0: no guard
 };
 
 // a state that cannot be trusted ends the run before its frame is written
@@ -69,7 +70,7 @@ void look(Solver& solver, const Model& model, double time, RunSummary& summary)
 }
 
 // plays the motion frame by frame; ends early on Ctrl-C
-void play(Solver& solver, const Model& model, const RunOptions& options, Motion& motion,
+void play(Solver& solver, const Guard* guard, const Model& model, const RunOptions& options, Motion& motion,
           std::optional<FrameFolder>& folder, RunSummary& summary)
 {
   const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
@@ -82,6 +83,8 @@ void play(Solver& solver, const Model& model, const RunOptions& options, Motion&
     if (frame > 0)
       motion.advance_to(time);
     look(solver, model, time, summary);
+    if (guard != nullptr)
+      summary.guard = guard->counts();
     if (frame == 0)
       summary.rest = summary.end;
     if (folder)
@@ -169,8 +172,18 @@ void run(const RunOptions& options)
     settle(*solver, *model, options, { curve.activation.back(), bones }, folder, summary);
   else
   {
-    Motion motion(*solver, *model, curve, bones, ramp);
-    play(*solver, *model, options, motion, folder, summary);
+    std::optional<Guard> guard;
+    if (options.guard_interval > 0)
+    {
+      GuardSettings watch;
+      watch.interval = options.guard_interval;
+      watch.recovery = std::max(watch.recovery, watch.interval);
+      watch.ledger = options.ledger;
+      guard.emplace(*solver, model, watch);
+    }
+    Guard* const watched = guard ? &*guard : nullptr;
+    Motion motion(*solver, watched, *model, curve, bones, ramp);
+    play(*solver, watched, *model, options, motion, folder, summary);
   }
   if (folder)
     folder->finish(json_of(*model, summary));
@@ -213,6 +226,11 @@ void add_run_command(CLI::App& app, Action& action)
       ->check(CLI::PositiveNumber);
   command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
       ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  command
+      ->add_option("--guard", options->guard_interval,
+                   "steps between two checks of the motion, which go back and take shorter steps where it is unstable "
+                   "(512); 0: none")
+      ->check(CLI::Range(0, 1 << 30));
   command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
   add_scene_options(*command, options->source);
   command->callback(

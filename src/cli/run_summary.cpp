@@ -87,13 +87,21 @@ void print_result(const Model& model, const RunSummary& summary)
     std::printf("energy balance     closes within %.3g %% of the largest term\n",
                 100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
   }
+  if (summary.guard)
+    std::printf("guard              %lld checks, went back %lld times%s%s\n",
+                static_cast<long long>(summary.guard->checks), static_cast<long long>(summary.guard->rollbacks),
+                summary.guard->rollbacks > 0 ? ", the last because " : "",
+                summary.guard->rollbacks > 0 ? words_for(summary.guard->latest).c_str() : "");
   if (summary.equilibrium)
     std::printf("equilibrium        %s: %.2e of the displacement is left\n",
                 summary.equilibrium->reached ? "reached" : "not reached", summary.equilibrium->residual);
   std::printf("simulated          %.4f s in %lld steps, %.3f us the last\n", summary.seconds,
               static_cast<long long>(summary.profile.steps), summary.time_step * 1e6);
-  std::printf("wall               %.3f s: stepping %.3f, skin %.3f, energies %.3f\n", summary.wall,
+  std::printf("wall               %.3f s: stepping %.3f, skin %.3f, energies %.3f", summary.wall,
               summary.profile.stepping, summary.profile.skin, summary.profile.monitor);
+  if (summary.guard)
+    std::printf(", guard %.3f", summary.guard->seconds);
+  std::printf("\n");
   std::printf("real-time factor   %.4f", ratio(summary.seconds, summary.wall));
   if (model.time_scaling != 1)
     std::printf(" with time scaling %g, which is not real time; %.4f without", model.time_scaling,
@@ -140,6 +148,12 @@ std::string json_of(const Model& model, const RunSummary& summary)
   if (summary.ledger)
     for (const auto& [name, joules] : terms_of(*summary.ledger))
       add(std::string("ledger_") + name + "_J", json_number(joules));
+  if (summary.guard)
+  {
+    add_count("guard_checks", static_cast<std::size_t>(summary.guard->checks));
+    add_count("guard_rollbacks", static_cast<std::size_t>(summary.guard->rollbacks));
+    add("guard_s", json_number(summary.guard->seconds));
+  }
   if (summary.equilibrium)
   {
     add("equilibrium_reached", summary.equilibrium->reached ? "true" : "false");

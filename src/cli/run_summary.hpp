@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
-#include "frontalis/solver/solver.hpp"
+#include "frontalis/solver/guard.hpp"
 
 #include <optional>
 #include <string>
@@ -23,6 +23,7 @@ struct RunSummary
   double peak_internal = 0;
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
+  std::optional<GuardCounts> guard;        ///< where the motion was watched
   std::optional<EnergyLedger> ledger;      ///< at the end, where one was kept
   std::optional<Equilibrium> equilibrium;  ///< where one was looked for
   SkinState rest;                          ///< face frame

@@ -250,6 +250,10 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("internal energy [J]", frame_.monitor.internal);
   status.add("hourglass energy [J]", frame_.monitor.hourglass);
   status.add("smallest volume ratio", frame_.monitor.worst_jacobian);
+  status.add("voxels inside out", frame_.monitor.inverted);
+  status.add("times gone back to a stable state", frame_.guard.rollbacks);
+  if (frame_.guard.rollbacks > 0)
+    status.add("why gone back the last time", words_for(frame_.guard.latest));
   status.add("frames not published because not finite", frames_dropped_);
 }
 

@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/ros/model_source.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -110,6 +111,13 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   out.runner.frame_rate = reader.value("frame_rate", 0.0, "a number [1/s], 0: the model's");
   reader.check(std::isfinite(out.runner.frame_rate) && out.runner.frame_rate >= 0, "frame_rate",
                std::to_string(out.runner.frame_rate), "0 (the model's) or more [1/s]");
+  GuardSettings guard;
+  guard.interval = reader.value("guard_interval", guard.interval, "a whole number of steps, 0: no guard");
+  reader.check(guard.interval >= 0, "guard_interval", std::to_string(guard.interval), "0 (no guard) or more");
+  guard.recovery = std::max(guard.recovery, guard.interval);
+  out.runner.guard.reset();
+  if (guard.interval > 0)
+    out.runner.guard = guard;
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");
   out.demo = reader.value("demo", false, "true or false");

@@ -39,6 +39,7 @@ struct Runner::Implementation
   RunnerSettings settings;
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
+  std::unique_ptr<Guard> guard;  // may be none
 
   // shared with the callers' threads, under the mutex
   mutable std::mutex mutex;
@@ -85,7 +86,10 @@ void Runner::Implementation::advance(double seconds, const Controls& to)
 {
   try
   {
-    solver->advance(seconds / model->time_scaling, to);
+    if (guard)
+      guard->advance(seconds / model->time_scaling, to);
+    else
+      solver->advance(seconds / model->time_scaling, to);
   }
   catch (const Error& error)
   {
@@ -122,6 +126,8 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   frame.time_step = solver->time_step();
   frame.steps = solver->profile().steps;
   frame.activation = solver->activation();
+  if (guard)
+    frame.guard = guard->counts();
   ++frame.sequence;
 }
 
@@ -187,13 +193,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
     // in slices, so that a long step can be stopped
     const double slice = std::min(request.seconds - done, steps_a_slice * solver->time_step() * model->time_scaling);
     done += slice;
-    const auto part = static_cast<float>(std::min(1.0, done / request.seconds));
-    Controls on_the_way = to;
-    for (std::size_t m = 0; m < to.activation.size(); ++m)
-      on_the_way.activation[m] = from.activation[m] + part * (to.activation[m] - from.activation[m]);
-    for (std::size_t b = 0; b < to.bone.size(); ++b)
-      on_the_way.bone[b] = interpolate(from.bone[b], to.bone[b], std::min(1.0, done / request.seconds));
-    advance(slice, on_the_way);
+    advance(slice, interpolate(from, to, std::min(1.0, done / request.seconds)));
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
     if (stop || reset_wanted || cancel_wanted)
@@ -232,6 +232,8 @@ void Runner::Implementation::loop()
     if (reset)
     {
       solver->reset();
+      if (guard)
+        guard->restart();
       frame.failed = false;
       frame.failure.clear();
       clock.restart(0);
@@ -295,6 +297,8 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
     throw Error("frame rate " + std::to_string(self_->settings.frame_rate) + " Hz: allowed is 0.1 to 1000");
   self_->on_frame = std::move(on_frame);
   self_->solver = make_solver(self_->model, settings.solver);
+  if (settings.guard)
+    self_->guard = std::make_unique<Guard>(*self_->solver, self_->model, *settings.guard);
   self_->target = self_->solver->controls();
   self_->thread = std::thread([this] { self_->guarded_loop(); });
 }

@@ -88,6 +88,13 @@ struct CpuElement
     return { Lane::load(s.mu + at.offset), Lane::load(s.kappa + at.offset) };
   }
 
+  static FRONTALIS_LAW physics::AssumedStrain<Batch> stabilisation_of(const Arguments& g, const Place& at)
+  {
+    const TileStabilisation& s = g.stabilisation[at.index];
+    return { Lane::load(s.bending + at.offset), Lane::load(s.coupling + at.offset), Lane::load(s.torsion + at.offset),
+             Lane::load(s.warping + at.offset) };
+  }
+
   /// Elastic stress times volume.
   static FRONTALIS_LAW Stress elastic(const Arguments& g, const Place& at, const physics::NeoHookean<Batch>& material,
                                       const Kinematics& k)
@@ -293,12 +300,7 @@ struct CpuElement
     const TileStiffness& stiffness = g.stiffness[at.index];
     const Batch hourglass = Lane::load(stiffness.hourglass + at.offset);
     if (Form == Stabilisation::assumed_strain)
-    {
-      const TileStabilisation& s = g.stabilisation[at.index];
-      const physics::AssumedStrain<Batch> form{ Lane::load(s.bending + at.offset), Lane::load(s.coupling + at.offset),
-                                                Lane::load(s.torsion + at.offset), Lane::load(s.warping + at.offset) };
-      physics::hourglass_forces(form, hourglass, g.hourglass_weight, k.F, mode, P);
-    }
+      physics::hourglass_forces(stabilisation_of(g, at), hourglass, g.hourglass_weight, k.F, mode, P);
     if (Form == Stabilisation::selective_reduced)
       gauss_points(g, at, mode, frequency_squared);
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;

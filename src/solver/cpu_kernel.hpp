@@ -65,11 +65,18 @@ template <class Real>
 using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32_t first, std::int32_t last,
                            Real* buffer, KernelTask task);
 
+struct PlaneMonitor;
+
+/// Energies and worst voxels of the voxel planes [first, last) at g.u, one a plane.
+using CpuMonitorKernel = void (*)(const CpuKernelArguments<double>& g, std::int32_t first, std::int32_t last,
+                                  PlaneMonitor* planes);
+
 struct CpuKernelChoice
 {
   CpuKernel<float> single;
   CpuKernel<double> twice;
   SlideKernel<float> slide;
+  CpuMonitorKernel monitor;
   const char* name;
 };
 

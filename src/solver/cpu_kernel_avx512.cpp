@@ -1,4 +1,5 @@
 #include "cpu_kernel_body.hpp"
+#include "cpu_monitor.hpp"
 
 namespace frontalis
 {
@@ -8,7 +9,7 @@ void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
   return { CpuKernelBody<xsimd::avx512bw, float>::run, CpuKernelBody<xsimd::avx512bw, double>::run, slide_kernel_avx512,
-           name };
+           CpuMonitor<xsimd::avx512bw>::run, name };
 }
 
 }  // namespace frontalis

@@ -1,4 +1,5 @@
 #include "cpu_kernel_body.hpp"
+#include "cpu_monitor.hpp"
 
 namespace frontalis
 {
@@ -8,7 +9,7 @@ void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int3
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
   return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run,
-           slide_kernel_baseline, name };
+           slide_kernel_baseline, CpuMonitor<xsimd::default_arch>::run, name };
 }
 
 }  // namespace frontalis

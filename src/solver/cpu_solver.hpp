@@ -38,6 +38,7 @@ protected:
   void external_forces(Vectors& out) override;
   void open_account() override;
   Work work() override;
+  Monitor measure() override;
 
 private:
   using Components = std::array<std::vector<Real>, 3>;
@@ -73,6 +74,7 @@ private:
   std::string remark_;
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;
+  std::array<std::vector<double>, 3> wide_;  // displacements for the monitor; empty until it is asked for
 };
 
 }  // namespace frontalis

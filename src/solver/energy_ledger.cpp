@@ -1,6 +1,5 @@
 #include "frontalis/error.hpp"
 #include "stepping_solver.hpp"
-#include "voxel_monitor.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -35,7 +34,7 @@ EnergyLedger SteppingSolver::ledger()
   velocities(v);
   internal_forces(internal);
   external_forces(external);
-  const Monitor state = monitor_voxels(*model_, discretisation_, u, v);
+  const Monitor state = measure();
   l.initial = initial_;
   l.internal = state.internal;
   l.hourglass = state.hourglass;

@@ -126,7 +126,7 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target)
   recovered_at = steps() + settings.recovery;
 }
 
-// where the motion goes wrong: the worst voxel of the last state that is finite
+// where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target)
 {
   std::vector<bool> moved;
@@ -134,32 +134,35 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
     moved.push_back(target.bone[b].rotation != good.bone[b].rotation ||
                     target.bone[b].translation != good.bone[b].translation);
   const double time = solver.time();
-  Monitor last = solver.monitor();
-  if (!last.finite)
+  constexpr double crushed = 0.2;
+  Monitor worst = solver.monitor();
+  if (!worst.finite)
   {
     solver.restore(*good.snapshot);
-    last = good.monitor;
-    try
+    worst = good.monitor;
+    for (int step = 0; step < 2 * settings.interval; ++step)
     {
-      for (int part = 0; part < settings.interval / 16; ++part)
+      try
       {
-        solver.advance(16 * solver.time_step(), target);
-        const Monitor now = solver.monitor();
-        if (!now.finite)
-          break;
-        last = now;
+        solver.advance(solver.time_step(), target);
       }
-    }
-    catch (const Diverged&)
-    {
-      // the state before it is known
+      catch (const Diverged&)
+      {
+        // the monitor sees it too
+      }
+      const Monitor now = solver.monitor();
+      const bool shows =
+          worst.worst_jacobian < crushed || worst.critical_time_step < 0.5 * good.monitor.critical_time_step;
+      if (now.finite || !shows)
+        worst = now;
+      if (!now.finite)
+        break;
     }
   }
-  // crushed, or stretched until it is stiffer than all others
-  constexpr double crushed = 0.2;
+  // crushed or no number, or else stretched until it is stiffer than all others
   const std::int32_t voxel =
-      last.worst_jacobian < crushed || last.stiffest_voxel < 0 ? last.worst_voxel : last.stiffest_voxel;
-  return describe(*model, finding, time, std::max(voxel, 0), last.worst_jacobian, activation, moved);
+      !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
+  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
 }
 
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)

@@ -100,7 +100,10 @@ void SteppingSolver::velocities_were_set()
 void SteppingSolver::displacements_were_set()
 {
   const double critical = monitor().critical_time_step;
-  frequency_squared_ = std::max(4 / (critical * critical), discretisation_.frequency_squared_max);
+  const double squared = 4 / (critical * critical);
+  frequency_squared_ = discretisation_.frequency_squared_max;
+  if (std::isfinite(squared))
+    frequency_squared_ = std::max(squared, frequency_squared_);
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   velocities_were_set();
@@ -199,13 +202,18 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   profile_.stepping += seconds_since(start);
 }
 
-Monitor SteppingSolver::monitor()
+Monitor SteppingSolver::measure()
 {
-  const auto start = std::chrono::steady_clock::now();
   Vectors u, v;
   displacements(u);
   velocities(v);
-  Monitor result = monitor_voxels(*model_, discretisation_, u, v);
+  return monitor_voxels(*model_, discretisation_, u, v);
+}
+
+Monitor SteppingSolver::monitor()
+{
+  const auto start = std::chrono::steady_clock::now();
+  Monitor result = measure();
   result.step_share = latest_step_ * std::sqrt(assembled_share_) / result.critical_time_step;
   profile_.monitor += seconds_since(start);
   return result;

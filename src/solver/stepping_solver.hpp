@@ -87,6 +87,8 @@ protected:
   virtual double assembled_frequency_squared(int most_iterations);
   /// Loads and, where mass scaling is not uniform, what gravity is less on scaled nodes [N], at the present state.
   virtual void external_forces(Vectors& out);
+  /// Energies and the worst voxel now.
+  virtual Monitor measure();
   /// Opens an account of work, and what is in it; only called where the ledger is wanted.
   virtual void open_account();
   virtual Work work();

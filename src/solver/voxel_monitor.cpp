@@ -5,6 +5,7 @@
 #include "frontalis/physics/selective_reduced.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "material_laws.hpp"
+#include "plane_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,21 +55,34 @@ double frequency_squared_now(const VoxelProperties& voxel, const Kinematics& k, 
   return squared;
 }
 
+Monitor monitor_of(const PlaneMonitor& sum)
+{
+  Monitor result;
+  result.kinetic = sum.kinetic;
+  result.internal = sum.internal;
+  result.hourglass = sum.hourglass;
+  result.worst_jacobian = sum.worst_jacobian;
+  result.worst_voxel = sum.worst_voxel;
+  result.inverted = sum.inverted;
+  result.critical_time_step = 2 / std::sqrt(sum.frequency_squared);
+  result.stiffest_voxel = sum.stiffest_voxel;
+  result.finite = std::isfinite(sum.kinetic) && std::isfinite(sum.internal) && std::isfinite(sum.hourglass);
+  return result;
+}
+
 Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::vector<std::array<double, 3>>& u,
                        const std::vector<std::array<double, 3>>& v)
 {
-  Monitor result;
-  result.worst_jacobian = 1e300;
   const auto& h = model.spacing;
   const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
   const double shortest = std::min({ h[0], h[1], h[2] });
   double weight[3] = { 1 / (h[0] * h[0]), 1 / (h[1] * h[1]), 1 / (h[2] * h[2]) };
-  const double sum = weight[0] + weight[1] + weight[2];
+  const double total = weight[0] + weight[1] + weight[2];
   for (double& w : weight)
-    w /= sum;
-  double frequency_squared = 0;
+    w /= total;
+  PlaneMonitor sum;
   for (std::size_t n = 0; n < v.size(); ++n)
-    result.kinetic += 0.5 * d.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
+    sum.kinetic += 0.5 * d.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
   VoxelProperties voxel;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
@@ -81,39 +95,32 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
       physics::walsh_hadamard(mode[axis]);
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
-    double worst = k.J, squared = 0;
+    const auto index = static_cast<std::int32_t>(e);
+    PlaneMonitor own{ 0, 0, 0, k.J, 0, 0, index, index };
     if (d.selective_reduced)
     {
-      result.internal += voxel.tissue_volume * 0.5 * voxel.kappa * (k.J - 1) * (k.J - 1);
+      own.internal = voxel.tissue_volume * 0.5 * voxel.kappa * (k.J - 1) * (k.J - 1);
       for (int point = 0; point < 8; ++point)
       {
         double moved[3][8];
         physics::at_gauss_point(point, mode, moved);
         const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
-        result.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
-        squared = std::max(squared, frequency_squared_now(voxel, at_point, weight, shortest));
-        worst = std::min(worst, at_point.J);
+        own.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
+        own.frequency_squared =
+            std::max(own.frequency_squared, frequency_squared_now(voxel, at_point, weight, shortest));
+        own.worst_jacobian = std::min(own.worst_jacobian, at_point.J);
       }
     }
     else
     {
-      result.internal += voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
-      result.hourglass += hourglass_energy(d, voxel, k, mode);
-      squared = frequency_squared_now(voxel, k, weight, shortest);
+      own.internal = voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
+      own.hourglass = hourglass_energy(d, voxel, k, mode);
+      own.frequency_squared = frequency_squared_now(voxel, k, weight, shortest);
     }
-    if (squared > frequency_squared)
-      result.stiffest_voxel = static_cast<std::int32_t>(e);
-    frequency_squared = std::max(frequency_squared, squared);
-    result.inverted += worst <= 0 ? 1 : 0;
-    if (!(worst >= result.worst_jacobian))
-    {
-      result.worst_jacobian = worst;
-      result.worst_voxel = static_cast<std::int32_t>(e);
-    }
+    own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
+    sum.add(own);
   }
-  result.critical_time_step = 2 / std::sqrt(frequency_squared);
-  result.finite = std::isfinite(result.kinetic) && std::isfinite(result.internal) && std::isfinite(result.hourglass);
-  return result;
+  return monitor_of(sum);
 }
 
 }  // namespace frontalis

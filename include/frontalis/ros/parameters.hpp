@@ -18,7 +18,7 @@ struct FaceParameters
   std::string accuracy;                   ///< profile of the scene; empty: the scene's default
   std::string cache;                      ///< folder of models baked before; empty: none is kept
   std::string program;                    ///< the program `frontalis`; empty: looked for (see find_program)
-  RunnerSettings runner;                  ///< ~backend, ~threads, ~pace, ~frame_rate
+  RunnerSettings runner;                  ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
   std::string face_id;                    ///< frame is face_<id>; empty: the model's frame
   std::string parent_frame = "map";       ///< of the static transform to the face; empty: none is published
   bool demo = false;                      ///< play the model's demo

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "frontalis/solver/guard.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct Frame
   SkinState skin;
   std::vector<float> activation;
   Monitor monitor;      ///< renewed about once a second
+  GuardCounts guard;    ///< since the runner started
   bool failed = false;  ///< the motion could not be trusted; the skin is the last good one
   std::string failure;  ///< why, in one sentence
 };
@@ -38,7 +41,8 @@ struct RunnerSettings
 {
   SolverSettings solver;
   Pace pace = Pace::real_time;
-  double frame_rate = 0;  ///< frames a wall second, 0.1 to 1000; 0: the model's
+  double frame_rate = 0;                                 ///< frames a wall second, 0.1 to 1000; 0: the model's
+  std::optional<GuardSettings> guard = GuardSettings{};  ///< none: the motion is not watched
 };
 
 /// A live face: owns the solver and a thread that steps it, takes controls from any thread, hands out frames.

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "device_memory.hpp"
+#include "device_model.hpp"
+#include "monitor_kernel.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Looks at all voxels of a model in device memory: 36 bytes a voxel, taken when it is made.
+class DeviceMonitor
+{
+public:
+  DeviceMonitor(const Model& model, const DeviceModel& device);
+
+  /// Energies and the worst voxel at displacements u, velocities g.v; waits for the stream.
+  Monitor look(const StepArguments& g, const float4* u, cudaStream_t stream);
+
+private:
+  DeviceArray<MonitorVoxel> voxels_;
+  DeviceArray<PlaneMonitor> parts_{ monitor_blocks };
+  PinnedArray<PlaneMonitor> seen_{ monitor_blocks };
+  MonitorVoxels view_{};
+};
+
+}  // namespace cuda
+}  // namespace frontalis
