@@ -37,7 +37,7 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
   const auto nodes = static_cast<std::uint32_t>(device_.nodes());
   const double amplitude = mode_amplitude(*model_);
   const float4* const u = u_[present_].data();
-  const DeviceArray<float> activation(this->activation());
+  const DeviceArray<float> activation(felt_activation());
   std::vector<double2> seen;
   double squared = 0;
   for (int iteration = 0; iteration < most_iterations; ++iteration)

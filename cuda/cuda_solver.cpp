@@ -89,6 +89,37 @@ void CudaSolver::rest()
   require(cudaDeviceSynchronize(), "coming to rest");
 }
 
+void CudaSolver::effect_switched(Effect effect)
+{
+  synchronise();
+  device_.run(*model_, discretisation_, effects());
+  launch_ = choose_launch(device_);
+  if (loads_)
+    loads_->run(effects());
+  if (effect == Effect::viscosity)
+  {
+    device_.viscosity().reset();
+    viscous_elapsed_ = 0;
+  }
+  if (effect == Effect::sliding || effect == Effect::friction)
+    device_.reset_contacts();
+  // what the plans under way saw is of no use any more
+  plans_ = 0;
+}
+
+void CudaSolver::list_allocations(AllocationList& list) const
+{
+  device_.list_allocations(effect_of_fibres(), list);
+  for (const auto& u : u_)
+    list.add(Effect::elasticity, "motion", u.bytes());
+  for (const auto& v : v_)
+    list.add(Effect::elasticity, "motion", v.bytes());
+  list.add(Effect::elasticity, "skin", skin_.bytes() + landmarks_.bytes() + skin_output_.bytes());
+  list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
+  for (const auto& slot : slots_)
+    list.add(Effect::elasticity, "controls", slot.controls.bytes());
+}
+
 void CudaSolver::set_displacements(const Vectors& in)
 {
   rest();

@@ -43,6 +43,8 @@ protected:
   void restore_fields(const Fields& from) override;
   int steps_a_plan() const override;
   void rest() override;
+  void effect_switched(Effect effect) override;
+  void list_allocations(AllocationList& list) const override;
   void velocities(Vectors& out) const override;
   void forces_at(const Vectors& at, Vectors& out) override;
   double assembled_frequency_squared(int most_iterations) override;

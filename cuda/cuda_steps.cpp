@@ -43,8 +43,11 @@ void CudaSolver::stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g)
   std::memset(staged, 0, sizeof(double));
   if (muscles > 0)
   {
-    std::memcpy(staged + sizeof(double), plan.begin.activation.data(), muscles * sizeof(float));
-    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), plan.end.activation.data(), muscles * sizeof(float));
+    const std::vector<float> none(runs(Effect::contraction) ? 0 : muscles, 0);
+    const float* const begin = none.empty() ? plan.begin.activation.data() : none.data();
+    const float* const end = none.empty() ? plan.end.activation.data() : none.data();
+    std::memcpy(staged + sizeof(double), begin, muscles * sizeof(float));
+    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), end, muscles * sizeof(float));
   }
   for (int step = 0; bones > 0 && step <= plan.steps; ++step)
   {
@@ -96,7 +99,7 @@ void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 std::vector<double> CudaSolver::renewals(const StepPlan& plan)
 {
   std::vector<double> elapsed(plan.steps, 0);
-  for (int step = 0; step < plan.steps && !device_.viscosity().empty(); ++step)
+  for (int step = 0; step < plan.steps && !device_.viscosity().idle(); ++step)
   {
     viscous_elapsed_ += plan.dt;
     if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
@@ -171,7 +174,7 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
 void CudaSolver::forces(float4* at, Vectors& out)
 {
   synchronise();
-  const DeviceArray<float> activation(this->activation());
+  const DeviceArray<float> activation(felt_activation());
   const DeviceArray<float4> forces(device_.nodes());
   require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
   queue_forces(at, activation.data(), forces.data());
@@ -190,8 +193,11 @@ void CudaSolver::external_forces(Vectors& out)
 {
   out.assign(model_->nodes.size(), {});
   if (!loads_)
+  {
     loads_ = std::make_unique<NodalLoads>(*model_, discretisation_);
-  if (loads_->empty())
+    loads_->run(effects());
+  }
+  if (loads_->idle())
     return;
   Vectors u;
   displacements(u);
@@ -210,7 +216,7 @@ void CudaSolver::open_account()
 {
   synchronise();
   StepArguments g = arguments(0);
-  const DeviceArray<float> activation(this->activation());
+  const DeviceArray<float> activation(felt_activation());
   g.activation_begin = g.activation_end = activation.data();
   g.steps = 1;
   account_->open(g, u_[present_].data(), stream_);

@@ -71,7 +71,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 }
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
-    : effects_(effects_of(model, discretisation)),
+    : most_effects_(effects_of(model, discretisation)),
+      effects_(most_effects_),
       device_node_((expect_room(model, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
@@ -86,6 +87,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
   tasks_ = DeviceArray<NodeTask>(tasks);
+  if (!model.fibre_muscle.empty())
+    palette_entry_ = palette_entry;
 
   StepArguments& g = constants_;
   g.patches = patches_.data();
@@ -208,24 +211,23 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
 void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation)
 {
   std::vector<float4> fibres;
-  std::vector<std::uint32_t> muscles;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
     {
-      const auto index = static_cast<std::uint32_t>(model.fibre_muscle[f]);
-      const Muscle& muscle = model.muscles[index];
+      const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
       const auto& a = model.fibre_direction[f];
       fibres.push_back({ a[0], a[1], a[2],
                          static_cast<float>(muscle.stress_reference * model.fibre_weight[f] * discretisation.volume *
                                             model.fill[e]) });
-      muscles.push_back(index | (muscle.tension_length ? 0x40000000u : 0) | (muscle.passive ? 0x80000000u : 0));
     }
   fibres_ = DeviceArray<float4>(fibres);
-  fibre_muscle_ = DeviceArray<std::uint32_t>(muscles);
+  fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
 }
 
 void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of)
 {
+  if (model.sliding.empty())
+    return;
   std::vector<SurfaceSearch> surfaces;
   for (const auto& surface : model.constraint_surfaces)
   {
@@ -252,6 +254,7 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     contact.bone = surface.bone;
     contact.friction = surface.friction;
     glides_.push_back(contact.glides ? 1 : 0);
+    contact_surface_.push_back(node.surface);
     task_of[node.node].sliding = static_cast<std::int32_t>(contacts.size());
     contacts.push_back(contact);
   }

@@ -14,6 +14,9 @@ namespace frontalis
 namespace cuda
 {
 
+/// One word a fibre: StepArguments::fibre_muscle.
+std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
+
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
@@ -46,6 +49,9 @@ public:
 
   /// Arguments of a step with all that is constant filled in.
   StepArguments arguments() const;
+  /// Only these effects act from now on; no array changes its place or size.
+  void run(const Model& model, const Discretisation& discretisation, EffectSet running);
+  void list_allocations(Effect of_fibres, AllocationList& list) const;
   /// Contacts as they are at rest.
   void reset_contacts();
   /// What sliding nodes know of their surfaces.
@@ -80,13 +86,29 @@ private:
   void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
                    const std::vector<std::uint32_t>& palette_entry);
   void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
+  void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
+  void run_tasks(EffectSet running);
+  void run_friction(const Model& model, EffectSet running);
+  void choose_effects(const Discretisation& discretisation, EffectSet running);
 
+  /// What arrays hold where every effect runs; kept from the first switch on.
+  struct Whole
+  {
+    std::vector<Strip> strips;
+    std::vector<NodeTask> tasks;
+    std::vector<std::int32_t> patch_tasks;
+  };
+
+  const Effects most_effects_;  // where every effect of the model runs
   Effects effects_;
   StepLaunch launch_{};
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;
   std::vector<std::uint32_t> palette_of_voxel_;
   StepArguments constants_{};
+  Whole whole_;
+  std::vector<std::uint32_t> palette_entry_;   // of each voxel; empty without fibres
+  std::vector<std::int32_t> contact_surface_;  // of each contact
 
   DeviceArray<Patch> patches_;
   DeviceArray<uint4> patch_corners_, node_voxels_;

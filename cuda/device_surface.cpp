@@ -58,6 +58,12 @@ BoundSurface DeviceSurface::view() const
            around_.data() };
 }
 
+std::size_t DeviceSurface::bytes() const
+{
+  return nodes_.bytes() + coordinates_.bytes() + rest_.bytes() + triangles_.bytes() + around_begin_.bytes() +
+         around_.bytes();
+}
+
 DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisation,
                          const std::vector<std::uint32_t>& device_node)
 {
@@ -72,7 +78,8 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
     for (const auto voxel : load.binding.voxel)
       nodes_.insert(nodes_.end(), model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end());
   }
-  ramp_ = DeviceArray<double>(ramp);
+  if (!nodes_.empty())
+    ramp_ = DeviceArray<double>(ramp);
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
 
@@ -130,12 +137,33 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
   begin_ = DeviceArray<std::int32_t>(begin);
   parts_ = DeviceArray<LoadPart>(parts);
   vertex_force_ = DeviceArray<double>(force);
+  traction_ = std::move(force);
   if (follow())
-    vertex_position_ = DeviceArray<double>(force.size());
+    vertex_position_ = DeviceArray<double>(traction_.size());
+}
+
+void DeviceLoads::run(EffectSet running)
+{
+  runs_ = running.has(Effect::surface_loads);
+  relieves_ = running.has(Effect::gravity);
+  const std::vector<double> none(traction_.size(), 0);
+  vertex_force_.upload((runs_ ? traction_ : none).data(), traction_.size());
+}
+
+void DeviceLoads::list_allocations(AllocationList& list) const
+{
+  const Effect effect = vertex_force_.size() > 0 ? Effect::surface_loads : Effect::gravity;
+  list.add(effect, "parts of a surface's forces", begin_.bytes() + parts_.bytes() + ramp_.bytes());
+  list.add(effect, "forces at vertices", vertex_force_.bytes() + vertex_position_.bytes());
+  list.add(Effect::gravity, "weight that mass scaling added", relief_.bytes());
+  for (const Pressure& pressure : pressures_)
+    list.add(effect, "surfaces", pressure.surface.bytes());
 }
 
 void DeviceLoads::update(const float4* u, cudaStream_t stream)
 {
+  if (!runs_)
+    return;
   for (const auto& p : pressures_)
     require(launch_pressure(p.surface.view(), u, p.value, vertex_position_.data() + 3 * p.first_vertex,
                             vertex_force_.data() + 3 * p.first_vertex, stream),

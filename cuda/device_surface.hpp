@@ -24,6 +24,7 @@ public:
 
   BoundSurface view() const;
   std::size_t vertices() const { return vertices_; }
+  std::size_t bytes() const;
 
 private:
   std::size_t vertices_ = 0;
@@ -50,7 +51,11 @@ public:
   const double* ramp() const { return ramp_.data(); }
 
   /// True where forces follow the surface, so that they change with every step.
-  bool follow() const { return !pressures_.empty(); }
+  bool follow() const { return runs_ && !pressures_.empty(); }
+  /// Loads, and what gravity is less, count only where their effects run.
+  void run(EffectSet running);
+  bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
+  void list_allocations(AllocationList& list) const;
   void update(const float4* u, cudaStream_t stream);
 
 private:
@@ -61,6 +66,8 @@ private:
     std::size_t first_vertex;
   };
 
+  bool runs_ = true, relieves_ = true;
+  std::vector<double> traction_;  // vertex forces of dead loads
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;

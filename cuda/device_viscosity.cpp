@@ -54,10 +54,19 @@ ViscousVoxels DeviceViscosity::view() const
 
 void DeviceViscosity::describe(StepArguments& g) const
 {
-  g.viscous_words = words_.data();
+  g.viscous_words = runs_ ? words_.data() : nullptr;
   g.relaxed = relaxed_.data();
   g.viscous_count = static_cast<std::uint32_t>(voxels_.size());
-  g.viscous_terms = terms_;
+  g.viscous_terms = runs_ ? terms_ : 0;
+}
+
+void DeviceViscosity::run(EffectSet running) { runs_ = running.has(Effect::viscosity); }
+
+void DeviceViscosity::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + words_.bytes());
+  list.add(Effect::viscosity, "relaxed stresses", relaxed_.bytes());
+  list.add(Effect::viscosity, "work of viscous stresses", account_.bytes());
 }
 
 void DeviceViscosity::reset()
@@ -93,7 +102,7 @@ void DeviceViscosity::keep_account()
 
 void DeviceViscosity::relax(const StepArguments& g, const float4* u, double elapsed, cudaStream_t stream)
 {
-  if (!empty())
+  if (!idle())
     require(launch_relaxation(g, view(), u, static_cast<float>(elapsed), stream), "relaxing viscous stresses");
 }
 

@@ -20,6 +20,10 @@ public:
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at);
 
   bool empty() const { return voxels_.size() == 0; }
+  /// Off, nothing is read or renewed.
+  void run(EffectSet running);
+  bool idle() const { return empty() || !runs_; }
+  void list_allocations(AllocationList& list) const;
   /// Model voxels that are viscous, ascending.
   const std::vector<std::uint32_t>& voxels() const { return voxel_; }
   /// Fills in what a step needs.
@@ -49,6 +53,7 @@ private:
   ViscousVoxels view() const;
 
   int terms_ = 0;
+  bool runs_ = true;
   std::vector<std::uint32_t> voxel_;
   std::vector<ViscousVoxel> host_;  // until palette entries are known
   DeviceArray<ViscousVoxel> voxels_;

@@ -4,6 +4,7 @@
 #include "fibres.hpp"
 #include "fibre_families.hpp"
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "length_text.hpp"
 #include "local_frame.hpp"
 #include "muscle_volumes.hpp"
@@ -154,6 +155,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   bind_surfaces(scene, surfaces, frame, model, stages);
 
   stages.begin("check");
+  switch_off(model, scene.switched_off);
   check_model(model);
   if (report != nullptr && report->measure_muscles)
   {

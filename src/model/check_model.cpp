@@ -1,4 +1,4 @@
-#include "frontalis/error.hpp"
+#include "frontalis/effect.hpp"
 #include "frontalis/model/model.hpp"
 
 #include <cmath>
@@ -274,6 +274,8 @@ void check_settings(const Model& model)
     fail("mass_scaling", "time step is " + std::to_string(model.mass_scaling.time_step) + " s; it must be at least 0");
   for (std::size_t m = 0; m < model.mass_scaling.materials.size(); ++m)
     check_index("mass_scaling (materials)", m, model.mass_scaling.materials[m], model.materials.size());
+  for (const std::string& name : model.switched_off)
+    effect_from_name(name);
 }
 
 }  // namespace

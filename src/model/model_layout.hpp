@@ -140,6 +140,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.column(in("demo/expression"), model.demo, &Model::DemoPhase::expression);
   archive.column(in("demo/ramp"), model.demo, &Model::DemoPhase::ramp);
   archive.column(in("demo/seconds"), model.demo, &Model::DemoPhase::seconds);
+  archive.strings(in("switched_off"), model.switched_off);
   archive.value(in("scene_hash"), model.scene_hash);
 }
 

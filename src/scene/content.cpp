@@ -149,7 +149,8 @@ void add_restrictions(const Scene& scene, std::string& content)
         .add(constraint.surfaces)
         .add(constraint.within)
         .add(constraint.crop)
-        .add(constraint.bone);
+        .add(constraint.bone)
+        .add(constraint.friction);
   for (const SceneLoad& load : scene.loads)
   {
     Line line(content, "load");
@@ -158,6 +159,7 @@ void add_restrictions(const Scene& scene, std::string& content)
     line.add(load.within).add(load.ramp).add(load.crop);
   }
   Line(content, "gravity").add(scene.gravity);
+  Line(content, "switched off").add(names_of(scene.switched_off));
 }
 
 void add_output(const Scene& scene, std::string& content)

@@ -80,6 +80,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_skin(mapping.required("skin", "the surface to publish: {surface: NAME}"), scene.skin, names);
   read_landmarks(mapping.optional("landmarks"), scene);
   scene.gravity = mapping.optional("gravity").vector(Dimension::acceleration, any_number, scene.gravity);
+  read_effects(mapping.optional("effects"), scene);
   read_time(mapping.optional("time"), scene.time);
   read_accuracy(mapping.optional("accuracy"), options, scene, names);
   read_expressions(mapping.optional("expressions"), scene, names);

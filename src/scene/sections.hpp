@@ -32,6 +32,8 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);
 void read_constraints(const Node& node, Scene& scene, const SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
+/// After everything that effects come from.
+void read_effects(const Node& node, Scene& scene);
 void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene);
 void read_time(const Node& node, SceneTime& time);

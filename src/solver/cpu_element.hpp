@@ -1,5 +1,6 @@
 #pragma once
 
+#include "built_effects.hpp"
 #include "cpu_kernel.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
 #include "frontalis/physics/hourglass.hpp"
@@ -37,14 +38,25 @@ struct CpuElement
   static constexpr int lanes = Lane::count;
   static_assert(Tile::width % lanes == 0, "a tile is a whole number of batches");
 
+  struct Place;
+  /// Adds an effect's stress; `work`: of fibres, where the ledger wants it.
+  using Pass = void (*)(const Arguments& g, const Place& at, const Kinematics& k, Stress& P, double& work);
+
+  /// The passes of each kind of tile, in a fixed order, null at their end.
+  struct PassLists
+  {
+    Pass of[pass_combinations][3];
+  };
+
   /// Which lanes, and where their forces go.
   struct Place
   {
     const Tile* tile;
-    std::int32_t index;  ///< of the tile
-    int offset;          ///< first lane
-    bool owned;          ///< false in the plane that a slab computes for its neighbour's sake
-    bool look;           ///< frequencies wanted
+    std::int32_t index;          ///< of the tile
+    int offset;                  ///< first lane
+    bool owned;                  ///< false in the plane that a slab computes for its neighbour's sake
+    bool look;                   ///< frequencies wanted
+    const Pass* pass = nullptr;  ///< those of the tile
   };
 
   static FRONTALIS_LAW Kinematics load_modes(const Arguments& g, const Place& at, Batch (&mode)[3][8])
@@ -118,13 +130,16 @@ struct CpuElement
     for (int i = 0; i < 3; ++i)
       along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
     squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
-    return physics::fibre_stress<Batch>(
-        squared, k.J, Lane::load(slot.weight + offset), Batch(static_cast<Real>(g.activation[slot.muscle])),
-        Batch(static_cast<Real>(g.with_length[slot.muscle])), Batch(static_cast<Real>(g.with_passive[slot.muscle])));
+    const Batch weight = Lane::load(slot.weight + offset);
+    const Batch activation(static_cast<Real>(g.activation[slot.muscle]));
+    const Batch with_length(static_cast<Real>(g.with_length[slot.muscle]));
+    return built_with(Effect::fibre_stiffness) && g.with_passive[slot.muscle] != 0
+               ? physics::fibre_stress<Batch>(squared, k.J, weight, activation, with_length, N::of(1))
+               : physics::fibre_stress<Batch, false>(squared, k.J, weight, activation, with_length, N::of(0));
   }
 
-  // adds the stress of the fibres: P += S (F a0) (x) a0
-  static FRONTALIS_LAW void add_fibres(const Arguments& g, const Place& at, const Kinematics& k, Stress& P)
+  // the stress of the fibres: P += S (F a0) (x) a0
+  static void add_fibres(const Arguments& g, const Place& at, const Kinematics& k, Stress& P, double& work)
   {
     for (auto s = at.tile->fibre_begin; s < at.tile->fibre_end; ++s)
     {
@@ -141,6 +156,8 @@ struct CpuElement
           P.a[i][j] = P.a[i][j] + traction * a[j];
       }
     }
+    if (g.fibre_memory != nullptr && at.owned)
+      work += work_of_fibres(g, at, k);
   }
 
   // work that the fibres did since the last look: minus the mean of stress over the change of half the squared stretch
@@ -181,8 +198,7 @@ struct CpuElement
     return H;
   }
 
-  static __attribute__((noinline)) void add_viscosity(const Arguments& g, const Place& at, const Kinematics& k,
-                                                      Stress& P)
+  static void add_viscosity(const Arguments& g, const Place& at, const Kinematics& k, Stress& P, double&)
   {
     for (int term = 0; term < g.viscous_terms; ++term)
       take_relaxed(k, load_relaxed(relaxed_of(g, at, term)), P);
@@ -276,15 +292,26 @@ struct CpuElement
     }
     else
       P = elastic(g, at, material, k);
-    if (at.tile->fibre_begin < at.tile->fibre_end)
-    {
-      add_fibres(g, at, k, P);
-      if (g.fibre_memory != nullptr && at.owned)
-        work += work_of_fibres(g, at, k);
-    }
-    if (at.tile->viscous >= 0)
-      add_viscosity(g, at, k, P);
+    for (const Pass* pass = at.pass; *pass != nullptr; ++pass)
+      (*pass)(g, at, k, P, work);
     return P;
+  }
+
+  /// A pass more is a line more.
+  static PassLists pass_lists(std::int32_t running)
+  {
+    PassLists lists{};
+    for (std::int32_t mask = 0; mask < pass_combinations; ++mask)
+    {
+      Pass* to = lists.of[mask];
+      if constexpr (built_with(Effect::contraction) || built_with(Effect::fibre_stiffness))
+        if (mask & running & pass_fibres)
+          *to++ = add_fibres;
+      if constexpr (built_with(Effect::viscosity))
+        if (mask & running & pass_viscosity)
+          *to++ = add_viscosity;
+    }
+    return lists;
   }
 
   /// Forces of the voxels added to the plane buffers below and above.

@@ -36,6 +36,8 @@ struct CpuKernelArguments
   const ViscousSlot* viscous;
   float* relaxed;              ///< viscous_terms * 6 * Tile::width a ViscousSlot: relaxed stress times volume [N m]
   std::int32_t viscous_terms;  ///< 0: none
+  std::int32_t passes;         ///< bits of TilePass that run
+  bool gravity;                ///< impulse is not 0
   Real viscous_elapsed;        ///< [s] since the relaxed stresses were renewed last
   double* viscous_work;        ///< two a plane: sum of change of H : E, and of H : E; null: not wanted
   const float* activation;     ///< one a muscle

@@ -13,25 +13,28 @@ struct CpuKernelBody
   using Element = CpuElement<Architecture, Real>;
   using Arguments = CpuKernelArguments<Real>;
   using Batch = typename Element::Batch;
+  using PassLists = typename Element::PassLists;
   static constexpr int lanes = Element::lanes;
 
   // visits the batches of a plane's tiles that hold voxels
   template <class Visit>
-  static FRONTALIS_LAW void each_batch(const Arguments& g, std::int32_t plane, bool owned, bool look, Visit&& visit)
+  static FRONTALIS_LAW void each_batch(const Arguments& g, const PassLists& passes, std::int32_t plane, bool owned,
+                                       bool look, Visit&& visit)
   {
     for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
       for (int offset = 0; offset < Tile::width; offset += lanes)
         if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
-          visit(typename Element::Place{ g.tiles + t, t, offset, owned, look });
+          visit(typename Element::Place{ g.tiles + t, t, offset, owned, look, passes.of[g.tiles[t].passes] });
   }
 
   template <Stabilisation Form>
-  static Real plane_forces(const Arguments& g, std::int32_t plane, Real* below, Real* above, bool owned, bool look)
+  static Real plane_forces(const Arguments& g, const PassLists& passes, std::int32_t plane, Real* below, Real* above,
+                           bool owned, bool look)
   {
     Batch frequency_squared(Real(0));
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
-    each_batch(g, plane, owned, look,
+    each_batch(g, passes, plane, owned, look,
                [&](const auto& at)
                { Element::template add_forces<Form>(g, at, below, above, base, frequency_squared, work); });
     if (g.muscle_work != nullptr && owned)
@@ -47,7 +50,7 @@ struct CpuKernelBody
     return result;
   }
 
-  template <bool Compensated>
+  template <bool Compensated, bool Gravity>
   static void update(const Arguments& g, std::int32_t plane, const Real* force)
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
@@ -62,7 +65,8 @@ struct CpuKernelBody
       const Real impulse = g.impulse[c];
       for (std::int32_t n = 0; n < count; ++n)
       {
-        const Real velocity = g.keep * v[n] - g.gain * inverse_mass[n] * f[n] + impulse;
+        const Real kept = g.keep * v[n] - g.gain * inverse_mass[n] * f[n];
+        const Real velocity = Gravity ? kept + impulse : kept;
         v[n] = velocity;
         if (Compensated)
         {
@@ -78,6 +82,15 @@ struct CpuKernelBody
     }
   }
 
+  static void update_as_asked(const Arguments& g, std::int32_t plane, const Real* force)
+  {
+    const bool gravity = built_with(Effect::gravity) && g.gravity;
+    if (g.rounding[0] != nullptr)
+      gravity ? update<true, true>(g, plane, force) : update<true, false>(g, plane, force);
+    else
+      gravity ? update<false, true>(g, plane, force) : update<false, false>(g, plane, force);
+  }
+
   // the larger one; NaN once one was NaN
   static Real larger(Real a, Real b) { return (a >= b ? a : b) + (a - a) + (b - b); }
 
@@ -90,6 +103,7 @@ struct CpuKernelBody
   template <Stabilisation Form>
   static Real march(const Arguments& g, std::int32_t first, std::int32_t last, Real* buffer, KernelTask task)
   {
+    const PassLists passes = Element::pass_lists(g.passes);
     Real* below = buffer;
     Real* above = buffer + 3 * static_cast<std::size_t>(g.buffer_stride);
     clear(below, 3 * g.buffer_stride);
@@ -100,7 +114,7 @@ struct CpuKernelBody
       clear(above, 3 * g.buffer_stride);
       if (k >= 0 && k < g.planes - 1)
       {
-        const Real now = plane_forces<Form>(g, k, below, above, k >= first, task == KernelTask::step_and_look);
+        const Real now = plane_forces<Form>(g, passes, k, below, above, k >= first, task == KernelTask::step_and_look);
         frequency_squared = larger(frequency_squared, now);
       }
       if (k >= first)
@@ -109,10 +123,8 @@ struct CpuKernelBody
           for (int c = 0; c < 3; ++c)
             for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)
               g.next[c][n] = below[c * g.buffer_stride + n - g.plane_nodes[k]];
-        else if (g.rounding[0] != nullptr)
-          update<true>(g, k, below);
         else
-          update<false>(g, k, below);
+          update_as_asked(g, k, below);
       }
       Real* const swapped = below;
       below = above;
@@ -128,7 +140,7 @@ struct CpuKernelBody
       double* const work = g.viscous_work == nullptr ? nullptr : g.viscous_work + 2 * static_cast<std::size_t>(k);
       if (work != nullptr)
         work[1] = 0;
-      each_batch(g, k, true, false,
+      each_batch(g, {}, k, true, false,
                  [&](const auto& at)
                  {
                    if (at.tile->viscous >= 0)

@@ -33,10 +33,8 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
     inverse_mass_.push_back(static_cast<float>(1 / mass));
   inverse_mass_.shrink_to_fit();
   for (const auto& muscle : model_->muscles)
-  {
     with_length_.push_back(muscle.tension_length ? 1.0f : 0.0f);
-    with_passive_.push_back(muscle.passive ? 1.0f : 0.0f);
-  }
+  choose_passive();
   std::int32_t largest = 0;
   for (std::int32_t k = 0; k < rows_.planes; ++k)
     largest = std::max(largest, rows_.plane_nodes[k + 1] - rows_.plane_nodes[k]);
@@ -48,6 +46,52 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
     fibre_memory_.resize(rows_.fibres.size());
   }
   rest();
+}
+
+template <class Real>
+void CpuSolver<Real>::choose_passive()
+{
+  with_passive_.clear();
+  for (const auto& muscle : model_->muscles)
+    with_passive_.push_back(muscle.passive && runs(Effect::fibre_stiffness) ? 1.0f : 0.0f);
+}
+
+template <class Real>
+void CpuSolver<Real>::effect_switched(Effect effect)
+{
+  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  {
+    choose_passive();
+    rows_.renew_bounds(discretisation_);
+  }
+  if (effect == Effect::viscosity)
+  {
+    std::fill(relaxed_.begin(), relaxed_.end(), 0.0f);
+    viscous_elapsed_ = 0;
+  }
+  if (effect == Effect::sliding || effect == Effect::friction)
+    restricted_.run(effects());
+  loads_.run(effects());
+}
+
+template <class Real>
+void CpuSolver<Real>::list_allocations(AllocationList& list) const
+{
+  rows_.list_allocations(effect_of_fibres(), list);
+  list.add(Effect::elasticity, "inverse masses", inverse_mass_);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    for (const auto* field : { &u_, &next_, &v_ })
+      list.add(Effect::elasticity, "motion", (*field)[axis]);
+    list.add(Effect::elasticity, "rounding errors", rounding_[axis]);
+    list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
+  }
+  for (const auto& buffer : buffers_)
+    list.add(Effect::elasticity, "forces of two planes", buffer);
+  list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
+  list.add(Effect::viscosity, "relaxed stresses", relaxed_);
+  restricted_.list_allocations(list);
+  loads_.list_allocations(list);
 }
 
 // slabs of about equal numbers of tiles

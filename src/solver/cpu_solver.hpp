@@ -33,6 +33,8 @@ protected:
   void save_fields(std::unique_ptr<Fields>& to) const override;
   void restore_fields(const Fields& from) override;
   void rest() override;
+  void effect_switched(Effect effect) override;
+  void list_allocations(AllocationList& list) const override;
   void velocities(Vectors& out) const override { interleave(v_, out); }
   void forces_at(const Vectors& at, Vectors& out) override;
   void external_forces(Vectors& out) override;
@@ -54,6 +56,8 @@ private:
   Arguments arguments(double dt, const float* activation);
   void forces(const Components& at, Vectors& out);
   void relax(double elapsed);
+  void choose_passive();
+  bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
 

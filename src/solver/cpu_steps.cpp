@@ -39,6 +39,9 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.viscous = rows_.viscous.data();
   g.relaxed = relaxed_.data();
   g.viscous_terms = discretisation_.viscous_terms;
+  g.passes = (runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? pass_fibres : 0) |
+             (runs(Effect::viscosity) ? pass_viscosity : 0);
+  g.gravity = runs(Effect::gravity);
   g.activation = activation;
   g.with_length = with_length_.data();
   g.with_passive = with_passive_.data();
@@ -58,7 +61,8 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
 template <class Real>
 void CpuSolver<Real>::forces(const Components& at, Vectors& out)
 {
-  Arguments g = arguments(0, activation().data());
+  const std::vector<float> felt = felt_activation();
+  Arguments g = arguments(0, felt.data());
   g.fibre_memory = nullptr;
   for (int axis = 0; axis < 3; ++axis)
     g.u[axis] = at[axis].data();
@@ -78,7 +82,7 @@ template <class Real>
 void CpuSolver<Real>::external_forces(Vectors& out)
 {
   out.assign(model_->nodes.size(), {});
-  if (loads_.empty())
+  if (loads_.idle())
     return;
   loads_.update(time(), constant(u_).data());
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
@@ -90,7 +94,8 @@ template <class Real>
 void CpuSolver<Real>::open_account()
 {
   account_->open();
-  Arguments g = arguments(0, activation().data());
+  const std::vector<float> felt = felt_activation();
+  Arguments g = arguments(0, felt.data());
   g.muscle_work = nullptr;
   team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
 }
@@ -106,7 +111,7 @@ Work CpuSolver<Real>::work()
 template <class Real>
 void CpuSolver<Real>::relax(double elapsed)
 {
-  if (relaxed_.empty())
+  if (!relaxes())
     return;
   Arguments g = arguments(0, nullptr);
   g.viscous_elapsed = static_cast<Real>(elapsed);
@@ -147,16 +152,17 @@ template <class Real>
 double CpuSolver<Real>::run(const StepPlan& plan)
 {
   const std::size_t muscles = model_->muscles.size();
-  std::vector<float> activation(plan.steps * muscles);
+  std::vector<float> activation(plan.steps * muscles, 0);
   std::vector<Drive> drives;
   for (int step = 0; step < plan.steps; ++step)
   {
-    plan.activation(step, activation.data() + step * muscles);
+    if (runs(Effect::contraction))
+      plan.activation(step, activation.data() + step * muscles);
     drives.push_back(plan.drive(step));
   }
   // steps after which viscous stresses are renewed: the last, and when the interval is over
   std::vector<double> elapsed(plan.steps, 0);
-  for (int step = 0; step < plan.steps && !relaxed_.empty(); ++step)
+  for (int step = 0; step < plan.steps && relaxes(); ++step)
   {
     viscous_elapsed_ += plan.dt;
     if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
@@ -178,7 +184,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           g.activation = activation.data() + step * muscles;
           if (account_)
             account_->before(begin, end, g.v);
-          if (!loads_.empty())
+          if (!loads_.idle())
           {
             if (t == 0)
               loads_.update(plan.time + step * plan.dt, g.u);
@@ -188,11 +194,11 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
           if (step + 1 == plan.steps)
             seen[t] = frequency_squared;
-          if (!loads_.empty())
+          if (!loads_.idle())
             add_loads(begin, end, g);
           if (account_)
             account_->unconstrained(begin, end, g.v);
-          if (!restricted_.empty())
+          if (!restricted_.idle())
             restricted_.apply(begin, end, g.next, g.v, g.u, drives[step]);
           if (account_)
             account(t, g);

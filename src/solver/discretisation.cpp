@@ -15,14 +15,16 @@ namespace
 {
 
 // stiffness that the fibres of a voxel can add along one direction, every muscle at full activation
-double fibre_stiffness(const Model& model, std::size_t voxel)
+double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
 {
+  const double active = running.has(Effect::contraction) ? 1 : 0;
+  const double passive = running.has(Effect::fibre_stiffness) ? physics::passive_slope_bound : 0;
   double sum = 0;
   for (auto f = model.fibre_begin[voxel]; f < model.fibre_begin[voxel + 1]; ++f)
   {
     const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
-    const double slope = (muscle.tension_length ? physics::active_slope_bound : 1.0) +
-                         (muscle.passive ? physics::passive_slope_bound : 0.0);
+    const double slope =
+        active * (muscle.tension_length ? physics::active_slope_bound : 1.0) + (muscle.passive ? passive : 0.0);
     sum += slope * muscle.stress_reference * model.fibre_weight[f];
   }
   return sum;
@@ -110,7 +112,8 @@ void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
 Discretisation::Discretisation(const Model& model)
     : assumed_strain(model.hourglass == HourglassControl::assumed_strain),
       selective_reduced(model.integration == Integration::selective_reduced),
-      model_(&model)
+      model_(&model),
+      running_(effects_of(model))
 {
   const auto& h = model.spacing;
   volume = h[0] * h[1] * h[2];
@@ -118,7 +121,7 @@ Discretisation::Discretisation(const Model& model)
     hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
   assumed_strain = assumed_strain && !selective_reduced;
   for (const Material& material : model.materials)
-    for (int term = 0; term < 2; ++term)
+    for (int term = 0; term < 2 && running_.has(Effect::viscosity); ++term)
       if (material.viscous_share[term] > 0)
       {
         viscous_terms = std::max(viscous_terms, term + 1);
@@ -188,10 +191,29 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   }
   else if (selective_reduced)
     out.hourglass = 0;
-  out.frequency_squared =
-      physics::frequency_squared_bound(shear, out.kappa, fibre_stiffness(model, e), out.density, h[0], h[1], h[2]);
+  out.frequency_squared = physics::frequency_squared_bound(shear, out.kappa, fibre_stiffness(model, e, running_),
+                                                           out.density, h[0], h[1], h[2]);
   if (viscous_terms > 0)
     mix_viscosity(model, e, out);
+}
+
+void Discretisation::bound(EffectSet running)
+{
+  running_ = running;
+  frequency_squared_max = 0;
+  VoxelProperties v;
+  for (std::size_t e = 0; e < model_->voxels.size(); ++e)
+  {
+    voxel(e, v);
+    frequency_squared_max = std::max(frequency_squared_max, v.frequency_squared);
+  }
+}
+
+void Discretisation::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::elasticity, "masses of nodes", node_mass);
+  list.add(Effect::elasticity, "shares of weight", weight_share);
+  list.add(Effect::elasticity, "mass scaling", mass_factor_);
 }
 
 void Discretisation::voxel(std::size_t e, VoxelProperties& out) const

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
+#include "frontalis/solver/allocation.hpp"
 
 #include <array>
 #include <vector>
@@ -45,6 +46,9 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
+  /// Bounds of frequency allow for the fibre effects of this set from now on; mass stays as it is scaled.
+  void bound(EffectSet running);
+  void list_allocations(AllocationList& list) const;
 
   double volume = 0;                         ///< of a whole voxel [m3]
   bool assumed_strain = false;               ///< hourglass control by assumed strain
@@ -63,6 +67,7 @@ private:
   void choose_mass_factors();
 
   const Model* model_;
+  EffectSet running_;
   std::vector<float> mass_factor_;  // one a voxel; empty without mass scaling
 };
 

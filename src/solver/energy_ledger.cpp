@@ -56,7 +56,8 @@ EnergyLedger SteppingSolver::ledger()
       const double acceleration = gravity_[axis] + (external[n][axis] - internal[n][axis]) / mass;
       const double next = driven[n] ? v[n][axis] : keep(dt) * v[n][axis] + gain(dt) * acceleration;
       l.kinetic += 0.5 * mass * v[n][axis] * next;
-      l.gravity += weight * model_->gravity[axis] * u[n][axis];
+      if (runs(Effect::gravity))
+        l.gravity += weight * model_->gravity[axis] * u[n][axis];
     }
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drive.hpp"
+#include "frontalis/solver/allocation.hpp"
 #include "surface_contact.hpp"
 
 #include <memory>
@@ -32,6 +33,9 @@ public:
 
   void add(Node node) { nodes_.push_back(std::move(node)); }
   void reset();
+  /// Whether there is friction.
+  void rub(bool on) { rubs_ = on; }
+  void list_allocations(AllocationList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   bool empty() const { return nodes_.empty(); }
   /// Those in [first, last), by node; they were added in the order of their nodes.
   std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
@@ -42,6 +46,7 @@ public:
 
 private:
   std::vector<Node> nodes_;
+  bool rubs_ = true;
 };
 
 }  // namespace frontalis

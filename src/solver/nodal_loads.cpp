@@ -100,12 +100,38 @@ NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation)
   }
 }
 
+void NodalLoads::run(EffectSet running)
+{
+  runs_ = running.has(Effect::surface_loads);
+  relieves_ = running.has(Effect::gravity);
+  for (auto* forces : { &surface_forces_, &forces_ })
+    std::fill(forces->begin(), forces->end(), std::array<double, 3>{});
+}
+
+void NodalLoads::list_allocations(AllocationList& list) const
+{
+  const Effect effect = surfaces_.empty() ? Effect::gravity : Effect::surface_loads;
+  list.add(effect, "loaded nodes", nodes_);
+  list.add(effect, "nodal forces", surface_forces_);
+  list.add(effect, "nodal forces", forces_);
+  list.add(Effect::gravity, "weight that mass scaling added", relief_);
+  for (const Surface& surface : surfaces_)
+  {
+    list.add(effect, "parts of a surface's forces", surface.begin);
+    list.add(effect, "parts of a surface's forces", surface.contributions);
+    list.add(effect, "forces at vertices", surface.vertex_force);
+    list.add(effect, "forces at vertices", surface.vertices);
+  }
+}
+
 template <class Real>
 void NodalLoads::update(double time, const Real* const u[3])
 {
   std::fill(surface_forces_.begin(), surface_forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
   for (auto& surface : surfaces_)
   {
+    if (!runs_)
+      break;
     const Load& load = *surface.load;
     if (load.kind == Load::Kind::pressure)
       for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex)
@@ -122,7 +148,7 @@ void NodalLoads::update(double time, const Real* const u[3])
               double(surface.contributions[c].weight) * surface.vertex_force[surface.contributions[c].vertex][axis];
   }
   forces_ = surface_forces_;
-  for (std::size_t rank = 0; rank < relief_.size(); ++rank)
+  for (std::size_t rank = 0; relieves_ && rank < relief_.size(); ++rank)
     for (int axis = 0; axis < 3; ++axis)
       forces_[rank][axis] += relief_[rank][axis];
 }

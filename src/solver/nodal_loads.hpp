@@ -21,7 +21,10 @@ class NodalLoads
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
 
-  bool empty() const { return nodes_.empty(); }
+  /// Loads, and what gravity is less, count only where their effects run.
+  void run(EffectSet running);
+  void list_allocations(AllocationList& list) const;
+  bool idle() const { return !(runs_ && !surfaces_.empty()) && !(relieves_ && !relief_.empty()); }
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
   const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one a loaded node
 
@@ -52,6 +55,7 @@ private:
   std::vector<std::array<double, 3>> surface_forces_, forces_;
   std::vector<std::array<double, 3>> relief_;  // one a loaded node; empty where nothing is too heavy
   std::vector<Surface> surfaces_;
+  bool runs_ = true, relieves_ = true;
 };
 
 }  // namespace frontalis

@@ -80,7 +80,8 @@ void ReferenceSolver::add_fibres(std::size_t e, const Kinematics& k, const std::
     }
     const double S = model_->fibre_weight[entry] *
                      physics::fibre_stress<double>(squared, k.J, muscle.stress_reference, activation[index],
-                                                   muscle.tension_length ? 1 : 0, muscle.passive ? 1 : 0);
+                                                   muscle.tension_length ? 1 : 0,
+                                                   muscle.passive && runs(Effect::fibre_stiffness) ? 1 : 0);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         P.a[i][j] += S * along[i] * a[j];
@@ -161,7 +162,7 @@ void ReferenceSolver::add_element(std::size_t e, const Components& u, const std:
     look(e, k);
   }
   add_fibres(e, k, activation, P);
-  if (!relaxed_.empty())
+  if (relaxes())
     for (const auto& H : relaxed_[e])
       take_relaxed(k, H, P);
   add_stress(e, P, centre_, voxel.tissue_volume);

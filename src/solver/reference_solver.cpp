@@ -2,6 +2,7 @@
 
 #include "bound_points.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -11,8 +12,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Model> model, const Solve
     : SteppingSolver(std::move(model), settings), restricted_(*model_), loads_(*model_, discretisation_)
 {
   voxels_.resize(model_->voxels.size());
-  for (std::size_t e = 0; e < voxels_.size(); ++e)
-    discretisation_.voxel(e, voxels_[e]);
+  mix_voxels();
   shape_derivatives({ 0, 0, 0 }, centre_);
   for (int point = 0; point < 8; ++point)
   {
@@ -33,6 +33,37 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Model> model, const Solve
     fibre_memory_.resize(model_->fibre_muscle.size());
   }
   rest();
+}
+
+void ReferenceSolver::mix_voxels()
+{
+  for (std::size_t e = 0; e < voxels_.size(); ++e)
+    discretisation_.voxel(e, voxels_[e]);
+}
+
+void ReferenceSolver::effect_switched(Effect effect)
+{
+  mix_voxels();
+  if (effect == Effect::viscosity)
+  {
+    std::fill(relaxed_.begin(), relaxed_.end(), std::array<physics::Symmetric3<double>, 2>{});
+    viscous_elapsed_ = 0;
+  }
+  if (effect == Effect::sliding || effect == Effect::friction)
+    restricted_.run(effects());
+  loads_.run(effects());
+}
+
+void ReferenceSolver::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::elasticity, "voxels", voxels_);
+  for (const auto* field : { &u_, &v_, &f_ })
+    for (const auto& component : *field)
+      list.add(Effect::elasticity, "motion and forces", component);
+  list.add(Effect::viscosity, "relaxed stresses", relaxed_);
+  list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
+  restricted_.list_allocations(list);
+  loads_.list_allocations(list);
 }
 
 void ReferenceSolver::skin(SkinState& out) { skin_state(*model_, u_pointers().data(), out); }
@@ -115,7 +146,7 @@ void ReferenceSolver::set_velocities(const Vectors& in)
 void ReferenceSolver::forces_at_components(const Components& u, Vectors& out)
 {
   accounting_ = false;
-  forces(u, activation());
+  forces(u, felt_activation());
   interleave(f_, out);
 }
 
@@ -140,26 +171,28 @@ void ReferenceSolver::open_account()
 {
   account_->open();
   accounting_ = true;
-  forces(u_, activation());
+  forces(u_, felt_activation());
   std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
 }
 
 Work ReferenceSolver::work()
 {
-  relax(0);
+  if (relaxes())
+    relax(0);
   return account_->work();
 }
 
 double ReferenceSolver::run(const StepPlan& plan)
 {
-  std::vector<float> activation(model_->muscles.size());
+  std::vector<float> activation(model_->muscles.size(), 0);
   const double keep = this->keep(plan.dt), gain = this->gain(plan.dt);
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
   const auto count = static_cast<std::int32_t>(model_->nodes.size());
   for (int step = 0; step < plan.steps; ++step)
   {
-    plan.activation(step, activation.data());
+    if (runs(Effect::contraction))
+      plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
     forces(u_, activation);
     loads_.update(plan.time + step * plan.dt, u_pointers().data());
@@ -189,7 +222,7 @@ double ReferenceSolver::run(const StepPlan& plan)
         account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, plan.dt);
     }
     viscous_elapsed_ += plan.dt;
-    if (!relaxed_.empty() && (step + 1 == plan.steps || viscous_elapsed_ >= viscous_interval()))
+    if (relaxes() && (step + 1 == plan.steps || viscous_elapsed_ >= viscous_interval()))
     {
       relax(settling_ ? 1e9 : viscous_elapsed_);
       viscous_elapsed_ = 0;

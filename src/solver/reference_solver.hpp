@@ -26,6 +26,8 @@ protected:
   void save_fields(std::unique_ptr<Fields>& to) const override;
   void restore_fields(const Fields& from) override;
   void rest() override;
+  void effect_switched(Effect effect) override;
+  void list_allocations(AllocationList& list) const override;
   void velocities(Vectors& out) const override { interleave(v_, out); }
   void forces_at(const Vectors& at, Vectors& out) override;
   void external_forces(Vectors& out) override;
@@ -50,6 +52,8 @@ private:
   void forces(const Components& u, const std::vector<float>& activation);
   void forces_at_components(const Components& u, Vectors& out);
   void look(std::size_t e, const Kinematics& k);
+  void mix_voxels();
+  bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void relax(double elapsed);
 
   struct Kept;

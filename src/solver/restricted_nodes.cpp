@@ -1,5 +1,6 @@
 #include "restricted_nodes.hpp"
 
+#include "built_effects.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -39,8 +40,10 @@ template <class Real>
 RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
     : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)
 {
-  for (const auto& surface : model.constraint_surfaces)
-    trees_.push_back(std::make_unique<SurfaceTree>(surface.mesh));
+  trees_.resize(model.constraint_surfaces.size());
+  for (const auto& node : model.sliding)
+    if (auto& tree = trees_[node.surface]; !tree)
+      tree = std::make_unique<SurfaceTree>(model.constraint_surfaces[node.surface].mesh);
   sort_by_node(rigid_);
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
@@ -103,6 +106,34 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 }
 
 template <class Real>
+void RestrictedNodes<Real>::run(EffectSet running)
+{
+  slides_ = running.has(Effect::sliding);
+  rubs_ = running.has(Effect::friction);
+  contacts_.gliding.rub(rubs_);
+  reset();
+}
+
+template <class Real>
+void RestrictedNodes<Real>::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
+  list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
+  for (const auto& tree : trees_)
+    if (tree)
+    {
+      list.add(Effect::sliding, "surfaces", tree->boxes());
+      list.add(Effect::sliding, "surfaces", tree->triangles());
+    }
+  contacts_.gliding.list_allocations(list);
+  list.add(Effect::sliding, "contacts", contacts_.sliding);
+  list.add(Effect::sliding, "tangent planes", contacts_.blocks);
+  list.add(Effect::sliding, "tangent planes", block_node_);
+  list.add(Effect::sliding, "tangent planes", block_count_);
+  list.add(Effect::sliding, "tangent planes", block_sliding_);
+}
+
+template <class Real>
 void RestrictedNodes<Real>::reset()
 {
   contacts_.gliding.reset();
@@ -145,15 +176,18 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
     return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -
                                      block_node_.begin());
   };
-  kernel_({ contacts_.blocks.data(),
-            block_node_.data(),
-            block_count_.data(),
-            { u[0], u[1], u[2] },
-            { v[0], v[1], v[2] },
-            renew,
-            this },
-          block_of(first), block_of(last));
-  contacts_.gliding.apply(first, last, u, v, drive);
+  if (built_with(Effect::sliding) && slides_)
+  {
+    kernel_({ contacts_.blocks.data(),
+              block_node_.data(),
+              block_count_.data(),
+              { u[0], u[1], u[2] },
+              { v[0], v[1], v[2] },
+              renew,
+              this },
+            block_of(first), block_of(last));
+    contacts_.gliding.apply(first, last, u, v, drive);
+  }
 
   const auto prescriptions = range(prescribed_, first, last);
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)

@@ -35,7 +35,11 @@ public:
 
   void reset();
   const Contacts& contacts() const { return contacts_; }
-  void restore(const Contacts& contacts) { contacts_ = contacts; }
+  void restore(const Contacts& contacts)
+  {
+    contacts_ = contacts;
+    contacts_.gliding.rub(rubs_);
+  }
   /// Applies to nodes in [first, last), whole node planes; u holds the displacements after the step's update, before
   /// those before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
@@ -46,11 +50,15 @@ public:
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
   {
-    return contacts_.gliding.friction_loss(first, last, mass, before, without, after);
+    return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
   }
-  bool empty() const
+  /// Sliding and friction where they run; nodes know of nothing before.
+  void run(EffectSet running);
+  void list_allocations(AllocationList& list) const;
+  bool idle() const
   {
-    return rigid_.empty() && prescribed_.empty() && contacts_.sliding.empty() && contacts_.gliding.empty();
+    const bool slides = slides_ && !(contacts_.sliding.empty() && contacts_.gliding.empty());
+    return rigid_.empty() && prescribed_.empty() && !slides;
   }
 
 private:
@@ -65,6 +73,7 @@ private:
   Contacts contacts_;
   std::vector<std::int32_t> block_node_, block_count_;
   std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into contacts_.sliding; -1: does not slide
+  bool slides_ = true, rubs_ = true;
 };
 
 }  // namespace frontalis

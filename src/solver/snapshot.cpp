@@ -8,6 +8,7 @@ struct SteppingSolver::Motion : Snapshot
   const SteppingSolver* owner = nullptr;
   Course course;
   std::int64_t steps = 0;
+  EffectSet effects;
   std::unique_ptr<Fields> fields;
 };
 
@@ -22,6 +23,7 @@ void SteppingSolver::save(std::unique_ptr<Snapshot>& to)
   }
   motion->course = *this;
   motion->steps = profile_.steps;
+  motion->effects = effects_;
   save_fields(motion->fields);
 }
 
@@ -34,6 +36,13 @@ void SteppingSolver::restore(const Snapshot& snapshot)
   // steps are counted as they are taken, those given up too
   assembled_at_step_ += profile_.steps - motion->steps;
   restore_fields(*motion->fields);
+  // effects stay as they are now
+  if (motion->effects == effects_)
+    return;
+  for (const Effect effect : every_effect())
+    if (motion->effects.has(effect) != runs(effect))
+      effect_switched(effect);
+  displacements_were_set();
 }
 
 void SteppingSolver::slow_down(double share)

@@ -1,6 +1,8 @@
 #include "stepping_solver.hpp"
 
+#include "built_effects.hpp"
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/physics/mutation.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "voxel_monitor.hpp"
@@ -59,15 +61,14 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
       discretisation_(*model_),
       wants_ledger_(settings.ledger),
       damping_(model_->damping),
-      gravity_(model_->gravity),
+      effects_(effects_of(*model_)),
       forced_time_step_(settings.time_step)
 {
+  check_build(effects_);
+  set_gravity();
   frequency_squared_ = discretisation_.frequency_squared_max;
   controls_ = rest_controls(*model_);
   activation_ = controls_.activation;
-  if (model_->mass_scaling.kind == MassScalingSettings::Kind::uniform)
-    for (double& component : gravity_)
-      component /= model_->mass_scaling.factor;
   const double critical = 2 / std::sqrt(frequency_squared_);
   if (forced_time_step_ > critical || forced_time_step_ < 0)
   {

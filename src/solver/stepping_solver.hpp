@@ -66,6 +66,9 @@ public:
   double time_step() const override { return safe_time_step(); }
   const Controls& controls() const override { return controls_; }
   const std::vector<float>& activation() const override { return activation_; }
+  EffectSet effects() const override { return effects_; }
+  void switch_effect(Effect effect, bool on) override;
+  std::vector<Allocation> allocations() const override;
   Monitor monitor() override;
   EnergyLedger ledger() override;
   Profile profile() const override { return profile_; }
@@ -93,6 +96,15 @@ protected:
   virtual void open_account();
   virtual Work work();
 
+  /// After an effect was switched.
+  virtual void effect_switched(Effect effect) = 0;
+  virtual void list_allocations(AllocationList& list) const = 0;
+  bool runs(Effect effect) const { return effects_.has(effect); }
+  /// Whose memory fibres are: contraction's where the model has it.
+  Effect effect_of_fibres() const;
+  /// Activation of each muscle as its fibres feel it.
+  std::vector<float> felt_activation() const;
+
   /// To be called after displacements were set from outside: time step and ledger begin anew.
   void displacements_were_set();
   /// The same for velocities.
@@ -116,6 +128,7 @@ protected:
 private:
   double safe_time_step() const;
   double critical_frequency_squared() const;
+  void set_gravity();
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
   void renew_assembled_bound();
   double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
@@ -124,6 +137,7 @@ private:
 
   struct Motion;
 
+  EffectSet effects_;
   double forced_time_step_ = 0;
   double slow_share_ = 1;  // of the safe time step
 };

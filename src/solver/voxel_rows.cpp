@@ -165,6 +165,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
     add_fibres(model, voxels, tile, fibres);
     add_laws(model, voxels, tile, laws);
     add_viscosity(voxels, tile, viscous);
+    tile.passes = (tile.fibre_begin < tile.fibre_end ? pass_fibres : 0) | (tile.viscous >= 0 ? pass_viscosity : 0);
     stiffness.push_back(stiffness_of(voxels));
     if (discretisation.assumed_strain)
       stabilisation.push_back(stabilisation_of(voxels));
@@ -178,6 +179,31 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
   stabilisation.shrink_to_fit();
   fibres.shrink_to_fit();
   laws.shrink_to_fit();
+  viscous.shrink_to_fit();
+}
+
+void VoxelRows::renew_bounds(const Discretisation& discretisation)
+{
+  VoxelProperties voxel;
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    for (int lane = 0; lane < Tile::width; ++lane)
+      if (const auto e = tiles[t].voxel(lane); e >= 0)
+      {
+        discretisation.voxel(static_cast<std::size_t>(e), voxel);
+        stiffness[t].frequency_squared[lane] = static_cast<float>(voxel.frequency_squared);
+      }
+}
+
+void VoxelRows::list_allocations(Effect of_fibres, AllocationList& list) const
+{
+  list.add(Effect::elasticity, "tiles", tiles);
+  list.add(Effect::elasticity, "planes", plane_tiles);
+  list.add(Effect::elasticity, "planes", plane_nodes);
+  list.add(Effect::elasticity, "stiffness", stiffness);
+  list.add(Effect::elasticity, "hourglass stiffness", stabilisation);
+  list.add(Effect::elasticity, "laws", laws);
+  list.add(of_fibres, "fibres", fibres);
+  list.add(Effect::viscosity, "Prony terms", viscous);
 }
 
 }  // namespace frontalis

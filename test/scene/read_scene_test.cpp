@@ -238,6 +238,7 @@ TEST(EveryKey, constraints_and_loads)
   expect_vector(scene.loads[2].value, { 0, 0, 0.005 });
   EXPECT_NEAR(scene.loads[2].within, 0.5e-3, 1e-15);
   expect_vector(scene.gravity, { 0, 0, -9.81 });
+  EXPECT_EQ(names_of(scene.switched_off), "viscosity, sliding, friction");
 }
 
 TEST(EveryKey, output_time_and_accuracy)

@@ -7,8 +7,8 @@ namespace frontalis
 namespace test
 {
 
-/// Effects that a scene may have, to be combined.
-enum Effect : unsigned
+/// Bits of what a scene has; rigid nodes and elasticity it always has.
+enum SceneEffect : unsigned
 {
   viscosity = 1,
   other_law = 2,
@@ -18,10 +18,11 @@ enum Effect : unsigned
   pressure = 32,
   prescribed = 64,
   sliding = 128,
-  all_effects = 256
+  all_effects = 256,
+  friction = 256  ///< beside sliding
 };
 
-// strips of several lengths, so that tiles are full, half full and empty in places; each effect has its own part of it
+/// Strips of several lengths, so that tiles are full, half full and empty in places; each effect has its own part of it
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {
@@ -98,6 +99,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
   {
     ConstraintSurface floor;
     floor.name = "floor";
+    floor.friction = effects & friction ? 0.3 : 0;
     floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
     floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
     model.constraint_surfaces.push_back(floor);

@@ -13,6 +13,7 @@ namespace frontalis
 namespace
 {
 
+using namespace test;
 using Vectors = std::vector<std::array<double, 3>>;
 
 Vectors motion(const Model& model, Backend backend, int threads, bool active, const char* instructions = nullptr)

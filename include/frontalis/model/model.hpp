@@ -96,6 +96,9 @@ struct Model
   };
   std::vector<DemoPhase> demo;
 
+  /// Names of effects that the scene switched off: nothing is stored for them (model/effects.hpp).
+  std::vector<std::string> switched_off;
+
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
 

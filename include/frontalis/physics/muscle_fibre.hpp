@@ -42,8 +42,9 @@ FRONTALIS_LAW T passive_tension(T l)
 /// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
 /// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. Faded out below a small J, so
 /// that a crushed element's fibres do not hold it crushed. with_length: 1 takes the tension-length relation, 0 gives
-/// the constant S = activation stress_reference; with_passive: 1 adds the passive part.
-template <class T>
+/// the constant S = activation stress_reference; with_passive: 1 adds the passive part, which is not computed where it
+/// is known beforehand that there is none.
+template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
 {
   using N = Number<T>;
@@ -52,7 +53,7 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   const T l = stretch * N::of(1.0 / fibre_optimal_stretch);
   const T to_second_piola = N::max(J, N::of(0)) * l / squared;
   const T active = activation * (with_length * (active_tension(l) * to_second_piola - N::of(1)) + N::of(1));
-  const T passive = with_passive * passive_tension(l) * to_second_piola;
+  const T passive = Passive ? with_passive * passive_tension(l) * to_second_piola : N::of(0);
   const T fade = N::min(N::max(J * N::of(1.0 / continuation_jacobian), N::of(0)), N::of(1));
   return stress_reference * fade * (active + passive);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/effect.hpp"
 #include "frontalis/scene/geometry.hpp"
 #include "frontalis/scene/restriction.hpp"
 #include "frontalis/scene/tissue.hpp"
@@ -95,6 +96,7 @@ struct Scene
   SceneSkin skin;
   FaceFrame frame;
   Vector3 gravity{ 0, 0, 0 };  ///< scene coordinates [m/s2]
+  EffectSet switched_off;      ///< effects that the bake leaves out
   SceneTime time;
   AccuracyProfile accuracy;  ///< the profile chosen
   std::vector<AccuracyProfile> profiles;

@@ -2,7 +2,9 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model.hpp"
+#include "frontalis/solver/allocation.hpp"
 #include "frontalis/solver/energy_ledger.hpp"
+#include "frontalis/solver/solver_state.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -44,46 +46,6 @@ struct Controls
 
 /// Controls at a fraction of the way between two; bones turn about the shortest axis.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
-
-/// Published surface in the local frame [m].
-struct SkinState
-{
-  std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<float, 3>> normals;  ///< unit length, outward, area-weighted mean of the triangles'
-  std::vector<std::array<float, 3>> landmarks;
-};
-
-/// Energies [J], summed in double, and the state of the worst voxel.
-struct Monitor
-{
-  double kinetic = 0;
-  double internal = 0;  ///< elastic strain energy of the materials; fibres and hourglass not
-  double hourglass = 0;
-  double worst_jacobian = 1;  ///< smallest J = det F of a voxel
-  std::int32_t worst_voxel = -1;
-  std::int64_t inverted = 0;         ///< voxels with J <= 0
-  double critical_time_step = 0;     ///< [s] now, element bound
-  std::int32_t stiffest_voxel = -1;  ///< that sets it
-  double step_share = 0;             ///< latest time step over the critical now, by the model's estimate
-  bool finite = true;
-};
-
-/// How a search for equilibrium ended.
-struct Equilibrium
-{
-  bool reached = false;
-  double residual = 0;  ///< motion that is left over displacement, as estimated
-  double seconds = 0;   ///< simulated
-};
-
-/// Wall seconds spent since construction or reset.
-struct Profile
-{
-  double stepping = 0;
-  double skin = 0;
-  double monitor = 0;
-  std::int64_t steps = 0;
-};
 
 /// All that the motion depends on at one moment; what is in it only the solver knows that made it.
 class Snapshot
@@ -136,6 +98,15 @@ public:
   virtual const Controls& controls() const = 0;
   /// Activation of each muscle now: what the controls ask for, after the muscles' rise and fall times.
   virtual const std::vector<float>& activation() const = 0;
+
+  /// Those of the model's effects that run now. reset() leaves them as they are.
+  virtual EffectSet effects() const = 0;
+  /// An effect that is off takes no time and keeps its memory; one that comes back has forgotten its history (viscous
+  /// stresses, friction). Time step and ledger begin anew. Throws Error where the model does not have the effect, where
+  /// another needs it, or where it cannot be switched while running.
+  virtual void switch_effect(Effect effect, bool on) = 0;
+  /// What the solver's arrays hold now, the model not counted.
+  virtual std::vector<Allocation> allocations() const = 0;
 
   virtual void skin(SkinState& out) = 0;
   virtual Monitor monitor() = 0;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Published surface in the local frame [m].
+struct SkinState
+{
+  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<float, 3>> normals;  ///< unit length, outward, area-weighted mean of the triangles'
+  std::vector<std::array<float, 3>> landmarks;
+};
+
+/// Energies [J], summed in double, and the state of the worst voxel.
+struct Monitor
+{
+  double kinetic = 0;
+  double internal = 0;  ///< elastic strain energy of the materials; fibres and hourglass not
+  double hourglass = 0;
+  double worst_jacobian = 1;  ///< smallest J = det F of a voxel
+  std::int32_t worst_voxel = -1;
+  std::int64_t inverted = 0;         ///< voxels with J <= 0
+  double critical_time_step = 0;     ///< [s] now, element bound
+  std::int32_t stiffest_voxel = -1;  ///< that sets it
+  double step_share = 0;             ///< latest time step over the critical now, by the model's estimate
+  bool finite = true;
+};
+
+/// How a search for equilibrium ended.
+struct Equilibrium
+{
+  bool reached = false;
+  double residual = 0;  ///< motion that is left over displacement, as estimated
+  double seconds = 0;   ///< simulated
+};
+
+/// Wall seconds spent since construction or reset.
+struct Profile
+{
+  double stepping = 0;
+  double skin = 0;
+  double monitor = 0;
+  std::int64_t steps = 0;
+};
+
+}  // namespace frontalis

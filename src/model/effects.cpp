@@ -1,0 +1,242 @@
+#include "frontalis/model/effects.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+std::string counted(std::size_t count, const std::string& one)
+{
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+bool is_off(const Model& model, Effect effect)
+{
+  const auto& off = model.switched_off;
+  return std::find(off.begin(), off.end(), name_of(effect)) != off.end();
+}
+
+// voxels with a fibre of one of the muscles, and how many of these muscles there are
+std::size_t voxels_with_fibres(const Model& model, bool passive_alone)
+{
+  std::size_t count = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    count += std::any_of(model.fibre_muscle.begin() + model.fibre_begin[e],
+                         model.fibre_muscle.begin() + model.fibre_begin[e + 1],
+                         [&](auto m) { return !passive_alone || model.muscles[m].passive; })
+                 ? 1
+                 : 0;
+  return count;
+}
+
+bool is_viscous(const Material& material) { return material.viscous_share[0] > 0 || material.viscous_share[1] > 0; }
+
+std::size_t viscous_voxels(const Model& model)
+{
+  std::size_t count = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    bool viscous = false;
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+      viscous = viscous || (model.mixture_proportion[m] > 0 && is_viscous(model.materials[model.mixture_material[m]]));
+    count += viscous ? 1 : 0;
+  }
+  return count;
+}
+
+bool is_surface_load(const Load& load) { return load.kind != Load::Kind::displacement; }
+
+std::size_t loaded_nodes(const Model& model)
+{
+  std::vector<bool> loaded(model.nodes.size(), false);
+  for (const Load& load : model.loads)
+    if (is_surface_load(load))
+      for (const auto voxel : load.binding.voxel)
+        for (const auto node : model.voxel_nodes[voxel])
+          loaded[node] = true;
+  return static_cast<std::size_t>(std::count(loaded.begin(), loaded.end(), true));
+}
+
+template <class Entry>
+std::size_t distinct_nodes(const std::vector<Entry>& entries)
+{
+  std::vector<std::int32_t> nodes;
+  for (const Entry& entry : entries)
+    nodes.push_back(entry.node);
+  std::sort(nodes.begin(), nodes.end());
+  return static_cast<std::size_t>(std::unique(nodes.begin(), nodes.end()) - nodes.begin());
+}
+
+std::size_t count_passive(const Model& model)
+{
+  return static_cast<std::size_t>(
+      std::count_if(model.muscles.begin(), model.muscles.end(), [](const Muscle& m) { return m.passive; }));
+}
+
+std::size_t count_surface_loads(const Model& model)
+{
+  return static_cast<std::size_t>(std::count_if(model.loads.begin(), model.loads.end(), is_surface_load));
+}
+
+// what there is of an effect, as long as nobody switched it off
+EffectPresence found(const Model& model, Effect effect)
+{
+  const auto on_voxels = [](std::size_t voxels, const std::string& why, const std::string& otherwise) {
+    return EffectPresence{ voxels > 0, voxels > 0 ? why : otherwise, voxels, 0 };
+  };
+  const auto on_nodes = [](std::size_t nodes, const std::string& why, const std::string& otherwise) {
+    return EffectPresence{ nodes > 0, nodes > 0 ? why : otherwise, 0, nodes };
+  };
+  switch (effect)
+  {
+    case Effect::elasticity:
+      return on_voxels(model.voxels.size(), "always", "no voxel");
+    case Effect::fibre_stiffness:
+      return on_voxels(voxels_with_fibres(model, true),
+                       counted(count_passive(model), "muscle") + " with passive fibres",
+                       "no muscle has passive fibres");
+    case Effect::contraction:
+      return on_voxels(voxels_with_fibres(model, false), counted(model.muscles.size(), "muscle"), "no muscles");
+    case Effect::viscosity:
+      return on_voxels(viscous_voxels(model), "materials with a Prony series", "no material is viscous");
+    case Effect::gravity:
+    {
+      const bool any = std::any_of(model.gravity.begin(), model.gravity.end(), [](double g) { return g != 0; });
+      return on_nodes(any ? model.nodes.size() : 0, "the scene gives an acceleration", "no acceleration given");
+    }
+    case Effect::surface_loads:
+      return on_nodes(loaded_nodes(model), counted(count_surface_loads(model), "load"), "no traction or pressure");
+    case Effect::prescribed_displacement:
+      return on_nodes(distinct_nodes(model.prescribed),
+                      counted(model.loads.size() - count_surface_loads(model), "path"), "no node has a path");
+    case Effect::rigid_nodes:
+      return on_nodes(distinct_nodes(model.rigid), "nodes at rigid surfaces", "nothing is held");
+    case Effect::sliding:
+      return on_nodes(distinct_nodes(model.sliding), counted(model.constraint_surfaces.size(), "surface"),
+                      "no surface to slide on");
+    case Effect::friction:
+      return on_nodes(
+          static_cast<std::size_t>(std::count_if(model.sliding.begin(), model.sliding.end(),
+                                                 [&](const SlidingNode& node)
+                                                 { return model.constraint_surfaces[node.surface].friction > 0; })),
+          "surfaces with friction", "no surface has friction");
+    case Effect::output_fields:
+      return { !model.skin.vertices.empty(), model.skin.vertices.empty() ? "no skin" : "on request", 0, 0 };
+  }
+  return {};
+}
+
+void remove_fibres(Model& model, bool keep_passive)
+{
+  std::vector<std::int32_t> begin(1, 0);
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+      if (keep_passive && model.muscles[model.fibre_muscle[f]].passive)
+      {
+        model.fibre_muscle[kept] = model.fibre_muscle[f];
+        model.fibre_weight[kept] = model.fibre_weight[f];
+        model.fibre_direction[kept++] = model.fibre_direction[f];
+      }
+    begin.push_back(static_cast<std::int32_t>(kept));
+  }
+  model.fibre_begin = begin;
+  model.fibre_muscle.resize(kept);
+  model.fibre_weight.resize(kept);
+  model.fibre_direction.resize(kept);
+}
+
+// loads for which the condition holds go, and with them the nodes that they prescribe
+template <class Condition>
+void remove_loads(Model& model, Condition&& goes)
+{
+  std::vector<std::int32_t> index;
+  std::vector<Load> loads;
+  for (Load& load : model.loads)
+  {
+    index.push_back(goes(load) ? -1 : static_cast<std::int32_t>(loads.size()));
+    if (index.back() >= 0)
+      loads.push_back(std::move(load));
+  }
+  std::vector<PrescribedNode> prescribed;
+  for (const PrescribedNode& node : model.prescribed)
+    if (index[node.load] >= 0)
+      prescribed.push_back({ node.node, index[node.load] });
+  model.loads = std::move(loads);
+  model.prescribed = std::move(prescribed);
+}
+
+void remove(Model& model, Effect effect, EffectSet off)
+{
+  switch (effect)
+  {
+    case Effect::fibre_stiffness:
+      for (Muscle& muscle : model.muscles)
+        muscle.passive = false;
+      break;
+    case Effect::contraction:
+      remove_fibres(model, !off.has(Effect::fibre_stiffness));
+      break;
+    case Effect::viscosity:
+      for (Material& material : model.materials)
+        material.viscous_share = material.viscous_time = {};
+      break;
+    case Effect::gravity:
+      model.gravity = {};
+      break;
+    case Effect::surface_loads:
+      remove_loads(model, is_surface_load);
+      break;
+    case Effect::prescribed_displacement:
+      remove_loads(model, [](const Load& load) { return !is_surface_load(load); });
+      break;
+    case Effect::rigid_nodes:
+      model.rigid.clear();
+      break;
+    case Effect::sliding:
+      model.sliding.clear();
+      model.constraint_surfaces.clear();
+      break;
+    case Effect::friction:
+      for (ConstraintSurface& surface : model.constraint_surfaces)
+        surface.friction = 0;
+      break;
+    case Effect::elasticity:
+    case Effect::output_fields:
+      break;
+  }
+}
+
+}  // namespace
+
+EffectPresence presence_of(const Model& model, Effect effect)
+{
+  if (is_off(model, effect))
+    return { false, "switched off by the scene", 0, 0 };
+  return found(model, effect);
+}
+
+EffectSet effects_of(const Model& model)
+{
+  EffectSet set;
+  for (const Effect effect : every_effect())
+    if (presence_of(model, effect).present)
+      set = set.with(effect);
+  return set;
+}
+
+void switch_off(Model& model, EffectSet off)
+{
+  check_switched_off(off, effects_of(model));
+  for (const Effect effect : every_effect())
+    if (off.has(effect))
+      remove(model, effect, off);
+  for (const Effect effect : every_effect())
+    if (off.has(effect) && !is_off(model, effect))
+      model.switched_off.push_back(name_of(effect));
+}
+
+}  // namespace frontalis

@@ -1,0 +1,61 @@
+#include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
+#include "stepping_solver.hpp"
+
+namespace frontalis
+{
+
+std::vector<float> SteppingSolver::felt_activation() const
+{
+  return runs(Effect::contraction) ? activation_ : std::vector<float>(activation_.size(), 0);
+}
+
+Effect SteppingSolver::effect_of_fibres() const
+{
+  return presence_of(*model_, Effect::contraction).present ? Effect::contraction : Effect::fibre_stiffness;
+}
+
+void SteppingSolver::set_gravity()
+{
+  const double scale =
+      model_->mass_scaling.kind == MassScalingSettings::Kind::uniform ? model_->mass_scaling.factor : 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    gravity_[axis] = runs(Effect::gravity) ? model_->gravity[axis] / scale : 0;
+}
+
+void SteppingSolver::switch_effect(Effect effect, bool on)
+{
+  const std::string name = name_of(effect);
+  if (traits_of(effect).not_live[0] != '\0')
+    throw Error(name + " cannot be switched while running: " + traits_of(effect).not_live);
+  if (const EffectPresence presence = presence_of(*model_, effect); !presence.present)
+    throw Error("the model has no " + name + " (" + presence.why + "); it has " + names_of(effects_of(*model_)));
+  if (effect == Effect::sliding && !on && runs(Effect::friction))
+    throw Error("sliding cannot be switched off: friction needs it; switch friction off first");
+  if (effect == Effect::friction && on && !runs(Effect::sliding))
+    throw Error("friction cannot be switched on: it needs sliding; switch sliding on first");
+  if (runs(effect) == on)
+    return;
+  effects_ = effects_.with(effect, on);
+  set_gravity();
+  const bool of_fibres = effect == Effect::contraction || effect == Effect::fibre_stiffness;
+  if (of_fibres)
+    discretisation_.bound(effects_);
+  effect_switched(effect);
+  if (failed_)
+    return;
+  if (of_fibres)
+    displacements_were_set();
+  else
+    velocities_were_set();
+}
+
+std::vector<Allocation> SteppingSolver::allocations() const
+{
+  AllocationList list;
+  discretisation_.list_allocations(list);
+  list_allocations(list);
+  return list.take();
+}
+
+}  // namespace frontalis
