@@ -1,7 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/isochoric.hpp"
-#include "frontalis/physics/voxel_element.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
 
 namespace frontalis
 {
@@ -58,14 +57,15 @@ FRONTALIS_LAW T energy(const FungExponential<T>& material, const Kinematics<T>& 
   return N::of(0.5) * material.mu / material.b * (bounded_exponential(x) - N::of(1));
 }
 
-/// Bound of the tangent shear stiffness [Pa].
+/// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const FungExponential<T>& material, const Kinematics<T>& k)
 {
   using N = Number<T>;
-  const T spread = isochoric_scale(k.J).value * k.I1;
-  return material.mu * bounded_exponential_slope(material.b * (spread - N::of(3))) *
-         (N::of(1) + N::of(2) * material.b * N::max(spread - N::of(3), N::of(0))) * isochoric_scale(k.J).value;
+  const InvariantDerivatives<T> d = first_invariant_derivatives(k);
+  return N::of(0.25) * material.mu *
+         bounded_exponential_slope(material.b * (isochoric_scale(k.J).value * k.I1 - N::of(3))) *
+         (material.b * d.first_squared + d.second);
 }
 
 }  // namespace physics

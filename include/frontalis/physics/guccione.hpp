@@ -91,22 +91,44 @@ FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, cons
   return N::of(0.5) * material.c * (bounded_exponential(s.Q) - N::of(1));
 }
 
-/// Bound of the tangent shear stiffness [Pa]: half of d2 psi along any unit change of F, (dQ)^2 + d2Q bounded by the
-/// norms of E and dQ/dE, F^T F g by 1 + 2 |E|.
+/// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F,
+/// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact, d2Q is bounded by the norms of dE and d2E: the former's square is 1 at rest, as
+/// it is exactly, with what its bound has grown since.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
 {
   using N = Number<T>;
-  const T g = isochoric_scale(k.J).value;
-  const GuccioneStrain<T> s = guccione_strain(material, k, g, fibre);
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const GuccioneStrain<T> s = guccione_strain(material, k, g.value, fibre);
+  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  T gradient_squared = N::of(0), cofactor_squared = N::of(0), strain_squared = N::of(0), along = N::of(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      gradient_squared = gradient_squared + s.gradient.a[i][j] * s.gradient.a[i][j];
+      cofactor_squared = cofactor_squared + k.cofactor.a[i][j] * k.cofactor.a[i][j];
+      strain_squared = strain_squared + s.C.a[i][j] * s.C.a[i][j];
+      along = along + s.gradient.a[i][j] * s.C.a[i][j];
+    }
+  T first_squared = N::of(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      const T x =
+          g.slope * along * k.cofactor.a[i][j] +
+          N::of(2) * g.value *
+              (k.F.a[i][0] * s.gradient.a[0][j] + k.F.a[i][1] * s.gradient.a[1][j] + k.F.a[i][2] * s.gradient.a[2][j]);
+      first_squared = first_squared + x * x;
+    }
+  const T stretch = N::sqrt(k.I1), turn = -g.slope * N::sqrt(cofactor_squared), C = N::sqrt(strain_squared);
+  const T change = g.value * stretch + N::of(0.5) * turn * C;
+  // at rest the square is (1 + sqrt(3))^2
+  const T change_squared = N::of(1) + N::max(change * change - N::of(7.4641016151377544), N::of(0));
+  const T bent = g.value + N::of(2) * turn * stretch + N::of(0.5) * bend * cofactor_squared * C -
+                 N::of(1 / 1.7320508075688772) * g.slope * stretch * C;
   const T largest = N::max(material.bf, N::max(material.bt, material.bfs));
-  T squared = N::of(0);
-  for (const auto& row : s.gradient.a)
-    for (const T& x : row)
-      squared = squared + N::of(4) * x * x;
-  const T stretch = N::of(1) + N::of(2) * N::sqrt(s.squared);
-  return N::of(0.25) * material.c * bounded_exponential_slope(s.Q) * g *
-         (stretch * (squared + N::of(2) * largest) + N::sqrt(squared));
+  return N::of(0.25) * material.c * bounded_exponential_slope(s.Q) *
+         (first_squared + N::of(2) * largest * change_squared + N::of(2) * N::sqrt(gradient_squared) * bent);
 }
 
 }  // namespace physics

@@ -88,21 +88,26 @@ FRONTALIS_LAW T energy(const HolzapfelGasserOgden<T>& material, const Kinematics
   return sum;
 }
 
-/// Bound of the tangent shear stiffness [Pa]: the matrix's, and of the families what they add along themselves.
+/// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
+/// Families count as if they were taut.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const HolzapfelGasserOgden<T>& material, const Kinematics<T>& k, const Vec3<T>* a0)
 {
   using N = Number<T>;
   const T g = isochoric_scale(k.J).value;
-  T sum = material.mu * g;
+  const InvariantDerivatives<T> all = first_invariant_derivatives(k);
+  const T aligned = N::of(1) - N::of(3) * material.dispersion;
+  T sum = N::of(0.25) * material.mu * all.second;
   for (int f = 0; f < 2; ++f)
   {
     const FibreFamily<T> family = fibre_family(material, k, g, a0[f]);
-    const T squared = g * dot(family.along, family.along);
+    const T squared = dot(family.along, family.along);
+    const InvariantDerivatives<T> own = invariant_derivatives(k, squared, 1);
+    const T first = material.dispersion * N::sqrt(all.first_squared) + aligned * N::sqrt(own.first_squared);
     const T exponent = material.k2 * family.strain * family.strain;
-    // half of d2 psi / d lambda2 along the family: 2 mu stands for the stiffness along one direction
-    sum = sum + material.k1 * bounded_exponential_slope(exponent) *
-                    (family.strain + N::of(2) * squared * (N::of(1) + N::of(2) * exponent));
+    sum = sum + N::of(0.5) * material.k1 * bounded_exponential_slope(exponent) *
+                    ((N::of(1) + N::of(2) * exponent) * N::max(first * first, N::of(4) * g * g * squared) +
+                     family.strain * (material.dispersion * all.second + aligned * own.second));
   }
   return sum;
 }

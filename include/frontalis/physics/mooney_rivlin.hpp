@@ -1,7 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/isochoric.hpp"
-#include "frontalis/physics/voxel_element.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
 
 namespace frontalis
 {
@@ -63,13 +62,22 @@ FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
          material.c2 * (g * g * second_invariant(right_cauchy_green(k.F)) - N::of(3));
 }
 
-/// Bound of the tangent shear stiffness [Pa]: second derivatives of the energy along unit changes of F.
+/// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
+/// That of g^2 I2, I2 = |cof F|^2, is 4 at rest, as it is exactly, with what its bound term by term has grown since.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 {
   using N = Number<T>;
-  const T g = isochoric_scale(k.J).value;
-  return N::of(2) * g * (material.c1 + N::of(3) * material.c2 * g * k.I1);
+  const double root = 1.7320508075688772;
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T I2 = second_invariant(right_cauchy_green(k.F)), steep = -g.value * g.slope, stretch = N::sqrt(k.I1);
+  const T second = g.value * g.value * (N::of(2) * k.I1 + N::of(4 / root) * N::sqrt(I2)) +
+                   I2 * (N::of(8) * steep * stretch + N::of(2) * (g.slope * g.slope + g.value * bend) * I2 +
+                         N::of(4 / root) * steep * stretch);
+  const double at_rest = 6 + 4 + 16 * root + 28 + 8;
+  return N::of(0.5) * (material.c1 * first_invariant_derivatives(k).second +
+                       material.c2 * (N::of(4) + N::max(second - N::of(at_rest), N::of(0))));
 }
 
 }  // namespace physics

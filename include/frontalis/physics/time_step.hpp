@@ -21,10 +21,10 @@ FRONTALIS_LAW T frequency_squared_bound(T mu, T kappa, T along_fibre, T density,
   return N::of(4) / density * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
-/// How much a neo-Hookean element has stiffened by deformation, 1 at rest: the bound below over its value at rest.
-/// The second derivatives of the energy (physics/neo_hookean.hpp) are bounded term by term: (kappa + mu/2 I1 g'') along
-/// cof F, 2 mu g' between F and cof F, mu g on F, and the pressure's on the change of cof F. weight[j] = (1/h_j^2) over
-/// the sum of the three.
+/// How much a neo-Hookean element has stiffened by deformation, 1 at rest. The second derivatives of the energy
+/// (physics/neo_hookean.hpp) are bounded term by term, the volumetric part's and the isochoric part's each by itself,
+/// and what these bounds have grown since rest counts over the element's true stiffness at rest, kappa + mu (2 weight -
+/// 2/3). weight[j] = (1/h_j^2) over the sum of the three.
 template <class T, class S>
 FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight)
 {
@@ -34,19 +34,20 @@ FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k
     for (int j = 0; j < 3; ++j)
       along = along + k.cofactor.a[i][j] * k.cofactor.a[i][j] * T(weight[j]);
   const T largest = N::max(T(weight[0]), N::max(T(weight[1]), T(weight[2])));
+  // d2J = 2 F : cof dF, and |cof dF| is at most |dF|^2 / sqrt(3)
+  const T turning = N::of(2 / 1.7320508075688772) * N::sqrt(k.I1) * largest;
+  const T dilatation = N::max(k.J - N::of(1), N::of(1) - k.J);
+  const T volumetric = along - N::of(1) + dilatation * turning;
   const IsochoricScale<T> g = isochoric_scale(k.J);
   // g'' = 10/9 J^(-8/3) = 5/2 g'^2 / g, and 0 where g goes on as a straight line
   const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
-  const T pressure = material.kappa * (k.J - N::of(1)) + N::of(0.5) * material.mu * g.slope * k.I1;
-  const T between = N::sqrt(k.I1 * along * largest);
-  const T bound = (material.kappa + N::of(0.5) * material.mu * k.I1 * bend) * along -
-                  N::of(2) * material.mu * g.slope * between +
-                  (N::of(2) * material.mu * g.value + N::max(pressure, -pressure) * N::sqrt(k.I1)) * largest;
+  const T isochoric = N::of(0.5) * k.I1 * bend * along - N::of(2) * g.slope * N::sqrt(k.I1 * along * largest) +
+                      N::of(2) * g.value * largest - N::of(0.5) * g.slope * k.I1 * turning;
   // the same at F = 1: I1 = 3, cof F = 1, g' = -2/3
-  const T at_rest = material.kappa + N::of(5.0 / 3) * material.mu +
-                    N::of(4.0 / 3) * material.mu * N::sqrt(N::of(3) * largest) +
-                    (N::of(2) + N::sqrt(N::of(3))) * material.mu * largest;
-  return bound / N::max(at_rest, N::of(1e-30));
+  const T at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
+  const T stiffness = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
+  return N::of(1) + (material.kappa * volumetric + material.mu * N::max(isochoric - at_rest, N::of(0))) /
+                        N::max(stiffness, N::of(1e-30));
 }
 
 }  // namespace physics

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "frontalis/physics/isochoric.hpp"
+#include "frontalis/physics/voxel_element.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Derivatives of an isochoric invariant g w by F, for the time step.
+template <class T>
+struct InvariantDerivatives
+{
+  T first_squared;  ///< squared norm of the first, exact
+  T second;         ///< largest value of the second along a unit change of F, bounded term by term
+};
+
+/// Of g w, where w is the trace of F^T F (lines = 3) or the squared stretch of one line of the material (lines = 1): D
+/// = g w' + w g' cof F with |w'|^2 = 4 w and w' : cof F = 2 lines J.
+template <class T>
+FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>& k, const T& w, double lines)
+{
+  using N = Number<T>;
+  T cofactor_squared = N::of(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      cofactor_squared = cofactor_squared + k.cofactor.a[i][j] * k.cofactor.a[i][j];
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T first = N::of(4) * g.value * g.value * w + N::of(4 * lines) * g.value * g.slope * w * k.J +
+                  g.slope * g.slope * w * w * cofactor_squared;
+  const T second = N::of(2) * g.value - N::of(4) * g.slope * N::sqrt(w * cofactor_squared) +
+                   w * (bend * cofactor_squared - N::of(2 / 1.7320508075688772) * g.slope * N::sqrt(k.I1));
+  return { N::max(first, N::of(0)), second };
+}
+
+/// The same of g I1, the second being 4 at rest, as it is exactly, with what its bound has grown since.
+template <class T>
+FRONTALIS_LAW InvariantDerivatives<T> first_invariant_derivatives(const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  InvariantDerivatives<T> d = invariant_derivatives(k, k.I1, 3);
+  d.second = N::of(4) + N::max(d.second - N::of(2 + 8 + 10 + 4), N::of(0));
+  return d;
+}
+
+}  // namespace physics
+}  // namespace frontalis
