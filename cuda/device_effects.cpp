@@ -60,10 +60,10 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
   for (float4& entry : palette)
     entry.w = 0;
   VoxelProperties voxel;
-  for (std::size_t e = 0; e < palette_entry_.size(); ++e)
+  for (std::size_t e = 0; e < palette_of_voxel_.size(); ++e)
   {
     discretisation.voxel(e, voxel);
-    float& bound = palette[palette_entry_[e]].w;
+    float& bound = palette[palette_of_voxel_[e]].w;
     bound = std::max(bound, static_cast<float>(voxel.frequency_squared));
   }
   palette_.upload(palette.data(), palette.size());

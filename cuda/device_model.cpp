@@ -87,8 +87,6 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
   tasks_ = DeviceArray<NodeTask>(tasks);
-  if (!model.fibre_muscle.empty())
-    palette_entry_ = palette_entry;
 
   StepArguments& g = constants_;
   g.patches = patches_.data();

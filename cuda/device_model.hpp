@@ -107,7 +107,6 @@ private:
   std::vector<std::uint32_t> palette_of_voxel_;
   StepArguments constants_{};
   Whole whole_;
-  std::vector<std::uint32_t> palette_entry_;   // of each voxel; empty without fibres
   std::vector<std::int32_t> contact_surface_;  // of each contact
 
   DeviceArray<Patch> patches_;
