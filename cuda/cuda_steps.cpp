@@ -226,6 +226,11 @@ void CudaSolver::open_account()
 
 Work CudaSolver::work()
 {
+  StepArguments g = arguments(0);
+  const DeviceArray<float> activation(felt_activation());
+  g.activation_begin = g.activation_end = activation.data();
+  g.steps = 1;
+  account_->look(g, u_[present_].data(), 0, stream_);
   device_.viscosity().relax(arguments(0), u_[present_].data(), 0, stream_);
   synchronise();
   Work work = account_->work();

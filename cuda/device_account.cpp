@@ -92,9 +92,14 @@ void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t s
   require(launch_fibre_work(g, fibres(), u, 0, true, stream), "looking at fibres");
 }
 
+void DeviceAccount::look(const StepArguments& g, const float4* u, int step, cudaStream_t stream)
+{
+  require(launch_fibre_work(g, fibres(), u, step, false, stream), "work of fibres");
+}
+
 void DeviceAccount::before_step(const StepArguments& g, int step, cudaStream_t stream)
 {
-  require(launch_fibre_work(g, fibres(), g.u[g.first], step, false, stream), "work of fibres");
+  look(g, g.u[g.first], step, stream);
 }
 
 void DeviceAccount::after_step(const StepArguments& g, double damping, int step, cudaStream_t stream)

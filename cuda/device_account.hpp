@@ -28,6 +28,8 @@ public:
   void describe(StepArguments& g) const;
   /// Begins anew at displacements u with the activations at the end of g's plan.
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
+  /// Adds the work of fibres since the latest look, up to displacements u.
+  void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
   /// Around each step: g.first is the displacements' buffer before it, after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);

@@ -9,6 +9,7 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <set>
 
 namespace frontalis
 {
@@ -57,6 +58,7 @@ std::vector<float> target_activation(const Model& model, const std::string& expr
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts)
 {
   std::vector<RigidTransform> bones(model.bones.size());
+  std::set<std::string> given;
   for (const std::string& text : texts)
   {
     const std::size_t equals = text.find('=');
@@ -72,6 +74,8 @@ std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::ve
     }
     if (count != 6 || begin <= text.size() || equals == 0)
       throw WrongUsage("--bone: '" + text + "' is not written NAME=X,Y,Z,RX,RY,RZ (mm, degrees)");
+    if (!given.insert(text.substr(0, equals)).second)
+      throw WrongUsage("--bone: '" + text.substr(0, equals) + "' is given twice");
     constexpr double degree = 3.14159265358979323846 / 180;
     set_bone_motion(model, text.substr(0, equals),
                     rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },

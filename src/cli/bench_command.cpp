@@ -7,6 +7,10 @@
 
 #include <CLI/CLI.hpp>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -28,9 +32,12 @@ struct BenchOptions
   bool quick = false;
 };
 
-// resident memory of this process [bytes]; 0 where the system does not tell
+// resident memory of this process without what was freed [bytes]; 0 where the system does not tell
 double resident_bytes()
 {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
   std::ifstream file("/proc/self/statm");
   double size = 0, resident = 0;
   file >> size >> resident;

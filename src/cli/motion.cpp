@@ -89,6 +89,7 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
     throw Error(path + ":1: the first column must be called time");
   ActivationCurve curve{ { 0 },
                          { row_activation(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
+  bool empty = true;
   for (int row = 2; std::getline(file, line); ++row)
   {
     if (line.find_first_not_of(" \t\r") == std::string::npos)
@@ -103,8 +104,9 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
     for (const std::string& field : fields)
       numbers.push_back(number(field, place));
     const double time = numbers[0];
-    if (!(time >= 0) || (row > 2 && time <= curve.time.back()))
+    if (!(time >= 0) || (!empty && time <= curve.time.back()))
       throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
+    empty = false;
     const std::vector<float> activation = row_activation(model, header, numbers, place);
     if (time == 0)
       curve.activation[0] = activation;
@@ -114,6 +116,8 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
       curve.activation.push_back(activation);
     }
   }
+  if (empty)
+    throw Error(path + ": has no row below its header");
   return curve;
 }
 

@@ -134,6 +134,7 @@ void check_mixtures(const Model& model)
   for (std::size_t m = 0; m < model.materials.size(); ++m)
   {
     check_finite("materials", m, model.materials[m].parameters);
+    check_positive("materials (bulk modulus)", m, model.materials[m].parameters[1]);
     check_positive("materials (density)", m, model.materials[m].density);
     const Material& material = model.materials[m];
     for (std::size_t term = 0; term < 2; ++term)
@@ -261,9 +262,13 @@ void check_settings(const Model& model)
   check_finite("to_face", 0, model.to_face.rotation);
   check_finite("to_face", 0, model.to_face.translation);
   check_finite("damping", 0, model.damping);
+  if (model.damping < 0)
+    fail("damping", "is " + std::to_string(model.damping) + "; it must be at least 0");
   check_positive("time_scaling", 0, model.time_scaling);
   check_positive("frame_rate", 0, model.frame_rate);
   check_positive("time_step_share", 0, model.time_step_share);
+  if (model.time_step_share > 1)
+    fail("time_step_share", "is " + std::to_string(model.time_step_share) + "; it must be at most 1");
   if (model.hourglass > HourglassControl::assumed_strain || model.integration > Integration::selective_reduced ||
       model.precision > Precision::double_precision || model.time_step_estimate > TimeStepEstimate::assembled)
     fail("hourglass, integration, precision, step_estimate", "a setting is not known");

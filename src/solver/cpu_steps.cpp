@@ -103,6 +103,10 @@ void CpuSolver<Real>::open_account()
 template <class Real>
 Work CpuSolver<Real>::work()
 {
+  // what fibres did in the latest step
+  const std::vector<float> felt = felt_activation();
+  const Arguments g = arguments(0, felt.data());
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
   relax(0);
   return account_->work();
 }

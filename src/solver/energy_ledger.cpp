@@ -20,7 +20,7 @@ void SteppingSolver::open_ledger()
   ledger_ = {};
   initial_ = 0;
   const EnergyLedger now = ledger();
-  initial_ = now.kinetic + now.internal + now.hourglass - now.gravity;
+  initial_ = now.kinetic + now.internal + now.hourglass - now.gravity - now.load - now.constraint;
 }
 
 EnergyLedger SteppingSolver::ledger()
@@ -39,13 +39,17 @@ EnergyLedger SteppingSolver::ledger()
   l.internal = state.internal;
   l.hourglass = state.hourglass;
 
-  // velocities half a step on, but of nodes that do not follow the forces
-  std::vector<bool> driven(model_->nodes.size(), false);
-  for (const auto& rigid : model_->rigid)
-    driven[rigid.node] = true;
+  // The account ends half a step before the displacements, where the velocities are: the work since then is that of the
+  // present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
+  std::vector<std::array<bool, 3>> driven(model_->nodes.size(), { { false, false, false } });
   for (const auto& prescribed : model_->prescribed)
-    driven[prescribed.node] = true;
+    for (int axis = 0; axis < 3; ++axis)
+      driven[prescribed.node][axis] = driven[prescribed.node][axis] || model_->loads[prescribed.load].fixed[axis];
+  for (const auto& rigid : model_->rigid)
+    driven[rigid.node] = { { true, true, true } };
   const double dt = latest_step_ > 0 ? latest_step_ : safe_time_step();
+  const bool weights = runs(Effect::gravity);
+  double load = 0, constraint = 0;
   l.kinetic = l.gravity = 0;
   for (std::size_t n = 0; n < u.size(); ++n)
   {
@@ -54,10 +58,14 @@ EnergyLedger SteppingSolver::ledger()
     for (int axis = 0; axis < 3; ++axis)
     {
       const double acceleration = gravity_[axis] + (external[n][axis] - internal[n][axis]) / mass;
-      const double next = driven[n] ? v[n][axis] : keep(dt) * v[n][axis] + gain(dt) * acceleration;
-      l.kinetic += 0.5 * mass * v[n][axis] * next;
-      if (runs(Effect::gravity))
-        l.gravity += weight * model_->gravity[axis] * u[n][axis];
+      const double next = keep(dt) * v[n][axis] + gain(dt) * acceleration;
+      l.kinetic += 0.5 * mass * v[n][axis] * (driven[n][axis] ? v[n][axis] : next);
+      const double pull = weights ? model_->gravity[axis] : 0;
+      l.gravity += weight * pull * u[n][axis];
+      // without what mass scaling takes off
+      const double force = external[n][axis] - weight * pull + mass * gravity_[axis];
+      load += 0.5 * dt * force * v[n][axis];
+      constraint += driven[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;
     }
   }
 
@@ -66,8 +74,8 @@ EnergyLedger SteppingSolver::ledger()
   l.damping = done.damping;
   l.friction = done.friction;
   l.muscle = done.muscle;
-  l.load = done.load;
-  l.constraint = done.constraint + done.friction;
+  l.load = done.load + load;
+  l.constraint = done.constraint + done.friction + constraint;
   for (const double term : { l.initial, l.kinetic, l.internal, l.hourglass, l.viscous, l.damping, l.friction, l.muscle,
                              l.load, l.gravity, l.constraint })
     l.largest = std::max(l.largest, std::abs(term));

@@ -177,6 +177,9 @@ void ReferenceSolver::open_account()
 
 Work ReferenceSolver::work()
 {
+  // what fibres did in the latest step
+  accounting_ = true;
+  forces(u_, felt_activation());
   if (relaxes())
     relax(0);
   return account_->work();

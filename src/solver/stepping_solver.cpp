@@ -70,7 +70,7 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
   controls_ = rest_controls(*model_);
   activation_ = controls_.activation;
   const double critical = 2 / std::sqrt(frequency_squared_);
-  if (forced_time_step_ > critical || forced_time_step_ < 0)
+  if (!(forced_time_step_ >= 0 && forced_time_step_ <= critical))
   {
     std::ostringstream text;
     text << "time step " << forced_time_step_ << " s refused: allowed is 0 (found by the solver) to the critical "

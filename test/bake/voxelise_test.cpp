@@ -18,7 +18,7 @@ TEST(Voxelise, SphereHasItsVolume)
   EXPECT_NEAR(tissue_volume(model) / (4.0 / 3 * pi * 1e-6), 1, 0.01);
   // at the default, dropping nearly empty voxels costs little
   scene.accuracy.fill_min = 0.2;
-  EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * 1e-6), 1, 0.02);
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * 1e-6), 1, 0.01);
 }
 
 TEST(Voxelise, CrossingBoxesShareByPriority)

@@ -38,7 +38,7 @@ protected:
 
 TEST_F(RunModes, a_table_of_activations_is_a_ramp_where_it_says_so)
 {
-  const std::string table = file("pull.csv", "time,pull\n0.05,0.5\n0.2,0.5\n");
+  const std::string table = file("pull.csv", "time,pull\n\n0,0\n0.05,0.5\n\n0.2,0.5\n");
   const std::string other = folder / "other";
   ASSERT_EQ(run_program({ "run", model, "--activations", table, "--seconds", "0.1", "--frames", frames }).code, 0);
   ASSERT_EQ(
@@ -56,6 +56,9 @@ TEST_F(RunModes, wrong_tables_are_told_with_their_line)
     { "time,pull\n0.1,nan\n", ":2: found 'nan'; must be a number" },
     { "time,pull\n0.1,1.5\n", ":2: activation of 'pull' is 1.500000; must be from 0 to 1" },
     { "time,pull\n0.1\n", ":2: found 1 fields; the header has 2" },
+    { "time,pull\n", ": has no row below its header" },
+    { "time,pull\n\n", ": has no row below its header" },
+    { "time,pull\n0.1,\n", ":2: found ''; must be a number" },
     { "seconds,pull\n", ":1: the first column must be called time" },
     { "", ": cannot be read, or is empty" },
   };

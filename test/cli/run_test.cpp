@@ -222,6 +222,7 @@ TEST_F(RunModel, bones_are_moved_and_bad_motions_refused)
   EXPECT_NE(moved, text_of(frames + "/landmarks.csv"));
   for (const char* text : { "jaw", "jaw=1,2,3", "jaw=0,0,0,0,0,x", "jaw=0,0,0,0,0,0,0", "=0,0,0,0,0,0" })
     EXPECT_EQ(run_program({ "run", path, "--bone", text }).code, 2) << text;
+  EXPECT_EQ(run_program({ "run", path, "--bone", "jaw=1,0,0,0,0,0", "--bone", "jaw=2,0,0,0,0,0" }).code, 2);
   result = run_program({ "run", path, "--bone", "skull=0,0,0,0,0,0" });
   EXPECT_EQ(result.code, 1);
   EXPECT_EQ(result.errors, "no bone is called 'skull'; the bones are jaw\n");

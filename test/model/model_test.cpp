@@ -101,6 +101,9 @@ TEST(CheckModel, AcceptsAFullModelAndNamesTheArrayAtFault)
   EXPECT_NE(fault([](Model& m) { m.skin.triangles[0][1] = 3; }).find("skin"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.skin_binding.voxel[0] = 8; }).find("skin_binding"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.landmarks.push_back("x"); }).find("landmark"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.materials[1].parameters[1] = -1; }).find("bulk modulus"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.time_step_share = 1.1; }).find("time_step_share"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.damping = -1; }).find("damping"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.spacing[1] = 0; }).find("spacing"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.expressions[0].activation[0].second = 2; }).find("raise"), std::string::npos);
 }

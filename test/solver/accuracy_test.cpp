@@ -124,9 +124,17 @@ TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
   model.mass_scaling.time_step = 2.5 * plain->time_step();
   const auto scaled = solver(model);
   EXPECT_NEAR(scaled->time_step() / model.mass_scaling.time_step, 1, 1e-6);
+  model.mass_scaling = {};
+  model.mass_scaling.kind = MassScalingSettings::Kind::uniform;
+  model.mass_scaling.factor = 4;
+  const auto uniform = solver(model);
+  EXPECT_NEAR(uniform->time_step() / plain->time_step(), 2, 1e-6);
   EXPECT_TRUE(plain->settle({}, 1e-3, 30).reached);
-  EXPECT_TRUE(scaled->settle({}, 1e-3, 30).reached);
-  EXPECT_NEAR(tip(*scaled, model) / tip(*plain, model), 1, 5e-3);
+  for (const auto& heavier : { scaled.get(), uniform.get() })
+  {
+    EXPECT_TRUE(heavier->settle({}, 1e-3, 60).reached);
+    EXPECT_NEAR(tip(*heavier, model) / tip(*plain, model), 1, 5e-3);
+  }
 }
 
 TEST_P(Accuracy, muscles_answer_with_their_rise_and_fall_times)

@@ -81,6 +81,22 @@ TEST(Effects, every_combination_moves_like_the_reference)
   }
 }
 
+// energies balance whatever acts together; without a drive there are only rounding errors
+TEST(Effects, every_combination_balances_its_energies)
+{
+  for (const Backend backend : available_backends())
+    for (unsigned effects = 0; effects < all_effects; ++effects)
+    {
+      const auto solver = make_solver(std::make_shared<const Model>(scene_of(effects)), { backend, 2, 4e-6, true });
+      Controls controls = solver->controls();
+      std::fill(controls.activation.begin(), controls.activation.end(), effects & contraction ? 0.7f : 0.0f);
+      solver->advance(8e-4, controls);
+      const EnergyLedger ledger = solver->ledger();
+      EXPECT_LT(std::abs(ledger.imbalance()), 4e-3 * ledger.largest + 1e-13) << name_of(backend) << " " << effects;
+      EXPECT_EQ(ledger.largest > 1e-9, (effects & (contraction | gravity | pressure | prescribed)) != 0) << effects;
+    }
+}
+
 TEST(Effects, every_form_of_element_on_every_instruction_set_in_float_and_double)
 {
   const auto sets = instruction_sets();

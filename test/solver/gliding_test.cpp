@@ -206,8 +206,6 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
 
 TEST_P(Gliding, SameInputSameBits)
 {
-  if (GetParam() == Backend::reference)
-    GTEST_SKIP() << "has one thread";
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
   const Model model = shell(centre, 0.3);
   Vectors first, u;

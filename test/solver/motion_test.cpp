@@ -214,24 +214,40 @@ TEST_P(Motion, RefusesBadControlsAndKeepsItsState)
   Muscle muscle;
   muscle.name = "bar";
   test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  model.bones = { "jaw" };
+  model.rigid.push_back({ 0, 0 });
   const auto solver_ = solver(model);
-  solver_->advance(1e-3, Controls{ { 0.5f }, {} });
+  const Controls good{ { 0.5f }, { {} } };
+  solver_->advance(1e-3, good);
   Vectors before, after;
   solver_->displacements(before);
   for (const float bad : { -0.1f, 1.1f, std::nanf("") })
-    EXPECT_THROW(solver_->advance(1e-3, Controls{ { bad }, {} }), Error);
-  EXPECT_THROW(solver_->advance(1e-3, Controls{ {}, {} }), Error);
-  EXPECT_THROW(solver_->advance(-1, Controls{ { 0.5f }, {} }), Error);
+    EXPECT_THROW(solver_->advance(1e-3, Controls{ { bad }, { {} } }), Error);
+  EXPECT_THROW(solver_->advance(1e-3, Controls{ {}, { {} } }), Error);
+  EXPECT_THROW(solver_->advance(1e-3, Controls{ { 0.5f }, {} }), Error);
+  for (const double seconds : { -1.0, std::nan(""), HUGE_VAL })
+    EXPECT_THROW(solver_->advance(seconds, good), Error);
+  Controls bad = good;
+  bad.bone[0].translation[1] = std::nan("");
+  EXPECT_THROW(solver_->advance(1e-3, bad), Error);
+  bad = good;
+  bad.bone[0].rotation[4] = std::nan("");
+  EXPECT_THROW(solver_->advance(1e-3, bad), Error);
+  bad.bone[0].rotation[4] = -1;  // a mirror
+  EXPECT_THROW(solver_->advance(1e-3, bad), Error);
   solver_->displacements(after);
   EXPECT_EQ(before, after);
   EXPECT_DOUBLE_EQ(solver_->time(), 1e-3);
+  EXPECT_EQ(solver_->controls().activation, good.activation);
+  EXPECT_EQ(solver_->controls().bone[0].translation, good.bone[0].translation);
 }
 
 TEST_P(Motion, RefusesATimeStepAboveTheCriticalOne)
 {
   const auto model = std::make_shared<const Model>(test::block_model());
   const double critical = make_solver(model, { GetParam(), 0, 0 })->monitor().critical_time_step;
-  EXPECT_THROW(make_solver(model, { GetParam(), 0, critical * 1.01 }), Error);
+  for (const double refused : { critical * 1.01, -critical, std::nan("") })
+    EXPECT_THROW(make_solver(model, { GetParam(), 0, refused }), Error) << refused;
   EXPECT_NO_THROW(make_solver(model, { GetParam(), 0, critical * 0.5 }));
 }
 
