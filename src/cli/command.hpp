@@ -34,6 +34,7 @@ using Action = std::function<void()>;
 // one function a subcommand: declares its options in `app` and, where it is the one chosen, sets `action`
 void add_bake_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
+void add_effects_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);
 void add_verify_command(CLI::App& app, Action& action);
 

@@ -28,6 +28,7 @@ int main(int argc, char** argv)
   frontalis::add_bake_command(app, action);
   frontalis::add_run_command(app, action);
   frontalis::add_bench_command(app, action);
+  frontalis::add_effects_command(app, action);
   frontalis::add_verify_command(app, action);
 
   try

@@ -32,6 +32,7 @@ struct RunOptions
   std::string expression;
   std::string activation_file;
   std::vector<std::string> bones;
+  std::vector<std::string> without;
   bool to_equilibrium = false;
   double tolerance = 1e-3;
   bool ledger = false;
@@ -141,6 +142,15 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
+// those that need others first
+void switch_off(Solver& solver, EffectSet off)
+{
+  const auto effects = every_effect();
+  for (auto effect = effects.rbegin(); effect != effects.rend(); ++effect)
+    if (off.has(*effect))
+      solver.switch_effect(*effect, false);
+}
+
 void run(const RunOptions& options)
 {
   check_options(options);
@@ -149,6 +159,9 @@ void run(const RunOptions& options)
   settings.backend = backend_from_name(options.backend);
   settings.threads = options.threads;
   settings.ledger = options.ledger;
+  EffectSet off;
+  for (const std::string& name : options.without)
+    off = off.with(effect_from_name(name));
 
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
@@ -161,6 +174,7 @@ void run(const RunOptions& options)
     folder.emplace(options.frames, *model);
 
   const std::unique_ptr<Solver> solver = make_solver(model, settings);
+  switch_off(*solver, off);
   RunSummary summary;
   if (options.ledger)
     summary.ledger.emplace();
@@ -219,6 +233,8 @@ void add_run_command(CLI::App& app, Action& action)
       ->add_option("--ramp", options->ramp,
                    "activations and bones move linearly over so many seconds (0.1, or half the run)")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--without", options->without, "effects to switch off: NAME,NAME,... (see frontalis effects)")
+      ->delimiter(',');
   command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
   command->add_option("--frames", options->frames,
                       "folder for skin_NNNN.ply, landmarks.csv and run.json; files of an earlier run are replaced");

@@ -114,16 +114,28 @@ void to_marker(const Model& model, const SkinShading& shading, const SkinState& 
     }
 }
 
-void to_point_cloud(const SkinState& skin, const std::vector<std::array<float, 3>>& rest, sensor_msgs::PointCloud2& out)
+std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest)
+{
+  std::vector<float> out;
+  for (std::size_t vertex = 0; vertex < rest.size(); ++vertex)
+  {
+    const auto& position = skin.vertices[vertex];
+    out.push_back(
+        std::hypot(position[0] - rest[vertex][0], position[1] - rest[vertex][1], position[2] - rest[vertex][2]));
+  }
+  return out;
+}
+
+void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out)
 {
   set_cloud_layout(skin.vertices.size(), out);
   for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
   {
     const auto& position = skin.vertices[vertex];
     const auto& normal = skin.normals[vertex];
-    const float displacement =
-        std::hypot(position[0] - rest[vertex][0], position[1] - rest[vertex][1], position[2] - rest[vertex][2]);
-    const float values[7] = { position[0], position[1], position[2], normal[0], normal[1], normal[2], displacement };
+    const float values[7] = {
+      position[0], position[1], position[2], normal[0], normal[1], normal[2], intensity[vertex]
+    };
     std::memcpy(out.data.data() + vertex * sizeof values, values, sizeof values);
   }
 }

@@ -1,6 +1,7 @@
 #include "frontalis/ros/face_node.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/ros/conversions.hpp"
 
 #include <cmath>
@@ -177,6 +178,31 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
   {
     response.message = error.what();
   }
+  return true;
+}
+
+bool FaceNode::on_switch_effect(SwitchEffect::Request& request, SwitchEffect::Response& response)
+{
+  const auto running = runner(&response.message);
+  if (!running)
+    return true;
+  try
+  {
+    if (!request.effect.empty())
+      running->switch_effect(effect_from_name(request.effect), request.on);
+    response.success = true;
+  }
+  catch (const Error& error)
+  {
+    response.message = error.what();
+  }
+  const EffectSet model = effects_of(running->model()), now = running->effects();
+  for (const Effect effect : every_effect())
+    if (model.has(effect))
+    {
+      response.name.push_back(name_of(effect));
+      response.running.push_back(now.has(effect));
+    }
   return true;
 }
 

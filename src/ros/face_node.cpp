@@ -42,6 +42,7 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   services_.push_back(private_handle_.advertiseService("reset", &FaceNode::on_reset, this));
   services_.push_back(private_handle_.advertiseService("pause", &FaceNode::on_pause, this));
   services_.push_back(private_handle_.advertiseService("step", &FaceNode::on_step, this));
+  services_.push_back(private_handle_.advertiseService("switch_effect", &FaceNode::on_switch_effect, this));
   services_.push_back(private_handle_.advertiseService("list_muscles", &FaceNode::on_list_muscles, this));
 
   tick_ = private_handle_.createWallTimer(ros::WallDuration(tick_period),
@@ -125,7 +126,10 @@ void FaceNode::load()
     // (declared after the runner: on an exception frames flow again before the runner's thread is joined)
     std::shared_ptr<Runner> made;
     std::unique_lock<std::mutex> frames(frame_mutex_);
-    made = std::make_shared<Runner>(model, parameters.runner, [this](const Frame& frame) { on_frame(frame); });
+    RunnerSettings settings = parameters.runner;
+    settings.wanted_field = [this, field = parameters.skin_field]
+    { return publisher_.shows_field() ? std::make_optional(field) : std::nullopt; };
+    made = std::make_shared<Runner>(model, settings, [this](const Frame& frame) { on_frame(frame); });
     const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
     publisher_.start(model, frame_name, parameters.parent_frame, made->description());
     published_ = shown_ = ros::WallTime::now();

@@ -30,6 +30,7 @@ Message& renewed(boost::shared_ptr<Message>& slot, const std::string& frame, con
 FacePublisher::FacePublisher(ros::NodeHandle private_handle)
     : skin_(private_handle.advertise<visualization_msgs::Marker>("skin", 1)),
       points_(private_handle.advertise<sensor_msgs::PointCloud2>("skin_points", 1)),
+      field_(private_handle.advertise<sensor_msgs::PointCloud2>("skin_field", 1)),
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       landmarks_(private_handle.advertise<geometry_msgs::PoseArray>("landmarks", 1)),
       state_(private_handle.advertise<SimulationState>("state", 1))
@@ -68,8 +69,14 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   }
   if (points_.getNumSubscribers() > 0)
   {
-    to_point_cloud(frame.skin, rest_, renewed(points_message_, face_frame_, stamp));
+    to_point_cloud(frame.skin, distances(frame.skin, rest_), renewed(points_message_, face_frame_, stamp));
     points_.publish(points_message_);
+  }
+  // a frame made before there was a subscriber has no field
+  if (shows_field() && frame.field.size() == frame.skin.vertices.size())
+  {
+    to_point_cloud(frame.skin, frame.field, renewed(field_message_, face_frame_, stamp));
+    field_.publish(field_message_);
   }
   if (landmarks_.getNumSubscribers() > 0)
   {

@@ -118,6 +118,8 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   out.runner.guard.reset();
   if (guard.interval > 0)
     out.runner.guard = guard;
+  const std::string field = reader.text("skin_field", "strain");
+  reader.convert("skin_field", [&] { out.skin_field = skin_field_from_name(field); });
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");
   out.demo = reader.value("demo", false, "true or false");

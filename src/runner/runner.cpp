@@ -58,7 +58,16 @@ struct Runner::Implementation
     Frame frame;
   };
   StepRequest* step_request = nullptr;
-  std::mutex step_mutex;  // one step at a time
+  struct SwitchRequest
+  {
+    Effect effect;
+    bool on;
+    bool done = false;
+    std::string error;
+  };
+  SwitchRequest* switch_request = nullptr;
+  EffectSet effects;
+  std::mutex step_mutex, switch_mutex;  // one step, one switch at a time
 
   // the runner's thread alone
   Frame frame;
@@ -77,6 +86,8 @@ struct Runner::Implementation
   void publish(bool renew_monitor = false);
   void run_frame();
   void serve_step(StepRequest& request);
+  void serve_switch(SwitchRequest& request);
+  void refuse_requests(const std::string& error);
   void loop();
   void guarded_loop();
 };
@@ -109,6 +120,11 @@ void Runner::Implementation::make_frame(bool renew_monitor)
     {
       to_face_frame(*model, skin);
       frame.skin = std::move(skin);
+      const auto field = settings.wanted_field ? settings.wanted_field() : std::nullopt;
+      if (field)
+        solver->skin_field(*field, frame.field);
+      else
+        frame.field.clear();
     }
     else
     {
@@ -174,7 +190,8 @@ void Runner::Implementation::run_frame()
   publish();
   std::unique_lock<std::mutex> lock(mutex);
   if (settings.pace == Pace::real_time || frame.failed)
-    wake.wait_until(lock, deadline, [&] { return stop || reset_wanted || step_request != nullptr; });
+    wake.wait_until(lock, deadline,
+                    [&] { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr; });
 }
 
 void Runner::Implementation::serve_step(StepRequest& request)
@@ -203,6 +220,43 @@ void Runner::Implementation::serve_step(StepRequest& request)
   request.frame = frame;
 }
 
+// under the mutex
+void Runner::Implementation::serve_switch(SwitchRequest& request)
+{
+  try
+  {
+    solver->switch_effect(request.effect, request.on);
+    effects = solver->effects();
+    if (guard && !frame.failed)
+      guard->restart();
+  }
+  catch (const Error& error)
+  {
+    request.error = error.what();
+  }
+  request.done = true;
+  switch_request = nullptr;
+  wake.notify_all();
+}
+
+// under the mutex
+void Runner::Implementation::refuse_requests(const std::string& error)
+{
+  if (step_request != nullptr)
+  {
+    step_request->error = error;
+    step_request->done = true;
+    step_request = nullptr;
+  }
+  if (switch_request != nullptr)
+  {
+    switch_request->error = error;
+    switch_request->done = true;
+    switch_request = nullptr;
+  }
+  wake.notify_all();
+}
+
 void Runner::Implementation::loop()
 {
   clock.restart(time());
@@ -215,16 +269,15 @@ void Runner::Implementation::loop()
       std::unique_lock<std::mutex> lock(mutex);
       const auto idle = [&] { return paused || settings.pace == Pace::lock_step; };
       rest = idle();
-      wake.wait(lock, [&] { return stop || reset_wanted || step_request != nullptr || !idle(); });
+      wake.wait(lock, [&]
+                { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr || !idle(); });
       if (stop)
+        return refuse_requests("the runner is being stopped");
+      if (switch_request != nullptr)
       {
-        if (step_request != nullptr)
-        {
-          step_request->error = "the runner is being stopped";
-          step_request->done = true;
-          wake.notify_all();
-        }
-        return;
+        serve_switch(*switch_request);
+        if (idle())
+          continue;
       }
       std::swap(reset, reset_wanted);
       request = step_request;
@@ -274,14 +327,8 @@ void Runner::Implementation::guarded_loop()
       frame.failed = true;
       frame.failure = error.what();
       std::unique_lock<std::mutex> lock(mutex);
-      if (step_request != nullptr)
-      {
-        step_request->error = frame.failure;
-        step_request->done = true;
-        step_request = nullptr;
-      }
+      refuse_requests(frame.failure);
       ++resets_done;  // a reset that failed must not keep its caller waiting
-      wake.notify_all();
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }
 }
@@ -300,6 +347,7 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
   if (settings.guard)
     self_->guard = std::make_unique<Guard>(*self_->solver, self_->model, *settings.guard);
   self_->target = self_->solver->controls();
+  self_->effects = self_->solver->effects();
   self_->thread = std::thread([this] { self_->guarded_loop(); });
 }
 
@@ -330,6 +378,24 @@ void Runner::set_bone(const std::string& name, const RigidTransform& motion)
 {
   const std::lock_guard<std::mutex> lock(self_->mutex);
   set_bone_motion(*self_->model, name, motion, self_->target.bone);
+}
+
+void Runner::switch_effect(Effect effect, bool on)
+{
+  const std::lock_guard<std::mutex> one_at_a_time(self_->switch_mutex);
+  Implementation::SwitchRequest request{ effect, on, false, {} };
+  std::unique_lock<std::mutex> lock(self_->mutex);
+  self_->switch_request = &request;
+  self_->wake.notify_all();
+  self_->wake.wait(lock, [&] { return request.done; });
+  if (!request.error.empty())
+    throw Error(request.error);
+}
+
+EffectSet Runner::effects() const
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  return self_->effects;
 }
 
 void Runner::pause(bool paused)

@@ -2,6 +2,8 @@
 #include "frontalis/model/effects.hpp"
 #include "stepping_solver.hpp"
 
+#include <chrono>
+
 namespace frontalis
 {
 
@@ -50,9 +52,24 @@ void SteppingSolver::switch_effect(Effect effect, bool on)
     velocities_were_set();
 }
 
+void SteppingSolver::skin_field(SkinField field, std::vector<float>& out)
+{
+  const auto start = std::chrono::steady_clock::now();
+  if (const EffectPresence fields = presence_of(*model_, Effect::output_fields); !fields.present)
+    throw Error("the model has no output_fields: " + fields.why);
+  if (!skin_values_)
+    skin_values_ = std::make_unique<SkinValues>(*model_, discretisation_);
+  Vectors u;
+  displacements(u);
+  skin_values_->compute(field, u, felt_activation(), effects_, out);
+  profile_.skin += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 std::vector<Allocation> SteppingSolver::allocations() const
 {
   AllocationList list;
+  if (skin_values_)
+    skin_values_->list_allocations(list);
   discretisation_.list_allocations(list);
   list_allocations(list);
   return list.take();

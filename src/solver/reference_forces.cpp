@@ -1,9 +1,7 @@
 #include "frontalis/physics/assumed_strain.hpp"
-#include "frontalis/physics/muscle_fibre.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
-#include "material_laws.hpp"
 #include "reference_solver.hpp"
 #include "voxel_monitor.hpp"
+#include "voxel_stress.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,44 +51,20 @@ physics::Kinematics<double> ReferenceSolver::kinematics(std::size_t e, const Der
 
 physics::Matrix3<double> ReferenceSolver::elastic(std::size_t e, double kappa, const Kinematics& k) const
 {
-  const VoxelProperties& voxel = voxels_[e];
-  const auto isotropic = physics::stress(physics::NeoHookean<double>{ voxel.mu, kappa }, k);
-  Stress P;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
-  for (const auto& part : voxel.laws)
-    add_law_stress(part.law, part.parameters.data(), part.weight, k, P);
-  return P;
+  return elastic_stress(voxels_[e], kappa, k);
 }
 
 void ReferenceSolver::add_fibres(std::size_t e, const Kinematics& k, const std::vector<float>& activation, Stress& P)
 {
   for (auto entry = model_->fibre_begin[e]; entry < model_->fibre_begin[e + 1]; ++entry)
   {
-    const auto index = model_->fibre_muscle[entry];
-    const Muscle& muscle = model_->muscles[index];
-    const auto& a = model_->fibre_direction[entry];
-    double along[3];  // F a0
-    double squared = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-      along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
-      squared += along[i] * along[i];
-    }
-    const double S = model_->fibre_weight[entry] *
-                     physics::fibre_stress<double>(squared, k.J, muscle.stress_reference, activation[index],
-                                                   muscle.tension_length ? 1 : 0,
-                                                   muscle.passive && runs(Effect::fibre_stiffness) ? 1 : 0);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        P.a[i][j] += S * along[i] * a[j];
+    const FibreState fibre = add_fibre_stress(*model_, entry, k, activation, effects(), P);
     if (!accounting_)
       continue;
     auto& last = fibre_memory_[entry];
-    const double now = S * voxels_[e].tissue_volume;
-    account_->muscle[model_->voxels[e][2]] -= 0.25 * (last[1] + now) * (squared - last[0]);
-    last = { { squared, now } };
+    const double now = fibre.stress * voxels_[e].tissue_volume;
+    account_->muscle[model_->voxels[e][2]] -= 0.25 * (last[1] + now) * (fibre.stretch_squared - last[0]);
+    last = { { fibre.stretch_squared, now } };
   }
 }
 

@@ -4,6 +4,7 @@
 #include "energy_account.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "restricted_nodes.hpp"
+#include "skin_values.hpp"
 
 #include <memory>
 
@@ -69,6 +70,7 @@ public:
   EffectSet effects() const override { return effects_; }
   void switch_effect(Effect effect, bool on) override;
   std::vector<Allocation> allocations() const override;
+  void skin_field(SkinField field, std::vector<float>& out) override;
   Monitor monitor() override;
   EnergyLedger ledger() override;
   Profile profile() const override { return profile_; }
@@ -138,6 +140,7 @@ private:
   struct Motion;
 
   EffectSet effects_;
+  std::unique_ptr<SkinValues> skin_values_;  // from the first request on
   double forced_time_step_ = 0;
   double slow_share_ = 1;  // of the safe time step
 };

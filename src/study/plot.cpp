@@ -28,6 +28,15 @@ std::string quoted(const std::string& text)
   return out + "'";
 }
 
+// tick labels are formats
+std::string quoted_as_format(const std::string& text)
+{
+  std::string out;
+  for (const char c : quoted(text))
+    out += c == '%' ? std::string("%%") : std::string(1, c);
+  return out;
+}
+
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colours[index % std::size(colours)] + "'";
@@ -40,6 +49,8 @@ std::string style_of(const Plot::Curve& curve, std::size_t index)
       return "with lines lw 2" + colour;
     case Plot::Style::dashed:
       return "with lines lw 1.5 dt 2" + colour;
+    case Plot::Style::bars:
+      return "with boxes fs solid 0.8 noborder" + colour;
     case Plot::Style::line_and_points:
       break;
   }
@@ -73,6 +84,9 @@ std::string script(const Plot& plot, const std::string& path)
   }
   for (std::size_t t = 0; t < plot.x_ticks.size(); ++t)
     out << (t ? ", " : "set xtics (") << plot.x_ticks[t] << (t + 1 == plot.x_ticks.size() ? ")\n" : "");
+  for (std::size_t t = 0; t < plot.x_names.size(); ++t)
+    out << (t ? ", " : "set xtics rotate by 25 right (") << quoted_as_format(plot.x_names[t]) << ' ' << t
+        << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
   const auto draw = [&](const std::string& terminal, const std::string& file)
   {
     out << "set terminal " << terminal << "\nset output " << quoted(file) << "\nplot ";

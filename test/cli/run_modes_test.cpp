@@ -48,6 +48,39 @@ TEST_F(RunModes, a_table_of_activations_is_a_ramp_where_it_says_so)
   EXPECT_EQ(text_of(frames + "/landmarks.csv"), text_of(other + "/landmarks.csv"));
 }
 
+TEST_F(RunModes, an_effect_that_is_left_out_does_nothing)
+{
+  ASSERT_EQ(run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "0.1", "--without", "contraction",
+                          "--frames", frames })
+                .code,
+            0);
+  const std::string other = folder / "other";
+  ASSERT_EQ(run_program({ "run", model, "--seconds", "0.1", "--frames", other }).code, 0);
+  EXPECT_EQ(text_of(frames + "/landmarks.csv"), text_of(other + "/landmarks.csv"));
+  for (const auto& [name, fault] : { std::pair{ "magic", "there is no effect 'magic'; the effects are elasticity" },
+                                     { "viscosity", "the model has no viscosity (no material is viscous)" },
+                                     { "elasticity", "elasticity cannot be switched while running" } })
+  {
+    const auto result = run_program({ "run", model, "--without", name });
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.errors.find(fault), std::string::npos) << result.errors;
+  }
+}
+
+TEST_F(RunModes, effects_are_listed_with_what_they_cost)
+{
+  const auto table = run_program({ "effects", model, "--seconds", "0.01", "--backend", "cpu" });
+  ASSERT_EQ(table.code, 0) << table.errors;
+  for (const char* const part :
+       { "contraction", "1 muscle", "viscosity", "no material is viscous", "plain neo-Hookean" })
+    EXPECT_NE(table.output.find(part), std::string::npos) << table.output;
+  const auto json = run_program({ "effects", model, "--seconds", "0.01", "--backend", "cpu", "--json" });
+  ASSERT_EQ(json.code, 0);
+  EXPECT_GT(number_in(json.output, "plain_step_us"), 0);
+  EXPECT_GE(number_in(json.output, "step_us"), 0);
+  EXPECT_EQ(run_program({ "effects", model, "--plot", "bars.svg" }).code, 2);
+}
+
 TEST_F(RunModes, wrong_tables_are_told_with_their_line)
 {
   const std::pair<const char*, const char*> tables[] = {

@@ -76,7 +76,8 @@ TEST(Conversions, PointCloudHasPositionNormalAndDisplacement)
 {
   const Model model = small_model();
   sensor_msgs::PointCloud2 cloud;
-  to_point_cloud(lifted(model, 0.002f), rest_in_face(model), cloud);
+  const SkinState skin = lifted(model, 0.002f);
+  to_point_cloud(skin, distances(skin, rest_in_face(model)), cloud);
   EXPECT_EQ(cloud.width, 4u);
   EXPECT_EQ(cloud.height, 1u);
   EXPECT_EQ(cloud.data.size(), cloud.row_step);

@@ -5,7 +5,7 @@ import time
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from frontalis.msg import MuscleActivation, SimulationState
-from frontalis.srv import ListMuscles, Step
+from frontalis.srv import ListMuscles, Step, SwitchEffect
 from geometry_msgs.msg import PoseArray
 from std_srvs.srv import SetBool, Trigger
 
@@ -21,6 +21,7 @@ class Face:
         self.pause = rospy.ServiceProxy(name + "/pause", SetBool)
         self.reset = rospy.ServiceProxy(name + "/reset", Trigger)
         self.step = rospy.ServiceProxy(name + "/step", Step)
+        self.switch_effect = rospy.ServiceProxy(name + "/switch_effect", SwitchEffect)
         rospy.Subscriber(name + "/state", SimulationState, self.take_state)
         rospy.Subscriber(name + "/landmarks", PoseArray, self.take_landmarks)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self.take_diagnostics)

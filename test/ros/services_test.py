@@ -73,6 +73,47 @@ class Services(unittest.TestCase):
         expression.publish("relax")
         wait(lambda: self.face.target() == {"lift": 0}, "the relaxation", 10)
 
+    def test_effects_go_off_and_on_again(self):
+        effects = self.face.switch_effect("", False)
+        self.assertTrue(effects.success, effects.message)
+        self.assertEqual(effects.name, ["elasticity", "contraction", "rigid_nodes", "output_fields"])
+        self.assertTrue(all(effects.running))
+        rest = self.face.height("tip")
+        off = self.face.switch_effect("contraction", False)
+        self.assertTrue(off.success, off.message)
+        self.assertEqual(dict(zip(off.name, off.running))["contraction"], False)
+        self.face.command(lift=0.75)
+        wait(lambda: self.face.target() == {"lift": 0.75}, "the command", 10)
+        self.assertTrue(self.face.step(0.3).success)
+        wait(lambda: self.face.state.time > 0.25, "the state", 10)
+        wait(lambda: abs(self.face.height("tip") - rest) < 1e-6, "a tip that stays", 10)
+        self.assertTrue(self.face.switch_effect("contraction", True).success)
+        self.assertTrue(self.face.step(0.3).success)
+        wait(lambda: self.face.height("tip") - rest > 1e-3, "the tip a millimetre up", 10)
+
+    def test_effects_that_cannot_be_switched_say_why(self):
+        for effect, why in (("magic", "the effects are elasticity"), ("viscosity", "the model has no viscosity"),
+                            ("elasticity", "cannot be switched while running")):
+            answer = self.face.switch_effect(effect, False)
+            self.assertFalse(answer.success)
+            self.assertIn(why, answer.message)
+            self.assertTrue(all(answer.running))
+
+    def test_strain_of_the_skin_is_shown_to_those_who_ask(self):
+        self.face.command(lift=0.75)
+        wait(lambda: self.face.target() == {"lift": 0.75}, "the command", 10)
+        clouds = []
+        listener = rospy.Subscriber("/face/skin_field", PointCloud2, clouds.append)
+        wait(lambda: listener.get_num_connections() > 0, "a connection", 30)
+        self.assertTrue(self.face.step(0.5).success)
+        wait(lambda: clouds, "a field", 10)
+        listener.unregister()
+        cloud = clouds[-1]
+        strain = [struct.unpack_from("<7f", cloud.data, v * cloud.point_step)[6] for v in range(cloud.width)]
+        # it shortens along the fibres, so that it widens across
+        self.assertGreater(max(strain), 0.02)
+        self.assertLess(max(strain), 0.5)
+
     def test_bad_messages_leave_the_state_untouched(self):
         self.face.command(lift=0.4)
         wait(lambda: self.face.target() == {"lift": 0.4}, "the command", 10)

@@ -249,6 +249,41 @@ TEST(Runner, WhatAListenerThrowsEndsTheMotionOnly)
   EXPECT_FALSE(failed);
 }
 
+TEST(Runner, EffectsGoOffAndOnAgainWhileItStandsStillAndWhileItRuns)
+{
+  Runner still(bar(), settings(Pace::lock_step), {});
+  EXPECT_EQ(names_of(still.effects()), "elasticity, contraction, rigid_nodes, output_fields");
+  still.switch_effect(Effect::contraction, false);
+  EXPECT_FALSE(still.effects().has(Effect::contraction));
+  still.set_activation({ { "puller", 0.5 } });
+  EXPECT_NEAR(tip(still.step(0.05)), 6e-3, 1e-6);
+  still.switch_effect(Effect::contraction, true);
+  EXPECT_LT(tip(still.step(0.05)), 5.9e-3);
+  EXPECT_THROW(still.switch_effect(Effect::viscosity, false), Error);
+  EXPECT_THROW(still.switch_effect(Effect::elasticity, false), Error);
+
+  Runner running(bar(), settings(Pace::fastest), {});
+  running.switch_effect(Effect::contraction, false);
+  running.set_activation({ { "puller", 0.5 } });
+  EXPECT_EQ(names_of(running.effects()), "elasticity, rigid_nodes, output_fields");
+  running.switch_effect(Effect::contraction, true);
+  EXPECT_FALSE(running.paused());
+}
+
+TEST(Runner, FieldsOfTheSkinAreComputedWhereSomebodyWantsThem)
+{
+  std::atomic<bool> listens{ false };
+  RunnerSettings wanted = settings(Pace::lock_step);
+  wanted.wanted_field = [&] { return listens ? std::make_optional(SkinField::strain) : std::nullopt; };
+  Runner runner(bar(), wanted, {});
+  runner.set_activation({ { "puller", 0.5 } });
+  EXPECT_TRUE(runner.step(0.01).field.empty());
+  listens = true;
+  EXPECT_EQ(runner.step(0.01).field.size(), 3u);
+  listens = false;
+  EXPECT_TRUE(runner.step(0.01).field.empty());
+}
+
 TEST(Runner, FrameRatesThatMakeNoSenseAreRefused)
 {
   for (const double rate : { 1e-3, 1e9 })

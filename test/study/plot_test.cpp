@@ -48,4 +48,22 @@ TEST(Plot, WritesAPictureInBothFormatsAndLeavesNothingElse)
   std::filesystem::remove_all(folder);
 }
 
+TEST(Plot, BarsHaveNames)
+{
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "gnuplot is not installed";
+  const std::string path = (std::filesystem::path(testing::TempDir()) / "frontalis_bars").string();
+  Plot plot;
+  plot.key = "off";
+  plot.x_names = { "gravity (1 %)", "it's viscous" };
+  plot.curves = { { "", { 0, 1 }, { 3, 5 }, Plot::Style::bars } };
+  write_plot(plot, path);
+  std::ifstream svg(path + ".svg");
+  const std::string text{ std::istreambuf_iterator<char>(svg), std::istreambuf_iterator<char>() };
+  EXPECT_NE(text.find("gravity (1 %)"), std::string::npos);
+  EXPECT_NE(text.find("viscous"), std::string::npos);
+  for (const char* const extension : { ".png", ".svg" })
+    std::filesystem::remove(path + extension);
+}
+
 TEST(Plot, SaysWhereItCannotWrite) { EXPECT_THROW(write_plot(parabola(), "/no such folder/plot"), Error); }

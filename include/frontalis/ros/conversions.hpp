@@ -28,10 +28,12 @@ shape_msgs::Mesh to_mesh(const Model& model);
 /// Triangle list in the face frame, shaded; fills points and colours only, three of each a triangle.
 void to_marker(const Model& model, const SkinShading& shading, const SkinState& skin, visualization_msgs::Marker& out);
 
-/// Points in vertex order with fields x y z normal_x normal_y normal_z intensity, all float32; intensity is the
-/// distance from `rest` [m]. Fills all but the header.
-void to_point_cloud(const SkinState& skin, const std::vector<std::array<float, 3>>& rest,
-                    sensor_msgs::PointCloud2& out);
+/// Distance of each vertex from `rest` [m].
+std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest);
+
+/// Points in vertex order with fields x y z normal_x normal_y normal_z intensity, all float32. Fills all but the
+/// header.
+void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out);
 
 /// One pose a landmark, in the model's order, with the face frame's axes. Fills all but the header.
 void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out);

@@ -9,6 +9,7 @@
 #include <frontalis/ListMuscles.h>
 #include <frontalis/MuscleActivation.h>
 #include <frontalis/Step.h>
+#include <frontalis/SwitchEffect.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
@@ -60,6 +61,7 @@ private:
   bool on_reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool on_pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool on_step(Step::Request& request, Step::Response& response);
+  bool on_switch_effect(SwitchEffect::Request& request, SwitchEffect::Response& response);
   bool on_list_muscles(ListMuscles::Request& request, ListMuscles::Response& response);
 
   void on_tick();

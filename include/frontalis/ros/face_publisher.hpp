@@ -17,8 +17,8 @@
 namespace frontalis
 {
 
-/// What goes out: ~skin, ~skin_points, ~skin_topology, ~landmarks, ~state and the transforms. A message is built only
-/// while somebody subscribes to it, and its memory is used again once nobody holds it. One caller at a time.
+/// What goes out: ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~state and the transforms. A message is
+/// built only while somebody subscribes to it, and its memory is used again once nobody holds it. One caller at a time.
 class FacePublisher
 {
 public:
@@ -30,6 +30,9 @@ public:
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
+  /// Whether anybody wants to see the field of the skin; for any thread.
+  bool shows_field() const { return field_.getNumSubscribers() > 0; }
+
   /// Publishes a frame. Returns false and publishes nothing where the skin is not finite. Needs start().
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
 
@@ -37,7 +40,7 @@ public:
   void publish_fault(const std::string& message, const ros::Time& stamp);
 
 private:
-  ros::Publisher skin_, points_, topology_, landmarks_, state_;
+  ros::Publisher skin_, points_, field_, topology_, landmarks_, state_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 
@@ -48,7 +51,7 @@ private:
   std::vector<std::array<float, 3>> rest_;
 
   boost::shared_ptr<visualization_msgs::Marker> skin_message_;
-  boost::shared_ptr<sensor_msgs::PointCloud2> points_message_;
+  boost::shared_ptr<sensor_msgs::PointCloud2> points_message_, field_message_;
   boost::shared_ptr<geometry_msgs::PoseArray> landmarks_message_;
   boost::shared_ptr<SimulationState> state_message_;
   std::vector<geometry_msgs::TransformStamped> landmark_transforms_;

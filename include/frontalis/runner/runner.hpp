@@ -23,6 +23,7 @@ struct Frame
   std::int64_t steps = 0;       ///< since reset
   std::uint64_t sequence = 0;
   SkinState skin;
+  std::vector<float> field;  ///< as RunnerSettings::wanted_field had it; else empty
   std::vector<float> activation;
   Monitor monitor;      ///< renewed about once a second
   GuardCounts guard;    ///< since the runner started
@@ -43,6 +44,8 @@ struct RunnerSettings
   Pace pace = Pace::real_time;
   double frame_rate = 0;                                 ///< frames a wall second, 0.1 to 1000; 0: the model's
   std::optional<GuardSettings> guard = GuardSettings{};  ///< none: the motion is not watched
+  /// Asked once a frame, in the runner's thread; where it is not set or has none, no field is computed.
+  std::function<std::optional<SkinField>()> wanted_field{};
 };
 
 /// A live face: owns the solver and a thread that steps it, takes controls from any thread, hands out frames.
@@ -66,6 +69,11 @@ public:
   /// Motion of a bone from its rest pose, in the face frame; reached within a frame, as activations are. Throws Error
   /// where there is no such bone or the motion is not finite and rigid; nothing is changed then.
   void set_bone(const std::string& name, const RigidTransform& motion);
+
+  /// Switches an effect when the frame under way is done, and returns then. Throws Error as Solver::switch_effect.
+  void switch_effect(Effect effect, bool on);
+  /// Effects that run.
+  EffectSet effects() const;
 
   void pause(bool paused);
   bool paused() const;

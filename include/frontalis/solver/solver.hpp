@@ -25,6 +25,7 @@ enum class Backend
 
 /// "auto", "reference", "cpu" or "cuda"; throws Error naming those that exist.
 Backend backend_from_name(const std::string& name);
+SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
 std::string name_of(Backend backend);
 /// Those that can run on this machine; cuda only where this build has it and a device is there.
 std::vector<Backend> available_backends();
@@ -109,6 +110,9 @@ public:
   virtual std::vector<Allocation> allocations() const = 0;
 
   virtual void skin(SkinState& out) = 0;
+  /// One number a vertex of the skin, from the voxels' centres through means at their nodes. Nothing is stored for it
+  /// until it is asked for first. Throws Error where the scene switched output fields off.
+  virtual void skin_field(SkinField field, std::vector<float>& out) = 0;
   virtual Monitor monitor() = 0;
   /// Throws Error where SolverSettings::ledger was not asked for or the backend keeps none.
   virtual EnergyLedger ledger() = 0;

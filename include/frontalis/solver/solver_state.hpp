@@ -15,6 +15,13 @@ struct SkinState
   std::vector<std::array<float, 3>> landmarks;
 };
 
+/// What of the tissue below the skin can be shown on it, one number a vertex; computed only where it is asked for.
+enum class SkinField
+{
+  strain,  ///< largest principal Green-Lagrange strain
+  stress   ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres; viscous stresses are left out
+};
+
 /// Energies [J], summed in double, and the state of the worst voxel.
 struct Monitor
 {

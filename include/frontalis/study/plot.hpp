@@ -14,7 +14,8 @@ struct Plot
     points,
     line,
     dashed,  ///< for theory, bounds and slopes
-    line_and_points
+    line_and_points,
+    bars
   };
   struct Curve
   {
@@ -28,8 +29,9 @@ struct Plot
   bool x_log = false, y_log = false;
   /// Limits of an axis where the two differ.
   double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
-  std::vector<double> x_ticks;    ///< where the x axis has numbers; empty: gnuplot's choice
-  std::string key = "top right";  ///< place of the legend in gnuplot's words; "below": under the axes
+  std::vector<double> x_ticks;       ///< where the x axis has numbers; empty: gnuplot's choice
+  std::vector<std::string> x_names;  ///< written at x = 0, 1, 2, ... instead of numbers
+  std::string key = "top right";     ///< place of the legend in gnuplot's words; "below": under the axes
   std::vector<Curve> curves;
 };
 
