@@ -29,6 +29,9 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
   still_ = DeviceArray<std::uint32_t>(still);
   // ordered with the default stream, so that events recorded there enclose this solver's work
   require(cudaStreamCreate(&stream_), "making a stream");
+  require(cudaStreamCreateWithFlags(&beside_, cudaStreamNonBlocking), "making a stream");
+  for (cudaEvent_t* const event : { &asked_, &found_ })
+    require(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "making an event");
   const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2);
   for (auto& slot : slots_)
   {
@@ -57,8 +60,12 @@ CudaSolver::~CudaSolver()
   for (auto& slot : slots_)
     if (slot.done != nullptr)
       cudaEventDestroy(slot.done);
-  if (stream_ != nullptr)
-    cudaStreamDestroy(stream_);
+  for (const auto event : { asked_, found_ })
+    if (event != nullptr)
+      cudaEventDestroy(event);
+  for (const auto stream : { stream_, beside_ })
+    if (stream != nullptr)
+      cudaStreamDestroy(stream);
 }
 
 void CudaSolver::upload_displacements(const Vectors* in, DeviceArray<float4>& to) const

@@ -83,6 +83,8 @@ private:
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
   std::uint32_t steps_before_ = 0;    // steps that the device was asked for
   cudaStream_t stream_ = nullptr;
+  cudaStream_t beside_ = nullptr;  // what runs beside a plan's steps, all of it between these events
+  cudaEvent_t asked_ = nullptr, found_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;
   int present_ = 0;           // buffer that holds the displacements now

@@ -111,8 +111,11 @@ std::vector<double> CudaSolver::renewals(const StepPlan& plan)
 }
 
 // long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
-// enough
-int CudaSolver::steps_a_plan() const { return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, 128.0)); }
+// enough. Contacts that are found ahead want plans just as long as it takes to find them.
+int CudaSolver::steps_a_plan() const
+{
+  return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, device_.contacts() > 0 ? 64.0 : 128.0));
+}
 
 double CudaSolver::run(const StepPlan& plan)
 {
@@ -122,6 +125,10 @@ double CudaSolver::run(const StepPlan& plan)
   g.steps = plan.steps;
   stage(plan, slot, g);
   require(launch_renewals(g, stream_), "renewing contacts");
+  require(cudaEventRecord(asked_, stream_), "recording an event");
+  require(cudaStreamWaitEvent(beside_, asked_), "waiting for an event");
+  require(launch_renewals_ahead(g, beside_), "renewing contacts ahead");
+  require(cudaEventRecord(found_, beside_), "recording an event");
   int done = 0;
   if (still_moved_)
   {
@@ -145,6 +152,7 @@ double CudaSolver::run(const StepPlan& plan)
       device_.viscosity().relax(g, u_[present_].data(), elapsed[end - 1], stream_);
     done = end;
   }
+  require(cudaStreamWaitEvent(stream_, found_), "waiting for an event");
   require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
           "copying the frequency bound");
   require(cudaEventRecord(slot.done, stream_), "recording an event");

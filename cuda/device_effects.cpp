@@ -125,7 +125,7 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
-  add(Effect::sliding, "contacts", sliding_, contact_planes_);
+  add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
   for (const auto& boxes : boxes_)
     add(Effect::sliding, "surfaces", boxes);
   for (const auto& triangles : triangles_)

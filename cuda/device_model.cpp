@@ -115,6 +115,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.load_ramp = loads_.ramp();
   g.sliding = sliding_.data();
   g.contact_planes = contact_planes_.data();
+  g.planes_ahead = planes_ahead_.data();
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;
@@ -258,6 +259,7 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
   }
   sliding_ = DeviceArray<SlidingContact>(contacts);
   contact_planes_ = DeviceArray<TangentPlane>(contacts.size());
+  planes_ahead_ = DeviceArray<TangentPlane>(contacts.size());
   reset_contacts();
 }
 
@@ -265,18 +267,22 @@ void DeviceModel::save(Contacts& to, cudaStream_t stream) const
 {
   to.sliding.assign(sliding_, stream);
   to.planes.assign(contact_planes_, stream);
+  to.ahead.assign(planes_ahead_, stream);
 }
 
 void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
 {
   sliding_.assign(from.sliding, stream);
   contact_planes_.assign(from.planes, stream);
+  planes_ahead_.assign(from.ahead, stream);
 }
 
 void DeviceModel::reset_contacts()
 {
   const std::vector<TangentPlane> unknown(contact_planes_.size(), TangentPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, -1 } });
+  static_assert(nothing_ahead == -1, "a plane that is not known is none ahead either");
   contact_planes_.upload(unknown.data(), unknown.size());
+  planes_ahead_.upload(unknown.data(), unknown.size());
 }
 
 // what holds or moves nodes, by device node; those that never move are not stepped at all

@@ -58,7 +58,7 @@ public:
   struct Contacts
   {
     DeviceArray<SlidingContact> sliding;
-    DeviceArray<TangentPlane> planes;
+    DeviceArray<TangentPlane> planes, ahead;
   };
   void save(Contacts& to, cudaStream_t stream) const;
   void restore(const Contacts& from, cudaStream_t stream);
@@ -123,7 +123,7 @@ private:
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;
   DeviceArray<SlidingContact> sliding_;
-  DeviceArray<TangentPlane> contact_planes_;
+  DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
   std::vector<char> glides_;  // contacts
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;

@@ -31,7 +31,6 @@ int turns(const Model& model, int processors)
   const auto bytes = static_cast<double>(attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin));
   const double nodes = uneven * static_cast<double>(model.nodes.size()) / processors,
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
-  constexpr int most_turns = 8;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
                     static_cast<std::size_t>(nodes)) < bytes - sizeof(float) * most_muscles)
@@ -45,7 +44,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
 {
   const int processors = attribute(cudaDevAttrMultiProcessorCount);
   CutChoice cut;
-  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, 64) };
+  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
   const double warps = 3.1 * 4 * processors;
   cut.strips.rows = strip_rows(effects);
   cut.strips.planes =

@@ -16,23 +16,36 @@ struct NodeState
 
 __device__ __forceinline__ double ramped(double time, double ramp) { return ramp > 0 ? fmin(time / ramp, 1.0) : 1.0; }
 
-/// Finds the plane of a node anew and turns its velocity with it.
-static __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, float* v)
+/// The plane of a node at displacement u.
+static __device__ __noinline__ TangentPlane contact_plane(SlidingContact& s, const float* u)
 {
   using Point = SurfaceContact::Point;
-  SlidingContact& s = g.sliding[index];
   const Point rest{ s.rest[0], s.rest[1], s.rest[2] };
-  if (g.contact_planes[index].reference.w < 0)
-    s.contact.forget();
   const ContactPlane plane = s.contact.renew(rest + Point{ u[0], u[1], u[2] });
   const Point& n = plane.normal;
-  const float4 from = g.contact_planes[index].normal_offset;
-  const Point turned = physics::turned_with_normal(Point{ from.x, from.y, from.z }, n, Point{ v[0], v[1], v[2] });
+  return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
+           make_float4(u[0], u[1], u[2], plane.slip * plane.slip) };
+}
+
+/// A node's velocity turns with its plane.
+__device__ __forceinline__ void turn(const float4& from, const float4& to, float* v)
+{
+  using Point = SurfaceContact::Point;
+  const Point turned = physics::turned_with_normal(Point{ from.x, from.y, from.z }, Point{ to.x, to.y, to.z },
+                                                   Point{ v[0], v[1], v[2] });
   v[0] = static_cast<float>(turned.x);
   v[1] = static_cast<float>(turned.y);
   v[2] = static_cast<float>(turned.z);
-  g.contact_planes[index] = { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
-                              make_float4(u[0], u[1], u[2], plane.slip * plane.slip) };
+}
+
+/// Finds the plane of a node anew and turns its velocity with it.
+static __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, float* v)
+{
+  if (g.contact_planes[index].reference.w < 0)
+    g.sliding[index].contact.forget();
+  const TangentPlane plane = contact_plane(g.sliding[index], u);
+  turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
+  g.contact_planes[index] = plane;
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -41,10 +54,12 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
   return x * x + y * y + z * z;
 }
 
-/// `plane`: as it was read before the step.
+/// `plane`: as it was read before the step. A node whose new plane is being found keeps its own for the rest of the
+/// plan.
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, TangentPlane plane, NodeState& n)
 {
-  if (slip_squared(plane.reference, n.u) > plane.reference.w)
+  if (slip_squared(plane.reference, n.u) > plane.reference.w &&
+      (plane.reference.w < 0 || g.planes_ahead[index].reference.w == nothing_ahead))
   {
     renew_contact(g, index, n.u, n.v);
     plane = g.contact_planes[index];

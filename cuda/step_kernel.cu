@@ -54,30 +54,6 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
   }
 }
 
-// nodes that would slide too far in the plan's steps at their present velocity get their closest points here, beside
-// each other
-__global__ void renew_contacts(const __grid_constant__ StepArguments g)
-{
-  const std::uint32_t index = blockIdx.x * 64 + threadIdx.x;
-  if (index >= g.sliding_count)
-    return;
-  if (g.sliding[index].glides)
-    return;
-  const std::uint32_t node = g.sliding[index].node;
-  const float4 now = g.u[g.first][node];
-  const float u[3] = { now.x, now.y, now.z };
-  float v[3] = { g.v[0][node], g.v[1][node], g.v[2][node] };
-  const float4 reference = g.contact_planes[index].reference;
-  const float ahead = 1.25f * g.steps * g.dt * sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  const float reached = sqrtf(slip_squared(reference, u)) + ahead;
-  if (reference.w < 0 || reached * reached > reference.w)
-  {
-    renew_contact(g, static_cast<std::int32_t>(index), u, v);
-    for (int i = 0; i < 3; ++i)
-      g.v[i][node] = v[i];
-  }
-}
-
 }  // namespace cuda
 
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
@@ -89,13 +65,6 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
                           ? cuda::step_kernel<strip_rows(Effects::fibres), Effects::fibres>
                           : cuda::step_kernel<strip_rows(Effects::all), Effects::all>;
   kernel<<<launch.blocks, launch.threads, 0, stream>>>(arguments);
-  return cudaGetLastError();
-}
-
-cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
-{
-  if (arguments.sliding_count > 0)
-    cuda::renew_contacts<<<(arguments.sliding_count + 63) / 64, 64, 0, stream>>>(arguments);
   return cudaGetLastError();
 }
 

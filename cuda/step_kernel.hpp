@@ -67,6 +67,9 @@ struct TangentPlane
   float4 reference;  ///< displacement there; w: square of how far the plane serves [m2], below 0: there is none yet
 };
 
+/// In the place of TangentPlane::reference.w of planes that are found beside a plan's steps for the next plan.
+constexpr float nothing_ahead = -1, wanted_ahead = -2;
+
 /// A law beyond neo-Hookean that a voxel has in part.
 struct LawEntry
 {
@@ -123,6 +126,7 @@ struct StepArguments
   const double* load_relief;   ///< three a loaded node: what gravity is less on scaled masses [N]; null: nowhere
   SlidingContact* sliding;
   TangentPlane* contact_planes;
+  TangentPlane* planes_ahead;  ///< for the next plan; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
@@ -152,6 +156,8 @@ constexpr std::uint32_t planes_ahead = 2;
 
 /// Most threads of a patch; the registers of a warp are left to kernels beside it.
 constexpr std::uint32_t most_patch_threads = 480;
+/// Most patches that a block takes in turn.
+constexpr int most_turns = 8;
 
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;
@@ -201,7 +207,10 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Exact closest points for the sliding nodes for which a step of the plan would else have to find them itself.
+/// Before a plan: sliding nodes take the planes that were found for them, those that would leave theirs in this plan
+/// find new ones at once, and those that would in the next one ask for new ones.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
+/// What was asked for; runs beside the plan's steps.
+cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

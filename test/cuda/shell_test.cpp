@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 using namespace frontalis;
 
@@ -122,4 +123,29 @@ TEST_F(Shell, StartsAgainAfterReset)
   solver->advance(0.02, controls);
   solver->skin(second);
   EXPECT_EQ(first.vertices, second.vertices);
+}
+
+// at equilibrium under gravity and 30 % activation
+TEST_F(Shell, StaysWhereItIsForAMillionSteps)
+{
+  Model model = *model_;
+  model.gravity = { { -9.81, 0, 0 } };
+  const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::cuda, 0, 0 });
+  const Controls controls{ std::vector<float>(model.muscles.size(), 0.3f), {} };
+  SkinState rest, first, last;
+  solver->skin(rest);
+  ASSERT_TRUE(solver->settle(controls, 1e-4, 10).reached);
+  solver->advance(0.5, controls);
+  solver->skin(first);
+  const auto before = solver->profile().steps;
+  while (solver->profile().steps - before < 1000000)
+    solver->advance(0.5, controls);
+  solver->skin(last);
+  EXPECT_GT(difference(rest, first), 0.1e-3);
+  double drift = 0;
+  for (std::size_t v = 0; v < first.vertices.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      drift = std::max(drift, std::abs(double(last.vertices[v][axis]) - first.vertices[v][axis]));
+  EXPECT_LT(drift, 1e-6);
+  std::printf("drift %.3f um\n", 1e6 * drift);
 }

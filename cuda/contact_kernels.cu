@@ -1,0 +1,110 @@
+#include "node_tasks.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// A closest point takes a thread some hundred microseconds: planes are found a plan ahead, beside the steps, for nodes
+// that would leave theirs before the next plan ends.
+
+constexpr int block = 64;
+
+__global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ StepArguments g)
+{
+  const std::uint32_t index = blockIdx.x * block + threadIdx.x;
+  if (index >= g.sliding_count || g.sliding[index].glides)
+    return;
+  const std::uint32_t node = g.sliding[index].node;
+  const float4 now = g.u[g.first][node];
+  const float u[3] = { now.x, now.y, now.z };
+  float v[3] = { g.v[0][node], g.v[1][node], g.v[2][node] };
+  const TangentPlane found = g.planes_ahead[index];
+  bool changed = false;
+  if (found.reference.w >= 0)
+  {
+    turn(g.contact_planes[index].normal_offset, found.normal_offset, v);
+    g.contact_planes[index] = found;
+    changed = true;
+  }
+  const float4 reference = g.contact_planes[index].reference;
+  // where it will be after so many seconds if it goes on as it does, and may be with a share of its speed more
+  const float plan = g.steps * g.dt;
+  const auto reached = [&](float seconds, float more)
+  {
+    const float then[3] = { u[0] + seconds * v[0], u[1] + seconds * v[1], u[2] + seconds * v[2] };
+    const float further = more * seconds * sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    const float far = sqrtf(fmaxf(slip_squared(reference, then), slip_squared(reference, u))) + further;
+    return far * far;
+  };
+  float asked = nothing_ahead;
+  if (reference.w < 0 || reached(plan, 0.1f) > reference.w)
+  {
+    renew_contact(g, static_cast<std::int32_t>(index), u, v);
+    changed = true;
+  }
+  else if (reached(2 * plan, 0.5f) > reference.w || slip_squared(reference, u) > 0.5f * reference.w)
+    asked = wanted_ahead;
+  // where it will be halfway through the next plan
+  g.planes_ahead[index].reference =
+      make_float4(u[0] + 1.5f * plan * v[0], u[1] + 1.5f * plan * v[1], u[2] + 1.5f * plan * v[2], asked);
+  if (changed)
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = v[i];
+}
+
+// one warp a block, and registers that a patch leaves
+constexpr int block_ahead = 32;
+
+__global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_constant__ StepArguments g)
+{
+  __shared__ std::uint32_t listed[2 * block_ahead];
+  std::uint32_t count = 0;
+  const auto find = [&](std::uint32_t index)
+  {
+    const float4 at = g.planes_ahead[index].reference;
+    const float u[3] = { at.x, at.y, at.z };
+    g.planes_ahead[index] = contact_plane(g.sliding[index], u);
+  };
+  // those that ask are few: they are listed first, so that all lanes work at once
+  for (std::uint32_t first = blockIdx.x * block_ahead; first < g.sliding_count; first += gridDim.x * block_ahead)
+  {
+    const std::uint32_t index = first + threadIdx.x;
+    const bool asks = index < g.sliding_count && g.planes_ahead[index].reference.w == wanted_ahead;
+    const std::uint32_t asking = __ballot_sync(0xffffffffu, asks);
+    if (asks)
+      listed[count + __popc(asking & ((1u << threadIdx.x) - 1))] = index;
+    count += __popc(asking);
+    __syncwarp();
+    if (count >= block_ahead)
+    {
+      count -= block_ahead;
+      find(listed[count + threadIdx.x]);
+    }
+    __syncwarp();
+  }
+  if (threadIdx.x < count)
+    find(listed[threadIdx.x]);
+}
+
+}  // namespace cuda
+
+cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
+{
+  if (arguments.sliding_count > 0)
+    cuda::renew_contacts<<<(arguments.sliding_count + cuda::block - 1) / cuda::block, cuda::block, 0, stream>>>(
+        arguments);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream)
+{
+  // about one block a multiprocessor
+  const std::uint32_t all = (arguments.sliding_count + cuda::block_ahead - 1) / cuda::block_ahead;
+  const std::uint32_t blocks = all > 132 ? 132 : all;
+  if (blocks > 0)
+    cuda::renew_ahead<<<blocks, cuda::block_ahead, 0, stream>>>(arguments);
+  return cudaGetLastError();
+}
+
+}  // namespace frontalis
