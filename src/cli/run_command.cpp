@@ -42,6 +42,7 @@ struct RunOptions
   double frame_rate = 0;  ///< [1/s]; 0: the model's
   std::string backend = "auto";
   int threads = 0;
+  double time_step = 0;                           ///< [s]; 0: found by the solver
   int guard_interval = GuardSettings().interval;  ///< steps; 0: no guard
 };
 
@@ -158,6 +159,7 @@ void run(const RunOptions& options)
   SolverSettings settings;
   settings.backend = backend_from_name(options.backend);
   settings.threads = options.threads;
+  settings.time_step = options.time_step;
   settings.ledger = options.ledger;
   EffectSet off;
   for (const std::string& name : options.without)
@@ -248,6 +250,8 @@ void add_run_command(CLI::App& app, Action& action)
                    "(512); 0: none")
       ->check(CLI::Range(0, 1 << 30));
   command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
+  command->add_option("--time-step", options->time_step,
+                      "longest time step [s], at most the critical one (0: the safe one, by the model's share)");
   add_scene_options(*command, options->source);
   command->callback(
       [&action, options, command]

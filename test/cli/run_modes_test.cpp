@@ -81,6 +81,19 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
   EXPECT_EQ(run_program({ "effects", model, "--plot", "bars.svg" }).code, 2);
 }
 
+TEST_F(RunModes, a_time_step_is_taken_or_refused)
+{
+  ASSERT_EQ(run_program({ "run", model, "--time-step", "2e-6", "--seconds", "0.001", "--frames", frames }).code, 0);
+  EXPECT_DOUBLE_EQ(number_in(text_of(frames + "/run.json"), "time_step_s"), 2e-6);
+  for (const char* const step : { "0.1", "-1e-6", "nan" })
+  {
+    const ProgramResult result = run_program({ "run", model, "--time-step", step, "--seconds", "0.001" });
+    EXPECT_EQ(result.code, 1) << step;
+    EXPECT_NE(result.errors.find("refused: allowed is 0 (found by the solver) to the critical"), std::string::npos)
+        << result.errors;
+  }
+}
+
 TEST_F(RunModes, wrong_tables_are_told_with_their_line)
 {
   const std::pair<const char*, const char*> tables[] = {
