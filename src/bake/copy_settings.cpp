@@ -202,6 +202,9 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
     model.time_step_estimate = TimeStepEstimate::assembled;
   copy_mass_scaling(scene, model);
   copy_presets(scene, model);
+  for (const AccuracyProfile& profile : scene.profiles)
+    model.profiles.push_back({ profile.name, profile.measured.error, profile.measured.cost, profile.measured.machine });
+  model.profile = scene.accuracy.name;
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
 }
 

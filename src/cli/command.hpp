@@ -32,6 +32,7 @@ public:
 using Action = std::function<void()>;
 
 // one function a subcommand: declares its options in `app` and, where it is the one chosen, sets `action`
+void add_accuracy_command(CLI::App& app, Action& action);
 void add_bake_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_effects_command(CLI::App& app, Action& action);

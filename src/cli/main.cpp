@@ -30,6 +30,7 @@ int main(int argc, char** argv)
   frontalis::add_bench_command(app, action);
   frontalis::add_effects_command(app, action);
   frontalis::add_verify_command(app, action);
+  frontalis::add_accuracy_command(app, action);
 
   try
   {

@@ -239,6 +239,9 @@ void check_loads(const Model& model)
 
 void check_presets(const Model& model)
 {
+  for (const Model::AccuracyProfile& profile : model.profiles)
+    if (!(profile.error >= 0) || !(profile.cost >= 0) || !std::isfinite(profile.error) || !std::isfinite(profile.cost))
+      throw Error("profiles '" + profile.name + "': error and cost must be finite and at least 0");
   for (const Model::Expression& expression : model.expressions)
   {
     for (std::size_t m = 0; m < expression.activation.size(); ++m)

@@ -141,6 +141,13 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.column(in("demo/ramp"), model.demo, &Model::DemoPhase::ramp);
   archive.column(in("demo/seconds"), model.demo, &Model::DemoPhase::seconds);
   archive.strings(in("switched_off"), model.switched_off);
+  using Profile = Model::AccuracyProfile;
+  archive.group(in("profiles"));
+  archive.column(in("profiles/name"), model.profiles, &Profile::name);
+  archive.column(in("profiles/error"), model.profiles, &Profile::error);
+  archive.column(in("profiles/cost"), model.profiles, &Profile::cost);
+  archive.column(in("profiles/machine"), model.profiles, &Profile::machine);
+  archive.value(in("profile"), model.profile);
   archive.value(in("scene_hash"), model.scene_hash);
 }
 

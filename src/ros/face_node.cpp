@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/ros/model_source.hpp"
+#include "frontalis/runner/profile_report.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -17,6 +18,8 @@ constexpr double tick_period = 1.0 / 30;    // [s] of the demo's controls
 constexpr double idle_period = 0.5;         // [s] after which a face that stands still is shown again
 constexpr double diagnostics_period = 1.0;  // [s]
 constexpr double stalled_after = 3.0;       // [s] without a frame
+constexpr double speed_after = 3.0;         // [s] of running after which its speed is told
+constexpr double slow = 0.95;               // of real time
 
 }  // namespace
 
@@ -139,6 +142,8 @@ void FaceNode::load()
     // in lock-step nothing moves yet: show the face at rest
     if (parameters.runner.pace == Pace::lock_step)
       made->reset();
+    if (const std::string measured = measured_profile(*model); !measured.empty())
+      ROS_INFO_STREAM(name_ << ": " << measured);
     ROS_INFO_STREAM(name_ << ": running on " << made->description() << ", frame " << frame_name);
     const std::lock_guard<std::mutex> lock(runner_mutex_);
     runner_ = made;
@@ -166,12 +171,26 @@ void FaceNode::on_frame(const Frame& frame)
   frame_ = frame;
   has_frame_ = true;
   published_ = shown_ = ros::WallTime::now();
+  tell_speed();
   frame_finite_ = publisher_.publish(frame_, ros::Time::now(), paused_);
   if (!frame_finite_)
   {
     ++frames_dropped_;
     ROS_ERROR_STREAM_THROTTLE(5, name_ << ": frame " << frame_.sequence << " is not finite and was not published");
   }
+}
+
+// once, when the real-time factor has settled
+void FaceNode::tell_speed()
+{
+  if (!speed_.empty() || !publisher_.model() || parameters_.runner.pace == Pace::lock_step || frame_.failed ||
+      frame_.wall_time < speed_after || !(frame_.real_time_factor > 0))
+    return;
+  speed_ = speed_report(*publisher_.model(), frame_.real_time_factor);
+  if (frame_.real_time_factor < slow)
+    ROS_WARN_STREAM(name_ << ": " << speed_);
+  else
+    ROS_INFO_STREAM(name_ << ": " << speed_);
 }
 
 void FaceNode::on_tick()
@@ -246,6 +265,8 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
     status.summaryf(DiagnosticStatus::OK, "runs, real-time factor %.3g", frame_.real_time_factor);
 
   status.add("backend", running->description());
+  status.add("accuracy", measured_profile(running->model()));
+  status.add("speed", speed_);
   status.add("simulated time [s]", frame_.time);
   status.add("real-time factor", frame_.real_time_factor);
   status.add("time step [s]", frame_.time_step);

@@ -191,6 +191,13 @@ void add_numerics(const Scene& scene, std::string& content)
       .add(profile.precision)
       .add(profile.time_step)
       .add(profile.mass_scaling.materials);
+  Line(content, "profile").add(profile.name);
+  for (const AccuracyProfile& known : scene.profiles)
+    Line(content, "measured")
+        .add(known.name)
+        .add(known.measured.error)
+        .add(known.measured.cost)
+        .add(known.measured.machine);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include "frontalis/error.hpp"
 
+#include <filesystem>
+
 namespace frontalis
 {
 namespace
@@ -79,11 +81,43 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   choose("integration", { "one_point", "selective_reduced" }, profile.integration);
   choose("precision", { "single", "compensated", "double" }, profile.precision);
   choose("time_step", { "element", "assembled" }, profile.time_step);
+  if (const Node node_of_key = mapping.optional("measured"); node_of_key.given())
+  {
+    Mapping measured(node_of_key);
+    profile.measured.error = measured.required("error", "a length").number(Dimension::length, positive, 0);
+    profile.measured.cost =
+        measured.required("cost", "wall seconds a simulated second").number(Dimension::number, positive, 0);
+    if (const Node machine = measured.optional("machine"); machine.given())
+      profile.measured.machine = machine.text();
+  }
+  return profile;
+}
+
+bool is_profile_file(const std::string& accuracy)
+{
+  const std::string extension = std::filesystem::path(accuracy).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
+
+// a file with the one profile NAME: {...}, as it stands under `accuracy`
+AccuracyProfile read_profile_file(const std::string& path, double length_unit, const SceneNames& names)
+{
+  const YAML::Node yaml = load_yaml(path, "accuracy profile", "one profile, NAME: {voxel: ...}");
+  ReadingContext context{ Faults(path), length_unit };
+  const Node root(yaml, "", 1, context);
+  AccuracyProfile profile;
+  const auto profiles = root.named_pairs();
+  if (profiles.size() == 1)
+    profile = read_profile(profiles[0].first, profiles[0].second, names);
+  else
+    root.fault("found " + std::to_string(profiles.size()) + " profiles; must be one, NAME: {voxel: ...}");
+  if (!context.faults.empty())
+    throw Error(context.faults.text());
   return profile;
 }
 
 // the edge that options ask for instead of the profile's
-void override_voxel(const Node& node, const SceneOptions& options, Vector3& voxel)
+void override_voxel(const Node& node, const SceneOptions& options, AccuracyProfile& profile)
 {
   double edge = options.voxel;
   if (!options.voxel_quantity.empty())
@@ -98,8 +132,10 @@ void override_voxel(const Node& node, const SceneOptions& options, Vector3& voxe
       node.fault("voxel edge asked for: " + std::string(error.what()));
       return;
     }
-  if (edge > 0)
-    voxel = { edge, edge, edge };
+  if (!(edge > 0))
+    return;
+  profile.voxel = { edge, edge, edge };
+  profile.measured = {};
 }
 
 }  // namespace
@@ -129,6 +165,13 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
     profiles = { "standard" };
   }
 
+  if (is_profile_file(options.accuracy))
+  {
+    scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
+    scene.profiles.push_back(scene.accuracy);
+    override_voxel(node, options, scene.accuracy);
+    return;
+  }
   if (!options.accuracy.empty())
   {
     chosen = options.accuracy;
@@ -153,7 +196,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
     (chosen_by ? *chosen_by : node)
         .fault("no accuracy profile is called '" + chosen + "'; the profiles are " +
                list_with_suggestion(chosen, profiles));
-  override_voxel(node, options, scene.accuracy.voxel);
+  override_voxel(node, options, scene.accuracy);
 }
 
 }  // namespace frontalis

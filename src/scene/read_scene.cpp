@@ -14,38 +14,15 @@ namespace frontalis
 namespace
 {
 
-std::string read_text(const std::string& path)
+std::string read_text(const std::string& path, const std::string& what)
 {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw Error(path + ": no such file; must be a scene file in YAML");
+    throw Error(path + ": no such file; must be " + what + " in YAML");
   std::ifstream file(path, std::ios::binary);
   if (std::filesystem::is_directory(path, ignored) || !file)
-    throw Error(path + ": cannot be read; must be a scene file in YAML");
+    throw Error(path + ": cannot be read; must be " + what + " in YAML");
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-}
-
-YAML::Node parse(const std::string& path, const std::string& text)
-{
-  YAML::Node root;
-  try
-  {
-    root = YAML::Load(text);
-  }
-  catch (const YAML::Exception& error)
-  {
-    const int line = error.mark.is_null() ? 1 : error.mark.line + 1;
-    throw Error(path + ":" + std::to_string(line) + ": scene: not YAML: " + error.msg + "; must be a mapping in YAML");
-  }
-  if (root.IsNull())
-    throw Error(
-        path +
-        ":1: scene: the file is empty; must be a mapping with at least unit, surfaces, volumes, materials, skin");
-  if (!root.IsMap())
-    throw Error(path + ":" + std::to_string(root.Mark().line + 1) + ": scene: found " +
-                (root.IsSequence() ? "a list" : "plain text") +
-                "; must be a mapping with at least unit, surfaces, volumes, materials, skin");
-  return root;
 }
 
 void read_unit(const Node& node)
@@ -89,11 +66,32 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 
 }  // namespace
 
+YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected)
+{
+  const auto place = [&](int line) { return path + ":" + std::to_string(line) + ": " + what + ": "; };
+  YAML::Node root;
+  try
+  {
+    root = YAML::Load(read_text(path, what));
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw Error(place(error.mark.is_null() ? 1 : error.mark.line + 1) + "not YAML: " + error.msg + "; must be " +
+                expected);
+  }
+  if (root.IsNull())
+    throw Error(place(1) + "the file is empty; must be " + expected);
+  if (!root.IsMap())
+    throw Error(place(root.Mark().line + 1) + "found " + (root.IsSequence() ? "a list" : "plain text") + "; must be " +
+                expected);
+  return root;
+}
+
 Scene read_scene(const std::string& path, const SceneOptions& options)
 {
   Scene scene;
   scene.file = path;
-  const YAML::Node yaml = parse(path, read_text(path));
+  const YAML::Node yaml = load_yaml(path, "scene", "a mapping with at least unit, surfaces, volumes, materials, skin");
   ReadingContext context{ Faults(path), 1 };
   read_root(Node(yaml, "", 1, context), options, scene);
   if (!context.faults.empty())
@@ -101,5 +99,7 @@ Scene read_scene(const std::string& path, const SceneOptions& options)
   scene.content = canonical_content(scene);
   return scene;
 }
+
+std::string content_of(const Scene& scene) { return canonical_content(scene); }
 
 }  // namespace frontalis

@@ -44,6 +44,9 @@ void read_demo(const Node& node, Scene& scene, const SceneNames& names);
 /// {lower: [x, y, z], upper: [x, y, z]}, either of them and each number optional.
 Region read_region(const Node& node);
 
+/// The mapping of a file that holds a `what`. Throws Error: no such file, not YAML, not what is expected.
+YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
+
 /// Records a fault where `name` stands in `earlier`; otherwise adds it.
 void check_unique(const Node& node, const std::string& name, std::vector<std::string>& earlier);
 

@@ -18,6 +18,8 @@ namespace
 
 // colours that stay apart for colour-blind eyes (Okabe & Ito 2008)
 const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000" };
+const char* const marks[] = { "7", "5" };
+const char* const more_marks[] = { "9", "13", "11" };
 
 // text between single quotes: doubled inside
 std::string quoted(const std::string& text)
@@ -40,7 +42,9 @@ std::string quoted_as_format(const std::string& text)
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colours[index % std::size(colours)] + "'";
-  const std::string point = " pt " + std::to_string(index % 2 ? 5 : 7) + " ps 0.9";
+  // a colour that comes again has another mark
+  const bool again = index >= std::size(colours);
+  const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
   switch (curve.style)
   {
     case Plot::Style::points:
@@ -51,6 +55,10 @@ std::string style_of(const Plot::Curve& curve, std::size_t index)
       return "with lines lw 1.5 dt 2" + colour;
     case Plot::Style::bars:
       return "with boxes fs solid 0.8 noborder" + colour;
+    case Plot::Style::faint:
+      return "with points pt 7 ps 0.5 lc rgb '#bbbbbb'";
+    case Plot::Style::strong:
+      return "with linespoints lw 2.5 pt 7 ps 1.2 lc rgb '#222222'";
     case Plot::Style::line_and_points:
       break;
   }
@@ -63,11 +71,16 @@ std::string script(const Plot& plot, const std::string& path)
   out.precision(9);
   for (std::size_t c = 0; c < plot.curves.size(); ++c)
   {
+    const Plot::Curve& curve = plot.curves[c];
     out << "$curve" << c << " << EOD\n";
-    for (std::size_t i = 0; i < plot.curves[c].x.size(); ++i)
-      if (std::isfinite(plot.curves[c].x[i]) && std::isfinite(plot.curves[c].y[i]))
-        out << plot.curves[c].x[i] << ' ' << plot.curves[c].y[i] << '\n';
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]))
+        out << curve.x[i] << ' ' << curve.y[i] << '\n';
     out << "EOD\n";
+    for (std::size_t i = 0; i < curve.labels.size(); ++i)
+      if (!curve.labels[i].empty())
+        out << "set label " << quoted(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i]
+            << " left offset 0.7,0.7 font ',13' front\n";
   }
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
       << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (plot.key == "below" ? "" : " opaque")
@@ -82,8 +95,9 @@ std::string script(const Plot& plot, const std::string& path)
     if (from != to)
       out << "set " << axis << "range [" << from << ':' << to << "]\n";
   }
-  for (std::size_t t = 0; t < plot.x_ticks.size(); ++t)
-    out << (t ? ", " : "set xtics (") << plot.x_ticks[t] << (t + 1 == plot.x_ticks.size() ? ")\n" : "");
+  for (const auto& [axis, ticks] : { std::pair("x", plot.x_ticks), std::pair("y", plot.y_ticks) })
+    for (std::size_t t = 0; t < ticks.size(); ++t)
+      out << (t ? ", " : std::string("set ") + axis + "tics (") << ticks[t] << (t + 1 == ticks.size() ? ")\n" : "");
   for (std::size_t t = 0; t < plot.x_names.size(); ++t)
     out << (t ? ", " : "set xtics rotate by 25 right (") << quoted_as_format(plot.x_names[t]) << ' ' << t
         << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
@@ -95,8 +109,9 @@ std::string script(const Plot& plot, const std::string& path)
           << (plot.curves[c].name.empty() ? " notitle" : " title " + quoted(plot.curves[c].name));
     out << "\nset output\n";
   };
-  draw("pngcairo noenhanced size 800,500 font 'sans,13' background '#ffffff'", path + ".png");
-  draw("svg noenhanced size 800,500 font 'sans,15' background '#ffffff'", path + ".svg");
+  const std::string size = " noenhanced size " + std::to_string(plot.width) + "," + std::to_string(plot.height);
+  draw("pngcairo" + size + " font 'sans,13' background '#ffffff'", path + ".png");
+  draw("svg" + size + " font 'sans,15' background '#ffffff'", path + ".svg");
   return out.str();
 }
 

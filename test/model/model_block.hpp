@@ -67,6 +67,8 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   model.frame_rate = 25;
   model.time_step_share = 0.8;
   model.mass_scaling = { MassScalingSettings::Kind::selective, 1.5, { 1 }, 2e-5 };
+  model.profiles = { { "draft", 0.3e-3, 0.8, "a bench" }, { "fine", 0, 0, "" } };
+  model.profile = "draft";
   model.expressions = { { "raise", { { 0, 0.75f } } }, { "nothing", {} } };
   model.demo = { { 0, 0.2, 1.5 }, { -1, 0.3, 1 } };
   model.scene_hash = "0123456789abcdef";

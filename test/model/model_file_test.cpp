@@ -120,6 +120,11 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_TRUE(b.expressions[1].activation.empty());
   ASSERT_EQ(b.demo.size(), 2u);
   EXPECT_EQ(b.demo[1].expression, -1);
+  ASSERT_EQ(b.profiles.size(), 2u);
+  EXPECT_EQ(b.profiles[0].error, 0.3e-3);
+  EXPECT_EQ(b.profiles[0].machine, "a bench");
+  EXPECT_EQ(b.profiles[1].cost, 0);
+  EXPECT_EQ(b.profile, "draft");
   EXPECT_EQ(b.scene_hash, a.scene_hash);
 }
 

@@ -25,6 +25,14 @@ class Live(unittest.TestCase):
         self.assertLess(self.face.state.real_time_factor, 1.2)
         self.assertGreater(self.face.state.real_time_factor, 0.1)
 
+    def test_1_accuracy_and_speed_are_told(self):
+        def told(key):
+            return [pair.value for status in self.face.diagnostics for pair in status.values if pair.key == key and pair.value]
+
+        wait(lambda: told("speed"), "the speed", 60)
+        self.assertIn("of real time", told("speed")[0])
+        self.assertIn("profile 'draft': its skin was measured to be off by 0.5 mm", told("accuracy")[0])
+
     def test_2_demo_moves_the_muscle_up_and_down(self):
         wait(lambda: self.face.state.activation[0] > 0.4, "contraction", 60)
         wait(lambda: self.face.state.activation[0] < 0.1, "relaxation", 60)

@@ -277,11 +277,52 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.accuracy.precision, "double");
   EXPECT_EQ(scene.accuracy.time_step, "assembled");
   EXPECT_EQ(scene.profiles[0].precision, "single");
+  EXPECT_NEAR(scene.profiles[0].measured.error, 0.3e-3, 1e-15);
+  EXPECT_EQ(scene.profiles[0].measured.cost, 0.8);
+  EXPECT_EQ(scene.profiles[0].measured.machine, "a bench");
+  EXPECT_EQ(scene.profiles[1].measured.cost, 0);
 
   // what a profile leaves out comes from the defaults, not from another profile
   expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });
   EXPECT_EQ(scene.profiles[2].samples, 4);
   EXPECT_EQ(scene.profiles[2].mass_scaling.kind, MassScaling::Kind::none);
+}
+
+TEST(Options, a_file_may_hold_the_profile)
+{
+  const std::string path = source + "/test/scene/every_key.yaml";
+  const TemporaryFolder folder;
+  SceneOptions options;
+  options.accuracy =
+      folder.write("chosen.yaml",
+                   "chosen: {voxel: 1.25 mm, mass_scaling: {selective: [fat]}, measured: {error: 0.2 mm, cost: 3}}\n");
+  const Scene scene = read_scene(path, options);
+  EXPECT_EQ(scene.accuracy.name, "chosen");
+  expect_vector(scene.accuracy.voxel, { 1.25e-3, 1.25e-3, 1.25e-3 });
+  EXPECT_EQ(scene.profiles.back().measured.cost, 3);
+  EXPECT_NE(content_of(scene), content_of(read_scene(path)));
+  options.voxel_quantity = "2 mm";
+  EXPECT_EQ(read_scene(path, options).accuracy.measured.cost, 0) << "another voxel edge was not measured";
+
+  for (const auto& [text, fault] :
+       { std::pair<const char*, const char*>("a: {voxel: 1 mm}\nb: {}\n", "found 2 profiles"),
+         { "a: {voxl: 1 mm}\n", ":1: a.voxl" },
+         { "a: {measured: {error: 1}}\n", "cost" },
+         { "- a\n", "found a list" } })
+  {
+    folder.write("chosen.yaml", text);
+    try
+    {
+      read_scene(path, options);
+      ADD_FAILURE() << text;
+    }
+    catch (const Error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find(fault), std::string::npos) << error.what();
+    }
+  }
+  std::filesystem::remove(options.accuracy);
+  EXPECT_THROW(read_scene(path, options), Error);
 }
 
 TEST(Options, choose_profile_voxel_and_mesh_folder)

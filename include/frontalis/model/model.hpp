@@ -99,6 +99,17 @@ struct Model
   /// Names of effects that the scene switched off: nothing is stored for them (model/effects.hpp).
   std::vector<std::string> switched_off;
 
+  // accuracy profiles of the scene, as they were measured (doc/accuracy.md)
+  struct AccuracyProfile
+  {
+    std::string name;
+    double error = 0;     ///< of the skin, RMS [m]; 0: not measured
+    double cost = 0;      ///< wall seconds a simulated second; 0: not measured
+    std::string machine;  ///< that it cost so much on
+  };
+  std::vector<AccuracyProfile> profiles;
+  std::string profile;  ///< name of the one that the model was baked with
+
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
 

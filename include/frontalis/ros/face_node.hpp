@@ -47,6 +47,7 @@ private:
 
   // the runner's thread
   void on_frame(const Frame& frame);
+  void tell_speed();
 
   // inputs
   void on_muscle_activation(const MuscleActivation& message);
@@ -88,6 +89,7 @@ private:
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
+  std::string speed_;        ///< what was told of it; empty: nothing yet
   ros::WallTime published_;  ///< latest frame of the runner
   ros::WallTime shown_;      ///< latest frame or repetition
 

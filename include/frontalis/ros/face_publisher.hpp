@@ -39,6 +39,9 @@ public:
   /// Publishes a state that has failed with this message; for a face that has no model.
   void publish_fault(const std::string& message, const ros::Time& stamp);
 
+  /// What start() was given.
+  const Model* model() const { return model_.get(); }
+
 private:
   ros::Publisher skin_, points_, field_, topology_, landmarks_, state_;
   tf2_ros::TransformBroadcaster transforms_;

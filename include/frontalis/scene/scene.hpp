@@ -49,6 +49,14 @@ struct MassScaling
   double time_step = 0;  ///< that is taken then [s]; 0: until those materials no longer rule it
 };
 
+/// What `frontalis accuracy` found for a setting; doc/accuracy.md.
+struct MeasuredAccuracy
+{
+  double error = 0;     ///< of the skin, RMS [m]; 0: not measured
+  double cost = 0;      ///< wall seconds a simulated second; 0: not measured
+  std::string machine;  ///< that it cost so much on
+};
+
 /// One named setting of accuracy against time.
 struct AccuracyProfile
 {
@@ -62,6 +70,7 @@ struct AccuracyProfile
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< compensated, double: of the CPU backend
   std::string time_step = "element";      ///< critical time step: of the stiffest voxel, or of the assembled model
+  MeasuredAccuracy measured;
 };
 
 /// Time settings.

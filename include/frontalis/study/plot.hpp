@@ -15,13 +15,16 @@ struct Plot
     line,
     dashed,  ///< for theory, bounds and slopes
     line_and_points,
-    bars
+    bars,
+    faint,  ///< small grey points
+    strong  ///< black line and points, the one that counts
   };
   struct Curve
   {
     std::string name;  ///< in the legend; empty: not in it
     std::vector<double> x, y;
     Style style = Style::line_and_points;
+    std::vector<std::string> labels{};  ///< beside the points; empty: none
   };
 
   std::string title;
@@ -29,13 +32,14 @@ struct Plot
   bool x_log = false, y_log = false;
   /// Limits of an axis where the two differ.
   double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
-  std::vector<double> x_ticks;       ///< where the x axis has numbers; empty: gnuplot's choice
-  std::vector<std::string> x_names;  ///< written at x = 0, 1, 2, ... instead of numbers
-  std::string key = "top right";     ///< place of the legend in gnuplot's words; "below": under the axes
+  std::vector<double> x_ticks, y_ticks{};  ///< where the axes have numbers; empty: gnuplot's choice
+  std::vector<std::string> x_names;        ///< written at x = 0, 1, 2, ... instead of numbers
+  std::string key = "top right";           ///< place of the legend in gnuplot's words; "below": under the axes
   std::vector<Curve> curves;
+  int width = 800, height = 500;  ///< pixels
 };
 
-/// Writes PATH.png (800 x 500 pixels) and PATH.svg; `path` has no extension. Throws Error where gnuplot is missing or
+/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error where gnuplot is missing or
 /// fails, with what it said.
 void write_plot(const Plot& plot, const std::string& path);
 

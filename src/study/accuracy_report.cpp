@@ -1,0 +1,190 @@
+// findings as a table, a plot, words and profiles
+
+#include "frontalis/study/accuracy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace frontalis
+{
+namespace
+{
+
+double mm(double metres) { return 1e3 * metres; }
+
+std::string short_mm(double metres) { return readable(mm(metres), 2) + " mm"; }
+
+// rows of a line that have figures, by cost
+Plot::Curve curve_of(const AccuracyFindings& findings, std::vector<std::size_t> rows, const std::string& name)
+{
+  Plot::Curve curve;
+  curve.name = name;
+  const auto figures = [&](std::size_t r) { return findings.rows[r].error.rms > 0 && findings.rows[r].cost > 0; };
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [&](std::size_t r) { return !figures(r); }), rows.end());
+  std::sort(rows.begin(), rows.end(),
+            [&](std::size_t a, std::size_t b) { return findings.rows[a].cost < findings.rows[b].cost; });
+  for (const std::size_t r : rows)
+  {
+    curve.x.push_back(findings.rows[r].cost);
+    curve.y.push_back(mm(findings.rows[r].error.rms));
+  }
+  return curve;
+}
+
+std::string reference_words(const AccuracyFindings& f)
+{
+  std::string text = "The reference has voxels of " + short_mm(f.reference.profile.voxel[0]) +
+                     ", assumed-strain hourglass control and no scaled mass. Its own error is about " +
+                     short_mm(f.reference_error) + ", nothing below which is claimed: ";
+  if (f.extrapolated)
+    return text + "Richardson's extrapolation with the observed order of " + readable(f.order, 2) + ".";
+  text += "the difference of the two finest solutions, ";
+  if (std::isnan(f.order))
+    return text + "since they do not approach each other steadily (boundaries that are staircases converge unevenly).";
+  return text + "since the observed order of " + readable(f.order, 2) +
+         " is outside 0.5 to 2.5 (boundaries that are staircases converge unevenly).";
+}
+
+}  // namespace
+
+Table accuracy_table(const AccuracyFindings& findings)
+{
+  Table table({ "setting", "front", "error RMS [mm]", "error max [mm]", "settled RMS [mm]", "settled max [mm]",
+                "landmark [mm]", "energy [%]", "cost [s/s]", "spread [%]", "step [us]", "steps/s", "voxels",
+                "memory [MB]", "build [s]", "state" });
+  for (std::size_t r = 0; r < findings.rows.size(); ++r)
+  {
+    const AccuracyRow& row = findings.rows[r];
+    const bool best = std::find(findings.front.begin(), findings.front.end(), r) != findings.front.end();
+    const auto three = [](double value) { return std::isnan(value) ? value : std::stod(readable(value, 3)); };
+    table.add({ row.name, best ? "*" : "", three(mm(row.error.rms)), three(mm(row.error.largest)),
+                three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
+                three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
+                three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
+                row.fault.empty() ? (row.noisy() ? "noisy" : "") : row.fault });
+  }
+  return table;
+}
+
+Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
+{
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "wall seconds a simulated second";
+  plot.y_label = "error of the skin, RMS [mm]";
+  plot.x_log = plot.y_log = true;
+  plot.key = "outside right top Left reverse";
+  plot.width = 1100;
+  plot.height = 640;
+  double least = 1e300, most = 0, low = 1e300, high = 0;
+  for (const AccuracyRow& row : findings.rows)
+    if (row.error.rms > 0 && row.cost > 0)
+    {
+      least = std::min(least, row.cost);
+      most = std::max(most, row.cost);
+      low = std::min(low, mm(row.error.rms));
+      high = std::max(high, mm(row.error.rms));
+    }
+  if (most == 0)
+    return plot;
+  plot.x_from = least / 1.6;
+  plot.x_to = most * 1.6;
+  plot.y_from = std::min(low, mm(findings.reference_error)) / 1.3;
+  plot.y_to = high * 1.3;
+  for (double decade = 1e-6; decade < 1e6; decade *= 10)
+    for (const double step : { 1.0, 1.5, 2.0, 3.0, 5.0, 7.0 })
+    {
+      const double tick = decade * step;
+      if (tick >= plot.y_from && tick <= plot.y_to)
+        plot.y_ticks.push_back(tick);
+      if (tick >= plot.x_from && tick <= plot.x_to && (step == 1 || step == 2 || step == 5))
+        plot.x_ticks.push_back(tick);
+    }
+  std::vector<std::size_t> all(findings.rows.size());
+  for (std::size_t r = 0; r < all.size(); ++r)
+    all[r] = r;
+  plot.curves.push_back(curve_of(findings, all, "all that was measured"));
+  plot.curves.back().style = Plot::Style::faint;
+  for (const KnobLine& line : findings.knobs)
+  {
+    Plot::Curve curve = curve_of(findings, line.rows, line.knob);
+    if (curve.x.size() > 1)
+      plot.curves.push_back(std::move(curve));
+  }
+  Plot::Curve front = curve_of(findings, findings.front, "Pareto front");
+  front.style = Plot::Style::strong;
+  plot.curves.push_back(front);
+  // its points have numbers, their names stand in the legend
+  for (std::size_t p = 0; p < findings.front.size(); ++p)
+  {
+    const AccuracyRow& row = findings.rows[findings.front[p]];
+    const std::string number = std::to_string(p + 1);
+    plot.curves.push_back(
+        { number + ": " + row.name, { row.cost }, { mm(row.error.rms) }, Plot::Style::strong, { number } });
+  }
+  plot.curves.push_back({ "the reference's own error",
+                          { plot.x_from, plot.x_to },
+                          { mm(findings.reference_error), mm(findings.reference_error) },
+                          Plot::Style::dashed });
+  if (least < 1 && most > 1)
+    plot.curves.push_back({ "real time", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::dashed });
+  return plot;
+}
+
+std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
+{
+  std::string out =
+      "# " + title + "\n\n" + reference_words(f) + " The skin moves by " + short_mm(f.motion) +
+      " RMS. *error* is that of the skin in the worst phase of the history (half of the ramp, its end, "
+      "the end of the history, settled), *settled* at rest alone, *landmark* that of the worst landmark; "
+      "*energy* is what the ledger of energies leaves unexplained. *cost* is wall seconds a simulated "
+      "second, from the median of repeated timings; *spread* is the distance of their quartiles. Stars make "
+      "the Pareto front: no other setting is both cheaper and more accurate. Machine: " +
+      f.machine + ".\n";
+  for (const std::string& note : f.notes)
+    out += "\n- " + note;
+  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy(); });
+  if (noisy > 0)
+    out +=
+        "\n- The machine was disturbed while " + std::to_string(noisy) +
+        " settings were timed (spread above 20 %, or other programs took a fifth of the processors): those times are "
+        "marked noisy. The same command times them again.";
+  return out + "\n\n" + accuracy_table(f).markdown();
+}
+
+std::string profile_text(const AccuracyRow& row, const std::string& name, const std::string& machine)
+{
+  const AccuracyProfile& p = row.setting.profile;
+  const AccuracyProfile defaults;
+  std::string voxel = readable(mm(p.voxel[0]), 6) + " mm";
+  if (p.voxel[1] != p.voxel[0] || p.voxel[2] != p.voxel[0])
+    voxel = "[" + voxel + ", " + readable(mm(p.voxel[1]), 6) + " mm, " + readable(mm(p.voxel[2]), 6) + " mm]";
+  std::string text = name + ": {voxel: " + voxel;
+  const auto add = [&text](bool differs, const std::string& entry) { text += differs ? ", " + entry : ""; };
+  add(p.samples != defaults.samples, "samples: " + std::to_string(p.samples));
+  add(p.fill_min != defaults.fill_min, "fill_min: " + readable(p.fill_min));
+  add(p.time_step_share != defaults.time_step_share, "time_step_share: " + readable(p.time_step_share));
+  add(p.time_step != defaults.time_step, "time_step: " + p.time_step);
+  add(p.assumed_strain, "hourglass: assumed_strain");
+  add(p.integration != defaults.integration, "integration: " + p.integration);
+  add(p.precision != defaults.precision, "precision: " + p.precision);
+  const MassScaling& mass = p.mass_scaling;
+  if (mass.kind == MassScaling::Kind::uniform)
+    text += ", mass_scaling: {uniform: " + readable(mass.factor) + "}";
+  else if (mass.kind == MassScaling::Kind::selective)
+  {
+    std::string entries;
+    for (const std::string& material : mass.materials)
+      entries += (entries.empty() ? "selective: [" : ", ") + material;
+    entries += entries.empty() ? "" : "]";
+    if (mass.time_step > 0)
+      entries += (entries.empty() ? "" : ", ") + ("time_step: " + readable(1e6 * mass.time_step)) + " us";
+    text += ", mass_scaling: {" + entries + "}";
+  }
+  return text + ", measured: {error: " + readable(mm(row.error.rms), 3) + " mm, cost: " + readable(row.cost, 3) +
+         ", machine: \"" + machine + "\"}}";
+}
+
+}  // namespace frontalis

@@ -1,0 +1,230 @@
+// one variant: its motion, and what a step of it costs
+
+#include "accuracy_run.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/runner/face_frame.hpp"
+#include "frontalis/study/step_time.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include <malloc.h>
+#include <sys/resource.h>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr int slices_a_phase = 10;
+constexpr int repetitions = 9;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double processor_seconds()
+{
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * t.tv_usec; };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+int thread_count(int threads)
+{
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Controls controls_at(const Solver& solver, const ActivationHistory& history, double time)
+{
+  Controls controls = solver.controls();
+  controls.activation = history.activation;
+  const auto share = static_cast<float>(history.ramp > 0 ? std::min(time / history.ramp, 1.0) : 1);
+  for (float& a : controls.activation)
+    a *= share;
+  return controls;
+}
+
+SkinPhase look(Solver& solver, const Model& model)
+{
+  SkinState skin;
+  solver.skin(skin);
+  if (!is_finite(skin) || !solver.monitor().finite)
+    throw Error("the skin is no longer finite");
+  to_face_frame(model, skin);
+  return { std::move(skin.vertices), std::move(skin.landmarks) };
+}
+
+// a motion that has left the model behind cannot be trusted, finite or not
+void check_size(const VariantMotion& motion, const Model& model)
+{
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, model.size[axis] * model.spacing[axis]);
+  if (motion_size(motion) > size)
+    throw Error("the skin has left the model behind");
+}
+
+std::vector<float> vertex_areas(const Model& model)
+{
+  std::vector<float> areas(model.skin.vertices.size(), 0);
+  for (const auto& t : model.skin.triangles)
+  {
+    const auto &a = model.skin.vertices[t[0]], &b = model.skin.vertices[t[1]], &c = model.skin.vertices[t[2]];
+    double square = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double n = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
+      square += n * n;
+    }
+    for (const auto v : t)
+      areas[v] += static_cast<float>(std::sqrt(square) / 6);
+  }
+  return areas;
+}
+
+}  // namespace
+
+std::string machine_of(const Solver& solver, int threads)
+{
+  std::ifstream info("/proc/cpuinfo");
+  std::string processor = "unknown processor";
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0)
+    {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return solver.description() + ", " + processor + ", " + std::to_string(thread_count(threads)) + " threads";
+}
+
+// glibc counts every arena in malloc_info alone: what it has of the system and mapped, less what is free
+double heap_bytes()
+{
+  char* text = nullptr;
+  std::size_t size = 0;
+  FILE* const stream = open_memstream(&text, &size);
+  if (stream == nullptr)
+    return NAN;
+  malloc_info(0, stream);
+  std::fclose(stream);
+  const std::string info(text, size);
+  std::free(text);
+  // the last of each is the sum over arenas
+  const auto bytes = [&info](const std::string& begin)
+  {
+    const std::size_t at = info.rfind(begin), number = info.find("size=\"", at);
+    return at == std::string::npos || number == std::string::npos ? 0 : std::stod(info.substr(number + 6));
+  };
+  return bytes("<system type=\"current\"") + bytes("<total type=\"mmap\"") - bytes("<total type=\"rest\"") -
+         bytes("<total type=\"fast\"");
+}
+
+std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
+                                          const ActivationHistory& history, int threads, const GoOn& go_on)
+{
+  VariantMotion motion;
+  motion.voxels = static_cast<double>(model->voxels.size());
+  motion.area = vertex_areas(*model);
+  try
+  {
+    SolverSettings settings;
+    settings.backend = setting.backend;
+    settings.threads = threads;
+    settings.ledger = true;
+    const auto solver = make_solver(model, settings);
+    motion.phases.push_back(look(*solver, *model));
+    const double length = history.ramp + history.hold;
+    double time = 0;
+    for (const double end : { 0.5 * history.ramp, history.ramp, length })
+    {
+      const double begin = time;
+      for (int slice = 1; slice <= slices_a_phase && end > begin; ++slice)
+      {
+        const double next = begin + (end - begin) * slice / slices_a_phase;
+        solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
+        time = next;
+        if (!go_on(0.8 * time / length))
+          return std::nullopt;
+      }
+      motion.phases.push_back(look(*solver, *model));
+      check_size(motion, *model);
+    }
+    motion.steps = static_cast<double>(solver->profile().steps) / length;
+    const EnergyLedger ledger = solver->ledger();
+    motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : 0;
+
+    // it is at rest for a viewer when the skin no longer moves, whatever noise the nodes inside have
+    VariantMotion last;
+    last.area = motion.area;
+    last.phases = { motion.phases[0], motion.phases.back() };
+    double looked = 0;
+    bool interrupted = false;
+    const double settling = 2 * length / model->time_scaling;
+    const Equilibrium found = solver->settle(controls_at(*solver, history, length), 1e-4, settling,
+                                             [&](const Equilibrium& state)
+                                             {
+                                               interrupted = !go_on(0.8 + 0.2 * state.seconds / settling);
+                                               if (state.seconds - looked < 0.1 * settling)
+                                                 return !interrupted;
+                                               looked = state.seconds;
+                                               VariantMotion present = last;
+                                               present.phases[1] = look(*solver, *model);
+                                               const double moved = skin_errors(present, last)[1].rms;
+                                               last = std::move(present);
+                                               return !interrupted && moved > 5e-4 * motion_size(last);
+                                             });
+    if (interrupted)
+      return std::nullopt;
+    motion.residual = found.residual;
+    motion.phases.push_back(look(*solver, *model));
+    check_size(motion, *model);
+  }
+  catch (const Error& error)
+  {
+    motion.fault = std::string("unstable: ") + error.what();
+  }
+  return motion;
+}
+
+VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
+                         const ActivationHistory& history, int threads, double seconds)
+{
+  VariantCost cost;
+  const double heap = heap_bytes();
+  SolverSettings settings;
+  settings.backend = setting.backend;
+  settings.threads = threads;
+  const auto solver = make_solver(model, settings);
+  cost.machine = machine_of(*solver, threads);
+  Controls controls = solver->controls();
+  controls.activation = history.activation;
+  const double used = processor_seconds(), begin = now();
+  const auto turns = time_in_turn({ solver.get() }, controls, seconds);
+  cost.processors =
+      setting.backend == Backend::cpu ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
+  cost.memory = heap_bytes() - heap;
+  std::vector<double> steps, skins;
+  for (const auto& turn : turns)
+    steps.push_back(turn[0]);
+  SkinState skin;
+  for (int repetition = 0; repetition < repetitions; ++repetition)
+  {
+    const double start = now();
+    solver->skin(skin);
+    skins.push_back(now() - start);
+  }
+  const Spread step = spread_of(steps);
+  cost.step = step.median;
+  cost.spread = 2 * step.half / step.median;
+  cost.skin = spread_of(skins).median;
+  return cost;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,273 @@
+// the reference, the knobs and their combinations, and what they tell
+
+#include "accuracy_bench.hpp"
+#include "accuracy_front.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+std::string millimetres(double metres) { return readable(1e3 * metres, 3) + " mm"; }
+
+class Study
+{
+public:
+  Study(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
+      : plan_(plan), bench_(plan_, maker, progress)
+  {
+  }
+
+  AccuracyFindings run();
+
+private:
+  void choose_reference();
+  void measure_knobs();
+  void measure_combinations();
+  void check_reference();
+  void estimate_reference_error();
+  AccuracyRow row_of(const MeasuredVariant& measured) const;
+
+  AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
+  const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
+  bool wanted(const std::string& knob) const
+  {
+    return plan_.knobs.empty() || std::find(plan_.knobs.begin(), plan_.knobs.end(), knob) != plan_.knobs.end();
+  }
+
+  AccuracyPlan plan_;
+  VariantBench bench_;
+  std::size_t reference_ = 0;
+  AccuracyFindings findings_;
+};
+
+// the coarse end tells what the fine one takes; levels that the budget does not allow are dropped
+void Study::choose_reference()
+{
+  auto& edges = plan_.edges;
+  std::vector<AccuracySetting> levels;
+  for (const double edge : edges)
+    levels.push_back(reference_at(edge));
+  bench_.expect(levels);
+  for (std::size_t level = 0; level < 2; ++level)
+    bench_.measure(levels[level]);
+  if (plan_.budget > 0)
+  {
+    const auto share = [&](double edge) { return bench_.predicted(reference_at(edge)) / plan_.budget; };
+    while (edges.size() > 3 && share(edges.back()) > 0.4)
+    {
+      findings_.notes.push_back("Voxels of " + millimetres(edges.back()) + " were left out: about " +
+                                readable(share(edges.back()) * plan_.budget, 2) + " s do not fit the budget.");
+      edges.pop_back();
+    }
+    if (share(edges.back()) > 0.8)
+      throw Error("a budget of " + readable(plan_.budget, 4) + " s is too small for a comparison: the reference of " +
+                  millimetres(edges.back()) + " alone takes about " + readable(share(edges.back()) * plan_.budget, 2) +
+                  " s here; allow more, or begin with larger voxels");
+  }
+  findings_.reference = reference_at(edges.back());
+  bench_.set_reference(findings_.reference);
+  reference_ = bench_.measure(findings_.reference);
+  if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
+    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", is of no use: " + fault);
+  for (std::size_t level = 2; level + 1 < edges.size(); ++level)
+    if (bench_.fits(reference_at(edges[level])))
+      bench_.measure(reference_at(edges[level]));
+}
+
+void Study::measure_knobs()
+{
+  const std::size_t standard = bench_.measure(plan_.standard);
+  const std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  std::vector<AccuracySetting> all;
+  for (const Sweep& sweep : sweeps)
+    if (wanted(sweep.knob))
+      all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
+  bench_.expect(all);
+  for (const Sweep& sweep : sweeps)
+  {
+    if (!wanted(sweep.knob))
+      continue;
+    KnobLine line{ sweep.knob, { standard } };
+    for (const AccuracySetting& setting : sweep.settings)
+    {
+      const std::string& profile = setting.profile.name;
+      if (setting.profile.voxel[0] < 1.01 * plan_.edges.back())
+        findings_.notes.push_back("Profile '" + profile +
+                                  "' was left out: its voxels are as small as the reference's.");
+      else if (bench_.fits(setting))
+        line.rows.push_back(bench_.measure(setting, sweep.knob == "profiles" ? profile : ""));
+    }
+    std::sort(line.rows.begin(), line.rows.end());
+    line.rows.erase(std::unique(line.rows.begin(), line.rows.end()), line.rows.end());
+    if (sweep.knob != "profiles")
+      findings_.knobs.push_back(line);
+  }
+}
+
+// at each edge only what was not clearly beaten at the edge before
+void Study::measure_combinations()
+{
+  std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
+  for (std::size_t level = 0; level + 1 < plan_.edges.size(); ++level)
+  {
+    const auto settings = combinations(plan_, plan_.edges[level], bench_.critical_time_step());
+    std::vector<AccuracySetting> coming;
+    for (std::size_t later = level; later + 1 < plan_.edges.size(); ++later)
+    {
+      const auto all = combinations(plan_, plan_.edges[later], bench_.critical_time_step());
+      for (std::size_t c = 0; c < all.size(); ++c)
+        if (promising[c])
+          coming.push_back(all[c]);
+    }
+    bench_.expect(coming);
+    std::vector<std::pair<std::size_t, AccuracyRow>> rows;
+    for (std::size_t c = 0; c < settings.size(); ++c)
+      if (promising[c] && bench_.fits(settings[c]))
+        rows.emplace_back(c, row_of(bench_.done()[bench_.measure(settings[c])]));
+    for (const auto& [c, row] : rows)
+      promising[c] = row.fault.empty() && std::none_of(rows.begin(), rows.end(),
+                                                       [&row = row](const auto& other) {
+                                                         return other.second.cost < 0.9 * row.cost &&
+                                                                other.second.error.rms < 1.02 * row.error.rms;
+                                                       });
+  }
+}
+
+// at the coarsest edge: what double precision and half the time step change
+void Study::check_reference()
+{
+  AccuracySetting exact = reference_at(plan_.edges[0]), halved = exact;
+  const std::size_t base = bench_.measure(exact);
+  if (!motion_of(base).fault.empty())
+    return;
+  exact.profile.precision = "double";
+  halved.profile.time_step_share *= 0.5;
+  for (const auto& [setting, words] : { std::pair<const AccuracySetting&, const char*>(exact, "double precision"),
+                                        std::pair<const AccuracySetting&, const char*>(halved, "half the time step") })
+  {
+    if (!bench_.fits(setting))
+      continue;
+    const VariantMotion& other = motion_of(bench_.measure(setting));
+    if (other.fault.empty())
+      findings_.notes.push_back("The reference's form with voxels of " + millimetres(plan_.edges[0]) + ": " + words +
+                                " moves the skin by " +
+                                readable(1e6 * worst(skin_errors(motion_of(base), other)).rms, 3) + " µm.");
+  }
+}
+
+void Study::estimate_reference_error()
+{
+  // the finest three levels that were measured
+  std::vector<const MeasuredVariant*> levels;
+  for (const double edge : plan_.edges)
+    if (const MeasuredVariant* known = bench_.find(reference_at(edge)); known != nullptr && known->motion.fault.empty())
+      levels.push_back(known);
+  if (levels.size() < 2)
+    throw Error("no voxels but the reference's, " + millimetres(plan_.edges.back()) +
+                ", gave a motion to compare it with");
+  const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
+  const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
+  const auto apart = [&](std::size_t back)
+  { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
+  findings_.reference_error = apart(1);
+  if (levels.size() > 2)
+  {
+    findings_.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
+    findings_.extrapolated = findings_.order >= 0.5 && findings_.order <= 2.5;
+    if (findings_.extrapolated)
+      findings_.reference_error = richardson(edge(2), edge(1), apart(1), findings_.order);
+  }
+  findings_.motion = motion_size(motion_of(reference_));
+}
+
+AccuracyRow Study::row_of(const MeasuredVariant& measured) const
+{
+  AccuracyRow row;
+  row.name = measured.name;
+  row.setting = measured.setting;
+  row.fault = measured.motion.fault;
+  row.voxels = measured.motion.voxels > 0 ? measured.motion.voxels : NAN;
+  if (!row.fault.empty())
+    return row;
+  try
+  {
+    const auto errors = skin_errors(measured.motion, motion_of(reference_));
+    row.error = worst(errors);
+    row.settled = errors.back();
+  }
+  catch (const Error& error)
+  {
+    row.fault = error.what();
+    return row;
+  }
+  row.landmark = landmark_error(measured.motion, motion_of(reference_));
+  row.energy = measured.motion.energy;
+  row.steps = measured.motion.steps;
+  row.step = measured.cost.step;
+  row.cost = row.steps * row.step + plan_.frame_rate * measured.cost.skin;
+  row.spread = measured.cost.spread;
+  row.processors = measured.cost.processors;
+  row.memory = measured.cost.memory;
+  row.build = measured.cost.build;
+  return row;
+}
+
+AccuracyFindings Study::run()
+{
+  const auto known = knob_names();
+  for (const std::string& knob : plan_.knobs)
+    if (std::find(known.begin(), known.end(), knob) == known.end())
+    {
+      std::string list;
+      for (const auto& name : known)
+        list += (list.empty() ? "" : ", ") + name;
+      throw Error("no knob is called '" + knob + "'; the knobs are " + list);
+    }
+  if (plan_.edges.size() < 3 || !std::is_sorted(plan_.edges.rbegin(), plan_.edges.rend()) ||
+      std::adjacent_find(plan_.edges.begin(), plan_.edges.end()) != plan_.edges.end())
+    throw Error(
+        "voxel edges: at least three are needed, each smaller than the one before; the last is the reference's");
+  findings_.standard = plan_.standard;
+  try
+  {
+    choose_reference();
+    measure_knobs();
+    check_reference();
+    if (plan_.knobs.empty())
+      measure_combinations();
+  }
+  catch (const StudyInterrupted&)
+  {
+    findings_.complete = false;
+    return findings_;
+  }
+  findings_.machine = bench_.machine();
+  if (bench_.left_out() > 0)
+    findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
+  estimate_reference_error();
+  for (const MeasuredVariant& measured : bench_.done())
+    findings_.rows.push_back(row_of(measured));
+  // the reference is no setting among others
+  AccuracyRow& reference = findings_.rows[reference_];
+  reference.name = "reference: " + reference.name;
+  reference.error = reference.settled = {};
+  reference.landmark = NAN;
+  findings_.front = pareto_front(findings_.rows, plan_.standard, findings_.reference_error);
+  return findings_;
+}
+
+}  // namespace
+
+AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
+{
+  return Study(plan, maker, progress).run();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,234 @@
+#include "frontalis/error.hpp"
+#include "frontalis/study/accuracy.hpp"
+#include "frontalis/study/voxel_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double length = 8e-3, width = 4e-3;
+
+// a bar of flesh, held at x = 0, with a muscle in its upper half: it shortens and bends up
+Model bar(const AccuracySetting& setting)
+{
+  const double edge = setting.profile.voxel[0];
+  const auto n = static_cast<std::int32_t>(std::lround(length / edge)),
+             m = static_cast<std::int32_t>(std::lround(width / edge));
+  VoxelBox box;
+  box.size = { { n, m, m } };
+  box.spacing.fill(edge);
+  box.materials = { neo_hookean(30e3, setting.poisson != 0 ? setting.poisson : 0.45) };
+  Model model = voxel_model(box);
+  Muscle muscle;
+  muscle.name = "pull";
+  muscle.stress_reference = 20e3;
+  muscle.tension_length = false;
+  add_muscle(model, muscle, [](std::size_t) { return std::array<float, 3>{ { 1, 0, 0 } }; });
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    model.fibre_weight[e] = m == 1 ? 0.5F : 2 * model.voxels[e][2] >= m ? 1 : 0;
+  for (const std::int32_t node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
+    model.rigid.push_back({ node, -1 });
+  // skin: the upper face, at places that are corners of voxels of every size
+  for (int i = 0; i <= 2; ++i)
+    for (int j = 0; j <= 1; ++j)
+    {
+      const std::int32_t x = std::max(i * n / 2 - 1, 0), y = j * m - j;
+      const std::size_t voxel = static_cast<std::size_t>(((m - 1) * m + y) * n + x);
+      model.skin.vertices.push_back({ { i * 0.5 * length, j * width, width } });
+      model.skin_binding.voxel.push_back(static_cast<std::int32_t>(voxel));
+      model.skin_binding.coordinates.push_back({ { i > 0 ? 1.F : 0.F, static_cast<float>(j), 1 } });
+    }
+  model.skin.triangles = { { 0, 2, 1 }, { 1, 2, 3 }, { 2, 4, 3 }, { 3, 4, 5 } };
+  model.damping = 60;
+  model.time_step_share = setting.profile.time_step_share;
+  model.time_scaling = setting.time_scaling;
+  model.hourglass = setting.profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
+  if (setting.profile.precision == "double")
+    model.precision = Precision::double_precision;
+  // what this bar cannot be with samples other than the default
+  if (setting.profile.samples != 4)
+    throw Error("no such bar");
+  return model;
+}
+
+class Accuracy : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_accuracy_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    plan.folder = pattern;
+    plan.standard.profile.voxel.fill(2e-3);
+    plan.edges = { 4e-3, 2e-3, 1e-3, 0.5e-3 };
+    plan.knobs = { "voxel", "hourglass" };
+    plan.history = { { 0.5F }, 0.1, 0.1 };
+    plan.quick = true;
+    plan.threads = 1;
+    maker.content = [](const AccuracySetting& s)
+    {
+      std::string text;
+      for (const double value : { s.profile.voxel[0], s.profile.time_step_share, s.poisson, s.time_scaling,
+                                  static_cast<double>(s.profile.samples), s.profile.assumed_strain ? 1.0 : 0.0 })
+        text += std::to_string(1e6 * value) + " ";
+      return text + s.profile.precision;
+    };
+    maker.bake = bar;
+  }
+  void TearDown() override { std::filesystem::remove_all(plan.folder); }
+
+  AccuracyFindings study()
+  {
+    return study_accuracy(plan, maker,
+                          [this](const std::string&, double done, double)
+                          {
+                            moved += done > 0 ? 1 : 0;
+                            return moved < interrupt_after;
+                          });
+  }
+  std::string fault()
+  {
+    try
+    {
+      study();
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+
+  AccuracyPlan plan;
+  ModelMaker maker;
+  int moved = 0, interrupt_after = 1 << 30;
+};
+
+const AccuracyRow& row_named(const AccuracyFindings& findings, const std::string& name)
+{
+  for (const AccuracyRow& row : findings.rows)
+    if (row.name == name)
+      return row;
+  throw Error("no row is called " + name);
+}
+
+// of the settled skin, against a bar of half the reference's edge
+double true_error(const AccuracySetting& setting)
+{
+  AccuracySetting finer = setting;
+  finer.profile.voxel.fill(0.25e-3);
+  finer.profile.assumed_strain = true;
+  SkinState skins[2];
+  for (const int which : { 0, 1 })
+  {
+    const auto solver =
+        make_solver(std::make_shared<const Model>(bar(which == 0 ? setting : finer)), { Backend::cpu, 1 });
+    solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
+    solver->skin(skins[which]);
+  }
+  // a corner's share of the area is a quarter of two triangles', or of one's
+  const double area[] = { 1, 2, 3, 3, 2, 1 };
+  double sum = 0;
+  for (std::size_t v = 0; v < 6; ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      sum += area[v] / 12 * std::pow(skins[0].vertices[v][axis] - skins[1].vertices[v][axis], 2);
+  return std::sqrt(sum);
+}
+
+TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
+{
+  const AccuracyFindings findings = study();
+  ASSERT_TRUE(findings.complete);
+  const double coarse = row_named(findings, "4 mm").error.rms, standard = row_named(findings, "standard").error.rms,
+               fine = row_named(findings, "1 mm").error.rms;
+  EXPECT_GT(coarse, 1.5 * standard);
+  EXPECT_GT(standard, 1.5 * fine);
+  EXPECT_GT(findings.reference_error, 0);
+  EXPECT_LT(findings.reference_error, standard);
+  EXPECT_GT(findings.motion, 5 * standard) << "errors are small beside the motion";
+
+  const double tolerance = 1.02 * standard;
+  const AccuracyRow& chosen = cheapest_within(findings, tolerance);
+  EXPECT_LE(chosen.error.rms, tolerance);
+  EXPECT_LT(true_error(chosen.setting), 1.2 * tolerance);
+  EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
+  const AccuracyRow& best = most_accurate_within(findings, 1e9);
+  EXPECT_LE(best.error.rms, fine);
+
+  EXPECT_THROW(cheapest_within(findings, 0.5 * findings.reference_error), Error) << "nothing is claimed below it";
+  EXPECT_THROW(most_accurate_within(findings, 1e-9), Error);
+}
+
+TEST_F(Accuracy, interrupted_studies_go_on_where_they_were)
+{
+  interrupt_after = 50;
+  EXPECT_FALSE(study().complete);
+  const auto kept = [&] { return std::distance(std::filesystem::directory_iterator(plan.folder + "/variants"), {}); };
+  const auto some = kept();
+  EXPECT_GT(some, 0);
+  interrupt_after = 1 << 30;
+  const AccuracyFindings findings = study();
+  EXPECT_TRUE(findings.complete);
+  EXPECT_GT(kept(), some);
+  moved = 0;
+  const AccuracyFindings again = study();
+  EXPECT_EQ(moved, 0) << "no motion is run twice";
+  ASSERT_EQ(again.rows.size(), findings.rows.size());
+  for (std::size_t r = 0; r < again.rows.size(); ++r)
+    EXPECT_TRUE(again.rows[r].error.rms == findings.rows[r].error.rms || std::isnan(again.rows[r].error.rms));
+}
+
+TEST_F(Accuracy, settings_that_diverge_or_have_no_model_stay_in_the_table)
+{
+  plan.knobs = { "samples", "hourglass" };
+  maker.bake = [](const AccuracySetting& setting)
+  {
+    Model model = bar(setting);
+    if (!setting.profile.assumed_strain)
+      model.gravity = { { 0, 0, -1e6 } };
+    return model;
+  };
+  const AccuracyFindings findings = study();
+  EXPECT_EQ(row_named(findings, "standard").fault.rfind("unstable: ", 0), 0U) << row_named(findings, "standard").fault;
+  EXPECT_EQ(row_named(findings, "2 samples").fault, "no model: no such bar");
+  const std::string table = accuracy_table(findings).text();
+  EXPECT_NE(table.find("unstable: "), std::string::npos);
+  EXPECT_NE(table.find("no model: no such bar"), std::string::npos);
+}
+
+TEST_F(Accuracy, bad_plans_are_told)
+{
+  plan.knobs = { "voxel", "colour" };
+  EXPECT_NE(fault().find("no knob is called 'colour'; the knobs are voxel, samples"), std::string::npos) << fault();
+  plan.knobs = { "voxel" };
+  plan.budget = 1e-3;
+  EXPECT_NE(fault().find("too small for a comparison"), std::string::npos) << fault();
+  plan.edges = { 1e-3, 2e-3, 4e-3 };
+  EXPECT_NE(fault().find("each smaller than the one before"), std::string::npos) << fault();
+}
+
+TEST(AccuracyProfileText, is_what_a_scene_file_has)
+{
+  AccuracyRow row;
+  row.setting.profile.voxel.fill(2e-3);
+  row.setting.profile.time_step = "assembled";
+  row.setting.profile.mass_scaling.kind = MassScaling::Kind::selective;
+  row.setting.profile.mass_scaling.time_step = 20e-6;
+  row.error.rms = 0.12e-3;
+  row.cost = 0.8;
+  EXPECT_EQ(
+      profile_text(row, "chosen", "a bench"),
+      "chosen: {voxel: 2 mm, time_step: assembled, mass_scaling: {time_step: 20 us}, measured: {error: 0.12 mm, cost: "
+      "0.8, machine: \"a bench\"}}");
+}
+
+}  // namespace
+}  // namespace frontalis
