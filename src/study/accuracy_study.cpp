@@ -52,6 +52,7 @@ void Study::choose_reference()
 {
   auto& edges = plan_.edges;
   std::vector<AccuracySetting> levels;
+  levels.reserve(edges.size());
   for (const double edge : edges)
     levels.push_back(reference_at(edge));
   bench_.expect(levels);
