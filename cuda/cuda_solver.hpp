@@ -35,6 +35,8 @@ public:
   void set_displacements(const Vectors& in) override;
   void set_velocities(const Vectors& in) override;
   void internal_forces(Vectors& out) override { forces(u_[present_].data(), out); }
+  /// Both wait for the device: some 40 us, where a step of a small model takes 2.
+  int steps_a_check() const override { return 2048; }
   std::string description() const override;
 
 protected:

@@ -179,7 +179,7 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
   physics::Matrix3<float> P;
   if (reduced)
   {
-    const float pressure = entry.y * (k.J - 1.0f);
+    const float pressure = entry.y * k.dilatation;
 #pragma unroll
     for (int i = 0; i < 3; ++i)
 #pragma unroll

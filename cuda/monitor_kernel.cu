@@ -94,7 +94,7 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
   }
   else
   {
-    own.internal = 0.5 * entry.y * (k.J - 1) * (k.J - 1);
+    own.internal = 0.5 * entry.y * k.dilatation * k.dilatation;
     for (int point = 0; point < 8; ++point)
     {
       double moved[3][8];

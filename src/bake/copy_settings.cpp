@@ -187,6 +187,7 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.damping = scene.time.damping;
   model.time_scaling = scene.time.scaling;
   model.frame_rate = scene.time.frame_rate;
+  model.activation_slew = scene.time.activation_slew * scene.time.scaling;
   model.time_step_share = scene.accuracy.time_step_share;
   for (const SceneMaterial& material : scene.materials)
     model.materials.push_back(material_of(scene, material, frame));

@@ -44,17 +44,68 @@ double resident_bytes()
   return resident * 4096;
 }
 
+std::string percent(double share)
+{
+  char text[16];
+  std::snprintf(text, sizeof text, share < 0.1 ? "%.2f %%" : "%.0f %%", 100 * share);
+  return text;
+}
+
 struct Timing
 {
   double step = 0;    ///< median [s]
   double spread = 0;  ///< (largest - smallest) over the median
 };
 
+using Clock = std::chrono::steady_clock;
+
+double elapsed(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// median of five repetitions [s]
+template <class Task>
+double time_of(const Task& task)
+{
+  std::vector<double> times;
+  for (int repetition = 0; repetition < 5; ++repetition)
+  {
+    const auto start = Clock::now();
+    task();
+    times.push_back(elapsed(start));
+  }
+  std::sort(times.begin(), times.end());
+  return times[2];
+}
+
+// what the guard's checks and snapshots take, as a share of the steps between them
+double guard_share(Solver& solver, double step)
+{
+  std::unique_ptr<Snapshot> snapshot;
+  solver.monitor();
+  solver.save(snapshot);
+  const double check = time_of(
+      [&]
+      {
+        solver.save(snapshot);
+        solver.monitor();
+      });
+  return check / (solver.steps_a_check() * step);
+}
+
+// what the looks at the time step take on the CPU, once in 32 steps: a plan of one step has one a step
+double look_share(Solver& solver, const Controls& controls, double step)
+{
+  const double dt = 0.999 * solver.time_step();
+  const double looking = time_of(
+      [&]
+      {
+        for (int i = 0; i < 16; ++i)
+          solver.advance(dt, controls);
+      });
+  return std::max(0.0, looking / 16 / step - 1) / 31;
+}
+
 Timing time_steps(Solver& solver, const Controls& controls, double seconds)
 {
-  using Clock = std::chrono::steady_clock;
-  const auto elapsed = [](Clock::time_point start)
-  { return std::chrono::duration<double>(Clock::now() - start).count(); };
   const double dt = solver.time_step();
   solver.advance(8 * dt, controls);
   auto start = Clock::now();
@@ -85,9 +136,13 @@ void bench_model(const std::string& name, const std::shared_ptr<const Model>& mo
   std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
   const Timing timing = time_steps(*solver, controls, options.quick ? 1.5 : 5.0);
   const auto voxels = static_cast<double>(model->voxels.size());
-  std::printf("%-12s %10.0f  %9.1f  %9.2f  %6.2f  %6.0f  %5.0f %%  %s\n", name.c_str(), voxels, 1e6 * timing.step,
-              1e-6 * voxels / timing.step, voxels / timing.step / yardstick, (resident_bytes() - before) / voxels,
-              100 * timing.spread, solver->description().c_str());
+  const double bytes = (resident_bytes() - before) / voxels;
+  const std::string description = solver->description();
+  const std::string look =
+      description.compare(0, 3, "cpu") == 0 ? percent(look_share(*solver, controls, timing.step)) : "";
+  std::printf("%-12s %10.0f  %9.1f  %9.2f  %6.2f  %6.0f  %7s  %7s  %7s  %s\n", name.c_str(), voxels, 1e6 * timing.step,
+              1e-6 * voxels / timing.step, voxels / timing.step / yardstick, bytes, percent(timing.spread).c_str(),
+              look.c_str(), percent(guard_share(*solver, timing.step)).c_str(), description.c_str());
   std::fflush(stdout);
 }
 
@@ -99,8 +154,8 @@ void bench(const BenchOptions& options)
   const double loop = bare_loop(64, threads, options.quick ? 1.5 : 5.0);
   std::printf("yardsticks   %d threads: copy %.1f GB/s, bare loop of 64^3 voxels %.1f million updates a second\n",
               threads, 1e-9 * bandwidth, 1e-6 * loop);
-  std::printf("%-12s %10s  %9s  %9s  %6s  %6s  %7s  %s\n", "scene", "voxels", "us/step", "million/s", "of bar", "B/vox",
-              "spread", "backend");
+  std::printf("%-12s %10s  %9s  %9s  %6s  %6s  %7s  %7s  %7s  %s\n", "scene", "voxels", "us/step", "million/s",
+              "of bar", "B/vox", "spread", "look", "guard", "backend");
   for (const std::int32_t edge :
        options.quick ? std::vector<std::int32_t>{ 64 } : std::vector<std::int32_t>{ 32, 64, 128 })
     bench_model("block " + std::to_string(edge), std::make_shared<const Model>(dense_block(edge, edge, edge)), options,

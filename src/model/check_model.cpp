@@ -269,6 +269,8 @@ void check_settings(const Model& model)
     fail("damping", "is " + std::to_string(model.damping) + "; it must be at least 0");
   check_positive("time_scaling", 0, model.time_scaling);
   check_positive("frame_rate", 0, model.frame_rate);
+  if (!(model.activation_slew >= 0) || !std::isfinite(model.activation_slew))
+    fail("activation_slew", "is " + std::to_string(model.activation_slew) + " 1/s; it must be at least 0");
   check_positive("time_step_share", 0, model.time_step_share);
   if (model.time_step_share > 1)
     fail("time_step_share", "is " + std::to_string(model.time_step_share) + "; it must be at most 1");

@@ -115,6 +115,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.value(in("time/damping"), model.damping);
   archive.value(in("time/scaling"), model.time_scaling);
   archive.value(in("time/frame_rate"), model.frame_rate);
+  archive.value(in("time/activation_slew"), model.activation_slew);
   archive.value(in("time/step_share"), model.time_step_share);
   archive.value(in("time/step_estimate"), model.time_step_estimate);
   archive.value(in("hourglass"), model.hourglass);

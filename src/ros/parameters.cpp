@@ -112,11 +112,11 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   reader.check(std::isfinite(out.runner.frame_rate) && out.runner.frame_rate >= 0, "frame_rate",
                std::to_string(out.runner.frame_rate), "0 (the model's) or more [1/s]");
   GuardSettings guard;
-  guard.interval = reader.value("guard_interval", guard.interval, "a whole number of steps, 0: no guard");
-  reader.check(guard.interval >= 0, "guard_interval", std::to_string(guard.interval), "0 (no guard) or more");
-  guard.recovery = std::max(guard.recovery, guard.interval);
+  const int interval = reader.value("guard_interval", -1, "a whole number of steps, 0: no guard");
+  reader.check(interval >= -1, "guard_interval", std::to_string(interval), "0 (no guard), more, or -1 (the backend's)");
+  guard.interval = std::max(interval, 0);
   out.runner.guard.reset();
-  if (guard.interval > 0)
+  if (interval != 0)
     out.runner.guard = guard;
   const std::string field = reader.text("skin_field", "strain");
   reader.convert("skin_field", [&] { out.skin_field = skin_field_from_name(field); });

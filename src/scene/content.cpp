@@ -176,7 +176,11 @@ void add_output(const Scene& scene, std::string& content)
 
 void add_numerics(const Scene& scene, std::string& content)
 {
-  Line(content, "time").add(scene.time.damping).add(scene.time.scaling).add(scene.time.frame_rate);
+  Line(content, "time")
+      .add(scene.time.damping)
+      .add(scene.time.scaling)
+      .add(scene.time.frame_rate)
+      .add(scene.time.activation_slew);
   const AccuracyProfile& profile = scene.accuracy;
   Line(content, "accuracy")
       .add(profile.voxel)

@@ -63,6 +63,8 @@ void read_time(const Node& node, SceneTime& time)
   time.scaling = mapping.optional("scaling").number(
       Dimension::number, Bound{ 1, std::numeric_limits<double>::infinity(), true, true }, time.scaling);
   time.frame_rate = mapping.optional("frame_rate").number(Dimension::rate, positive, time.frame_rate);
+  time.activation_slew =
+      mapping.optional("activation_slew").number(Dimension::rate, not_negative, time.activation_slew);
 }
 
 }  // namespace frontalis

@@ -285,7 +285,7 @@ struct CpuElement
     Stress P;
     if (Form == Stabilisation::selective_reduced)
     {
-      const Batch pressure = material.kappa * (k.J - N::of(1));
+      const Batch pressure = material.kappa * k.dilatation;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           P.a[i][j] = pressure * k.cofactor.a[i][j];

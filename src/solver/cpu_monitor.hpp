@@ -70,8 +70,7 @@ struct CpuMonitor
       Element::look(g, at, k, found.frequency_squared);
       return found;
     }
-    const Batch dilatation = k.J - N::of(1);
-    found.internal = N::of(0.5) * material.kappa * dilatation * dilatation;
+    found.internal = N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
     material.kappa = N::of(0);
     for (int point = 0; point < 8; ++point)
     {

@@ -42,7 +42,7 @@ struct Guard::Implementation
   Good good, before;              // the latest, and the one before
   std::vector<float> activation;  // largest of each muscle since `before`
   std::int64_t checked_at = 0;    // steps
-  std::int64_t recovered_at = 0;  // steps
+  int good_checks = 0;            // since the latest rollback
   int tries = 0;
   GuardCounts counts;
 
@@ -97,7 +97,10 @@ Instability Guard::Implementation::check()
   const Instability finding =
       mutation::blind_guard ? Instability::none : judged(monitor, ledger.imbalance(), ledger.largest);
   if (finding == Instability::none)
+  {
     keep(monitor, ledger.imbalance());
+    ++good_checks;
+  }
   counts.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return finding;
 }
@@ -123,7 +126,7 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target)
   solver.slow_down(std::pow(settings.slower, tries));
   before.snapshot.reset();
   checked_at = steps();
-  recovered_at = steps() + settings.recovery;
+  good_checks = 0;
 }
 
 // where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
@@ -170,16 +173,18 @@ Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSett
 {
   const auto refuse = [](const char* what, double value, const char* allowed)
   { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
-  if (settings.interval < 1)
-    refuse("interval", settings.interval, "1 step or more");
+  if (settings.interval < 0)
+    refuse("interval", settings.interval, "0 (the solver's) or more steps");
   if (!(settings.slower > 0 && settings.slower < 1))
     refuse("share of the time step", settings.slower, "above 0 and below 1");
-  if (settings.recovery < settings.interval)
-    refuse("recovery", settings.recovery, "its interval or more");
+  if (settings.recovery < 1)
+    refuse("recovery", settings.recovery, "1 check or more");
   if (settings.tries < 0 || settings.tries > 20)
     refuse("number of tries", settings.tries, "0 to 20");
   if (!(settings.inverted_share >= 0 && settings.inverted_share <= 1))
     refuse("share of inverted voxels", settings.inverted_share, "0 to 1");
+  if (settings.interval == 0)
+    self_->settings.interval = solver.steps_a_check();
   restart();
 }
 
@@ -229,7 +234,7 @@ void Guard::advance(double seconds, const Controls& target)
       g.go_back(finding, target);
       done = false;
     }
-    else if (g.tries > 0 && g.steps() >= g.recovered_at)
+    else if (g.tries > 0 && g.good_checks >= g.settings.recovery)
     {
       g.tries = 0;
       g.solver.slow_down(1);

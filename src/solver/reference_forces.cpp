@@ -46,6 +46,7 @@ physics::Kinematics<double> ReferenceSolver::kinematics(std::size_t e, const Der
       k.I1 += F[i][j] * F[i][j];
     }
   k.J = F[0][0] * k.cofactor.a[0][0] + F[0][1] * k.cofactor.a[0][1] + F[0][2] * k.cofactor.a[0][2];
+  k.dilatation = k.J - 1;
   return k;
 }
 

@@ -105,6 +105,7 @@ void SteppingSolver::displacements_were_set()
   frequency_squared_ = discretisation_.frequency_squared_max;
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
+  looked_at_ = frequency_squared_;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   velocities_were_set();
@@ -116,6 +117,7 @@ void SteppingSolver::reset()
   time_ = 0;
   failed_ = false;
   frequency_squared_ = discretisation_.frequency_squared_max;
+  looked_at_ = 0;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   controls_ = rest_controls(*model_);
@@ -144,7 +146,8 @@ void SteppingSolver::check(double seconds, const Controls& target) const
 }
 
 // first-order response of the muscles to activations asked for that go linearly from one to another:
-// da/dt = (e - a) / time, with the rise or the fall time (as in Zajac 1989, Crit. Rev. Biomed. Eng. 17:359)
+// da/dt = (e - a) / time, with the rise or the fall time (as in Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), no faster
+// than the slew limit
 void SteppingSolver::respond(const std::vector<float>& from, const std::vector<float>& to, double seconds)
 {
   for (std::size_t m = 0; m < activation_.size(); ++m)
@@ -152,15 +155,28 @@ void SteppingSolver::respond(const std::vector<float>& from, const std::vector<f
     const Muscle& muscle = model_->muscles[m];
     const double now = double(activation_[m]);
     const double time = double(to[m]) > now ? muscle.rise_time : muscle.fall_time;
-    if (time <= 0)
+    double reached = double(to[m]);
+    if (time > 0)
     {
-      activation_[m] = to[m];
-      continue;
+      const double lag = (double(to[m]) - double(from[m])) * time / seconds;
+      reached += -lag + (now - double(from[m]) + lag) * std::exp(-seconds / time);
     }
-    const double lag = (double(to[m]) - double(from[m])) * time / seconds;
-    const double reached = double(to[m]) - lag + (now - double(from[m]) + lag) * std::exp(-seconds / time);
+    if (model_->activation_slew > 0)
+    {
+      const double most = model_->activation_slew * seconds;
+      reached = std::min(std::max(reached, now - most), now + most);
+    }
     activation_[m] = static_cast<float>(std::min(std::max(reached, 0.0), 1.0));
   }
+}
+
+// what stiffens is expected to go on doing so until the next look, for at most as much again
+void SteppingSolver::expect_frequency(double squared)
+{
+  const double rest = discretisation_.frequency_squared_max;
+  const double growth = std::clamp(squared / std::max(looked_at_, rest), 1.0, 2.0);
+  looked_at_ = squared;
+  frequency_squared_ = std::max(squared * growth, rest);
 }
 
 void SteppingSolver::advance(double seconds, const Controls& target)
@@ -197,7 +213,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
     if (!mutation::time_step_of_rest)
-      frequency_squared_ = std::max(squared, discretisation_.frequency_squared_max);
+      expect_frequency(squared);
   }
   controls_ = target;
   profile_.stepping += seconds_since(start);

@@ -29,7 +29,8 @@ struct Course
 {
   double time_ = 0;
   double latest_step_ = 0;        // [s]
-  double frequency_squared_ = 0;  // of the stiffest voxel
+  double frequency_squared_ = 0;  // of the stiffest voxel, as the next plan may find it
+  double looked_at_ = 0;          // the same as it was found last
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
   double assembled_at_frequency_ = 0;
@@ -62,6 +63,7 @@ public:
                      const std::function<bool(const Equilibrium&)>& go_on) override;
   void save(std::unique_ptr<Snapshot>& to) override;
   void restore(const Snapshot& snapshot) override;
+  int steps_a_check() const override { return 512; }
   void slow_down(double share) override;
   double time() const override { return time_; }
   double time_step() const override { return safe_time_step(); }
@@ -133,6 +135,7 @@ private:
   void set_gravity();
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
   void renew_assembled_bound();
+  void expect_frequency(double squared);
   double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
   double distance(const Vectors& a, const Vectors& b) const;
   void open_ledger();

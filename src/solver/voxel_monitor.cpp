@@ -99,7 +99,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     PlaneMonitor own{ 0, 0, 0, k.J, 0, 0, index, index };
     if (d.selective_reduced)
     {
-      own.internal = voxel.tissue_volume * 0.5 * voxel.kappa * (k.J - 1) * (k.J - 1);
+      own.internal = voxel.tissue_volume * 0.5 * voxel.kappa * k.dilatation * k.dilatation;
       for (int point = 0; point < 8; ++point)
       {
         double moved[3][8];

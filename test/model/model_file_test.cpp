@@ -112,6 +112,7 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.face_frame, "face_one");
   EXPECT_EQ(b.damping, 20);
   EXPECT_EQ(b.time_step_share, 0.8);
+  EXPECT_EQ(b.activation_slew, 8);
   EXPECT_EQ(b.mass_scaling.kind, MassScalingSettings::Kind::selective);
   EXPECT_EQ(b.mass_scaling.time_step, 2e-5);
   EXPECT_EQ(a.mass_scaling.materials, b.mass_scaling.materials);

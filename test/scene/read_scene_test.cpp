@@ -258,6 +258,7 @@ TEST(EveryKey, output_time_and_accuracy)
 
   EXPECT_EQ(scene.time.damping, 20);
   EXPECT_EQ(scene.time.scaling, 2);
+  EXPECT_EQ(scene.time.activation_slew, 5);
   EXPECT_EQ(scene.time.frame_rate, 60);
 
   ASSERT_EQ(scene.profiles.size(), 3U);

@@ -159,6 +159,33 @@ TEST_P(Accuracy, muscles_answer_with_their_rise_and_fall_times)
   EXPECT_NEAR(s->activation()[0] / reached, std::exp(-1.0), 2e-3);
 }
 
+TEST_P(Accuracy, activation_changes_no_faster_than_its_slew_limit)
+{
+  test::BlockSettings settings;
+  settings.voxels = { { 2, 2, 2 } };
+  Model model = test::block_model(settings);
+  Muscle muscle;
+  muscle.name = "quick";
+  muscle.stress_reference = 1e3;
+  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  const auto free = solver(model);
+  free->advance(1e-9, { { 1 }, {} });
+  EXPECT_EQ(free->activation()[0], 1);
+  model.activation_slew = 10;
+  const auto s = solver(model);
+  s->advance(1e-9, { { 1 }, {} });
+  s->advance(0.03, { { 1 }, {} });
+  EXPECT_NEAR(s->activation()[0], 0.3, 1e-5);
+  EXPECT_EQ(s->controls().activation[0], 1);
+  s->advance(0.1, { { 1 }, {} });
+  EXPECT_EQ(s->activation()[0], 1);
+  s->advance(1e-9, { { 0.2f }, {} });
+  s->advance(0.05, { { 0.2f }, {} });
+  EXPECT_NEAR(s->activation()[0], 0.5, 1e-5);
+  s->advance(0.05, { { 0.2f }, {} });
+  EXPECT_EQ(s->activation()[0], 0.2f);
+}
+
 FRONTALIS_EVERY_BACKEND(Accuracy);
 
 // creep of 0.2 um/s in steps of two microseconds: float loses it, carried rounding errors and double keep it

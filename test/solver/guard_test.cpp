@@ -19,7 +19,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 class Guarded : public test::EveryBackend
 {
 protected:
-  static GuardSettings close() { return { 64, 0.5, 128 }; }
+  static GuardSettings close() { return { 64, 0.5, 2 }; }
   static Controls full(const Solver& solver, float activation)
   {
     Controls controls = solver.controls();
@@ -173,8 +173,8 @@ TEST_P(Guarded, bad_input_changes_nothing)
   EXPECT_THROW(guard.advance(1e-2, {}), Error);
   EXPECT_THROW(guard.advance(std::nan(""), solver->controls()), Error);
   EXPECT_EQ(displacements(*solver), before);
-  for (const GuardSettings& bad : { GuardSettings{ 0 }, GuardSettings{ 64, 1.0 }, GuardSettings{ 64, 0.5, 32 },
-                                    GuardSettings{ 64, 0.5, 64, -1 }, GuardSettings{ 64, 0.5, 64, 3, 1.5 } })
+  for (const GuardSettings& bad : { GuardSettings{ -1 }, GuardSettings{ 64, 1.0 }, GuardSettings{ 64, 0.5, 0 },
+                                    GuardSettings{ 64, 0.5, 4, -1 }, GuardSettings{ 64, 0.5, 4, 3, 1.5 } })
     EXPECT_THROW(Guard(*solver, model, bad), Error);
 }
 

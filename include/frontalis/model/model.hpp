@@ -74,6 +74,8 @@ struct Model
   double damping = 0;  ///< mass-proportional damping coefficient [1/s]
   double time_scaling = 1;
   double frame_rate = 30;  ///< [1/s] of wall time
+  /// Most that a muscle's activation changes a second of simulated time [1/s]; 0: as fast as it is asked to.
+  double activation_slew = 0;
   double time_step_share = 0.9;
   MassScalingSettings mass_scaling;
   HourglassControl hourglass = HourglassControl::scalar;

@@ -30,7 +30,7 @@ FRONTALIS_LAW IsotropicStress<T> stress(const NeoHookean<T>& material, const Kin
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
-  return { material.mu * g.value, N::of(0.5) * material.mu * g.slope * k.I1 + material.kappa * (k.J - N::of(1)) };
+  return { material.mu * g.value, N::of(0.5) * material.mu * g.slope * k.I1 + material.kappa * k.dilatation };
 }
 
 /// Strain energy a volume at rest [J/m3].
@@ -38,9 +38,8 @@ template <class T>
 FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
   using N = Number<T>;
-  const T dilatation = k.J - N::of(1);
   return N::of(0.5) * material.mu * (isochoric_scale(k.J).value * k.I1 - N::of(3)) +
-         N::of(0.5) * material.kappa * dilatation * dilatation;
+         N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
 }
 
 }  // namespace physics

@@ -54,6 +54,7 @@ struct Kinematics
   Matrix3<T> F;         ///< deformation gradient
   Matrix3<T> cofactor;  ///< dJ/dF
   T J;                  ///< det F
+  T dilatation;         ///< J - 1, without the rounding error of a number near 1
   T I1;                 ///< trace of F^T F
 };
 
@@ -63,15 +64,22 @@ FRONTALIS_LAW Kinematics<T> kinematics(const T* x, const T* y, const T* z, const
 {
   Kinematics<T> k;
   const T* component[3] = { x, y, z };
+  const T one = Number<T>::of(1);
+  T stretch[3];  // of the axes, less 1
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
     {
-      const T gradient = component[i][gradient_mode(j)] * T(scale[j]);
-      k.F.a[i][j] = i == j ? gradient + Number<T>::of(1) : gradient;
+      k.F.a[i][j] = component[i][gradient_mode(j)] * T(scale[j]);
+      if (i == j)
+      {
+        stretch[i] = k.F.a[i][i];
+        k.F.a[i][i] = stretch[i] + one;
+      }
     }
   const auto& F = k.F.a;
   auto& c = k.cofactor.a;
-  c[0][0] = F[1][1] * F[2][2] - F[1][2] * F[2][1];
+  const T first = stretch[1] + stretch[2] + (stretch[1] * stretch[2] - F[1][2] * F[2][1]);
+  c[0][0] = first + one;
   c[0][1] = F[1][2] * F[2][0] - F[1][0] * F[2][2];
   c[0][2] = F[1][0] * F[2][1] - F[1][1] * F[2][0];
   c[1][0] = F[0][2] * F[2][1] - F[0][1] * F[2][2];
@@ -80,7 +88,8 @@ FRONTALIS_LAW Kinematics<T> kinematics(const T* x, const T* y, const T* z, const
   c[2][0] = F[0][1] * F[1][2] - F[0][2] * F[1][1];
   c[2][1] = F[0][2] * F[1][0] - F[0][0] * F[1][2];
   c[2][2] = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-  k.J = F[0][0] * c[0][0] + F[0][1] * c[0][1] + F[0][2] * c[0][2];
+  k.dilatation = first + (stretch[0] * c[0][0] + F[0][1] * c[0][1] + F[0][2] * c[0][2]);
+  k.J = k.dilatation + one;
   k.I1 = F[0][0] * F[0][0] + F[0][1] * F[0][1] + F[0][2] * F[0][2] + F[1][0] * F[1][0] + F[1][1] * F[1][1] +
          F[1][2] * F[1][2] + F[2][0] * F[2][0] + F[2][1] * F[2][1] + F[2][2] * F[2][2];
   return k;

@@ -79,6 +79,8 @@ struct SceneTime
   double damping = 0;      ///< mass-proportional damping coefficient [1/s]
   double scaling = 1;      ///< time scaling: the motion is played this many times faster in simulated time
   double frame_rate = 30;  ///< published skins a wall second [1/s]
+  /// Most that a muscle's activation changes a second of the clock on which activations are given [1/s]; 0: no limit.
+  double activation_slew = 0;
 };
 
 /// One entry of the demonstration: hold an expression for some seconds; the change into it is a linear ramp.

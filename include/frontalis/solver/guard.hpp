@@ -26,9 +26,9 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 512;            ///< steps between two checks
+  int interval = 0;              ///< steps between two checks; 0: Solver::steps_a_check
   double slower = 0.5;           ///< share of the time step after a finding; each further try takes it once more
-  int recovery = 2048;           ///< steps for which it is taken
+  int recovery = 4;              ///< checks that find nothing before the whole time step is taken again
   int tries = 3;                 ///< in a row, before the motion is stopped
   double inverted_share = 0.05;  ///< of voxels that may be inside out (J <= 0), if not more were so before
   bool ledger = false;           ///< judge energy by the ledger's imbalance: needs SolverSettings::ledger

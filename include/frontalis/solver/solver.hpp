@@ -91,6 +91,8 @@ public:
   virtual void save(std::unique_ptr<Snapshot>& to) = 0;
   /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on another's.
   virtual void restore(const Snapshot& snapshot) = 0;
+  /// Steps that take about a hundred times as long as monitor() and save().
+  virtual int steps_a_check() const = 0;
   /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
   virtual void slow_down(double share) = 0;
 
