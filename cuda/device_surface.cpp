@@ -134,7 +134,8 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
     parts.insert(parts.end(), here.begin(), here.end());
     begin.push_back(static_cast<std::int32_t>(parts.size()));
   }
-  begin_ = DeviceArray<std::int32_t>(begin);
+  if (!nodes_.empty())
+    begin_ = DeviceArray<std::int32_t>(begin);
   parts_ = DeviceArray<LoadPart>(parts);
   vertex_force_ = DeviceArray<double>(force);
   traction_ = std::move(force);

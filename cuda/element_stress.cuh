@@ -52,22 +52,26 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace 
   {
     const float4 fibre = place.fibre;
     const std::uint32_t word = place.muscle_word;
-    const float a[3] = { fibre.x, fibre.y, fibre.z };
-    float along[3];
-#pragma unroll
-    for (int i = 0; i < 3; ++i)
-      along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
-    const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
-    const float S =
-        physics::fibre_stress<float>(squared, k.J, fibre.w, activation[word & 0x3fffffffu],
-                                     (word & 0x40000000u) ? 1.0f : 0.0f, (word & 0x80000000u) ? 1.0f : 0.0f);
-#pragma unroll
-    for (int i = 0; i < 3; ++i)
+    const float active = activation[word & 0x3fffffffu];
+    // a muscle at rest without passive stress is not computed
+    if (active != 0.0f || (word & 0x80000000u) != 0)
     {
-      const float traction = S * along[i];
+      const float a[3] = { fibre.x, fibre.y, fibre.z };
+      float along[3];
 #pragma unroll
-      for (int j = 0; j < 3; ++j)
-        P.a[i][j] += traction * a[j];
+      for (int i = 0; i < 3; ++i)
+        along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
+      const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
+      const float S = physics::fibre_stress<float>(squared, k.J, fibre.w, active, (word & 0x40000000u) ? 1.0f : 0.0f,
+                                                   (word & 0x80000000u) ? 1.0f : 0.0f);
+#pragma unroll
+      for (int i = 0; i < 3; ++i)
+      {
+        const float traction = S * along[i];
+#pragma unroll
+        for (int j = 0; j < 3; ++j)
+          P.a[i][j] += traction * a[j];
+      }
     }
     if (left > 1)
       fetch_fibre(g, place.fibre_word + 16, place);

@@ -267,10 +267,14 @@ int resident_blocks(const StepLaunch& launch)
 {
   int device = 0, processors = 0, blocks = 0;
   const void* const kernel = cuda::kernel(launch.effects);
+  const auto bytes = static_cast<int>(launch.shared_bytes);
+  cudaFuncAttributes known{};
+  // the limit is the kernel's: another solver may need more
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
-      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                           static_cast<int>(launch.shared_bytes)) != cudaSuccess ||
+      cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||
+      (known.maxDynamicSharedSizeBytes < bytes &&
+       cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes) != cudaSuccess) ||
       cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, launch.threads, launch.shared_bytes) !=
           cudaSuccess)
     return 0;

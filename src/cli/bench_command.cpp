@@ -3,6 +3,9 @@
 
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/dense_block.hpp"
+#include "frontalis/study/effect_presence.hpp"
+#include "frontalis/study/plot.hpp"
+#include "frontalis/study/table.hpp"
 #include "frontalis/study/yardstick.hpp"
 
 #include <CLI/CLI.hpp>
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -30,6 +34,8 @@ struct BenchOptions
   std::string backend = "cpu";
   int threads = 0;
   bool quick = false;
+  bool effects = false;
+  std::string plot;
 };
 
 // resident memory of this process without what was freed [bytes]; 0 where the system does not tell
@@ -146,8 +152,56 @@ void bench_model(const std::string& name, const std::shared_ptr<const Model>& mo
   std::fflush(stdout);
 }
 
+// a plot of each effect's cost over the share of voxels that have it
+void draw(const std::vector<PresenceCost>& costs, const std::string& backend, const std::string& path)
+{
+  Plot plot;
+  plot.title = "An effect costs where it is: " + backend;
+  plot.x_label = "voxels (sliding: nodes of a face) that have it [%]";
+  plot.y_label = "more than a step without it [%]";
+  plot.key = "top left";
+  for (const PresenceCost& cost : costs)
+  {
+    if (cost.share == 0)
+      plot.curves.push_back({ name_of(cost.effect), {}, {}, Plot::Style::line_and_points });
+    plot.curves.back().x.push_back(100 * cost.share);
+    plot.curves.back().y.push_back(100 * cost.step / cost.base);
+  }
+  write_plot(plot, path);
+}
+
+void bench_effects(const BenchOptions& options)
+{
+  const SolverSettings settings{ backend_from_name(options.backend), options.threads, 0 };
+  const double seconds = options.quick ? 1.0 : 4.0;
+  const auto costs = measure_presence(settings, seconds);
+  Table table(
+      { "effect", "share [%]", "more a step [us]", "spread [us]", "of the step without [%]", "of its whole [%]" });
+  for (std::size_t c = 0; c < costs.size(); ++c)
+  {
+    const PresenceCost& cost = costs[c];
+    // four shares an effect, the last the whole
+    const double whole = costs[c - c % 4 + 3].step;
+    const auto tenths = [](double x) { return std::round(10 * x) / 10; };
+    table.add({ name_of(cost.effect), 100 * cost.share, std::round(1e8 * cost.step) / 100,
+                std::round(1e8 * cost.spread) / 100, tenths(100 * cost.step / cost.base),
+                tenths(100 * cost.step / whole) });
+  }
+  std::printf("%s", table.text().c_str());
+  if (!options.plot.empty())
+    draw(costs, options.backend, options.plot);
+  if (options.source.path.empty())
+    return;
+  const ActivationCost cost =
+      measure_activation(std::make_shared<const Model>(obtain_model(options.source)), settings, seconds);
+  std::printf("one muscle active: %.2f us a step; all: %.2f us; spread of the difference %.2f us\n", 1e6 * cost.one,
+              1e6 * cost.all, 1e6 * cost.spread);
+}
+
 void bench(const BenchOptions& options)
 {
+  if (options.effects)
+    return bench_effects(options);
   const int threads =
       options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const double bandwidth = copy_bandwidth(threads);
@@ -176,6 +230,10 @@ void add_bench_command(CLI::App& app, Action& action)
       ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
   command->add_option("--threads", options->threads, "CPU threads; 0: one a core")->check(CLI::Range(0, 1024));
   command->add_flag("--quick", options->quick, "the block of 64^3 voxels alone, a few seconds");
+  command->add_flag(
+      "--effects", options->effects,
+      "what effects cost where a share of the voxels has them; of SCENE_OR_MODEL, one muscle against all");
+  command->add_option("--plot", options->plot, "of --effects: FILE.png and FILE.svg, given without extension");
   command->callback([options, &action] { action = [options] { bench(*options); }; });
 }
 

@@ -206,7 +206,7 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   Controls controls = solver->controls();
   controls.activation = history.activation;
   const double used = processor_seconds(), begin = now();
-  const auto turns = time_in_turn({ solver.get() }, controls, seconds);
+  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds);
   cost.processors =
       setting.backend == Backend::cpu ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;

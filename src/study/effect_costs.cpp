@@ -73,7 +73,8 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   EffectCosts costs;
   costs.backend = whole->description();
   std::vector<double> steps, plain_steps;
-  for (const auto& turn : time_in_turn({ whole.get(), plain.get() }, controls, seconds))
+  for (const auto& turn :
+       time_in_turn({ { whole.get(), controls }, { plain.get(), controls } }, seconds, is_alone(settings)))
   {
     steps.push_back(turn[0]);
     plain_steps.push_back(turn[1]);
@@ -92,7 +93,7 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
       EffectSet others = present.with(Effect::elasticity, false);
       const auto alone = solver_of(without(*model, others), settings);
       std::vector<double> alone_steps;
-      for (const auto& turn : time_in_turn({ alone.get() }, controls, seconds))
+      for (const auto& turn : time_in_turn({ { alone.get(), controls } }, seconds, is_alone(settings)))
         alone_steps.push_back(turn[0]);
       const Spread spread = spread_of(alone_steps);
       cost.step = spread.median;
@@ -100,12 +101,20 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
     }
     else if (cost.presence.present && effect != Effect::output_fields)
     {
-      const auto less = solver_of(without(*model, EffectSet().with(effect)), settings);
+      // tissue that nothing holds must not be moved: it is compared at rest, and what would move it is left out
+      const bool rigid = effect == Effect::rigid_nodes;
+      const EffectSet moving = rigid ? EffectSet()
+                                           .with(Effect::gravity)
+                                           .with(Effect::surface_loads)
+                                           .with(Effect::prescribed_displacement)
+                                           .with(Effect::sliding)
+                                     : EffectSet();
+      const auto beside = rigid ? solver_of(without(*model, moving), settings) : nullptr;
+      Solver* const more = rigid ? beside.get() : whole.get();
+      const auto less = solver_of(without(*model, moving.with(effect)), settings);
       std::vector<double> differences;
-      // tissue that nothing holds flies about and meets its surfaces: it is compared at rest
-      const Controls& at = effect == Effect::rigid_nodes ? rest : controls;
-      whole->reset();
-      for (const auto& turn : time_in_turn({ whole.get(), less.get() }, at, seconds))
+      const Controls& at = rigid ? rest : controls;
+      for (const auto& turn : time_in_turn({ { more, at }, { less.get(), at } }, seconds, is_alone(settings)))
         differences.push_back(turn[0] - turn[1]);
       const Spread spread = spread_of(differences);
       cost.step = spread.median;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace frontalis
 {
@@ -10,18 +11,27 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
+double processor_seconds()
+{
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // seconds a step, over about so many steps; a GPU solver queues some, so that its skin is waited for
-double time_steps(Solver& solver, const Controls& controls, double steps)
+double time_steps(Solver& solver, const Controls& controls, double steps, bool processor_time)
 {
   SkinState skin;
   solver.skin(skin);
   const auto before = solver.profile().steps;
   const auto start = Clock::now();
+  const double processor = processor_seconds();
   solver.advance(steps * solver.time_step(), controls);
   solver.skin(skin);
-  return since(start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
+  const double spent = processor_time ? processor_seconds() - processor : since(start);
+  return spent / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
 // controls are reached over a tenth of a second, and what they set in motion has as long to calm down, unless that
@@ -41,15 +51,15 @@ void bring_to(Solver& solver, const Controls& controls, double seconds)
 
 }  // namespace
 
-std::vector<std::vector<double>> time_in_turn(const std::vector<Solver*>& solvers, const Controls& controls,
-                                              double seconds)
+std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& solvers, double seconds,
+                                              bool processor_time)
 {
   constexpr double burst = 0.02;  // [s] of each solver in a turn
   std::vector<double> steps;
-  for (Solver* const solver : solvers)
+  for (const TimedSolver& timed : solvers)
   {
-    bring_to(*solver, controls, seconds);
-    steps.push_back(std::max(32.0, burst / time_steps(*solver, controls, 64)));
+    bring_to(*timed.solver, timed.controls, seconds);
+    steps.push_back(std::max(32.0, burst / time_steps(*timed.solver, timed.controls, 64, processor_time)));
   }
   std::vector<std::vector<double>> turns;
   const auto start = Clock::now();
@@ -57,9 +67,14 @@ std::vector<std::vector<double>> time_in_turn(const std::vector<Solver*>& solver
   {
     turns.emplace_back();
     for (std::size_t s = 0; s < solvers.size(); ++s)
-      turns.back().push_back(time_steps(*solvers[s], controls, steps[s]));
+      turns.back().push_back(time_steps(*solvers[s].solver, solvers[s].controls, steps[s], processor_time));
   }
   return turns;
+}
+
+bool is_alone(const SolverSettings& settings)
+{
+  return settings.backend == Backend::reference || (settings.backend == Backend::cpu && settings.threads == 1);
 }
 
 Spread spread_of(std::vector<double> values)

@@ -1,5 +1,7 @@
 #include "frontalis/study/effect_costs.hpp"
 
+#include "frontalis/study/effect_presence.hpp"
+
 #include "solver/effect_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -38,4 +40,12 @@ TEST(EffectCosts, APlainModelHasElasticityAlone)
   EXPECT_EQ(names_of(effects_of(plain)), "elasticity");
   for (const Material& material : plain.materials)
     EXPECT_EQ(material.law, Law::neo_hookean);
+}
+
+TEST(EffectCosts, OneMuscleIsTimedAgainstAll)
+{
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  const ActivationCost cost = measure_activation(model, { Backend::cpu, 1, 0 }, 0.01);
+  EXPECT_GT(cost.one, 0);
+  EXPECT_GT(cost.all, 0);
 }

@@ -7,11 +7,22 @@
 namespace frontalis
 {
 
+struct TimedSolver
+{
+  Solver* solver;
+  Controls controls;
+};
+
 /// Seconds that one step of each solver takes, measured in turn (first, second, ..., first, second, ...) for about so
 /// many wall seconds in all, so that what disturbs the machine disturbs them alike. Controls are reached before that,
-/// over a tenth of a simulated second or as many wall seconds. One row a turn, at least five.
-std::vector<std::vector<double>> time_in_turn(const std::vector<Solver*>& solvers, const Controls& controls,
-                                              double seconds);
+/// over a tenth of a simulated second or as many wall seconds. One row a turn, at least five. `processor_time`: what
+/// the process had of a processor, and not the wall's clock; right for one thread alone (see is_alone).
+std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& solvers, double seconds,
+                                              bool processor_time = false);
+
+/// Whether a solver of these settings works in the calling thread alone, so that time that others take from it can be
+/// told.
+bool is_alone(const SolverSettings& settings);
 
 /// Median, and half of what lies between the quartiles.
 struct Spread

@@ -1,0 +1,111 @@
+#include "frontalis/study/effect_presence.hpp"
+
+#include "frontalis/study/dense_block.hpp"
+#include "frontalis/study/step_time.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr std::int32_t length = 64, depth = 40;
+
+void give(Model& model, Effect effect, double share)
+{
+  const auto rows = static_cast<std::int32_t>(share * depth + 0.5);
+  const auto has = [&](std::size_t e) { return model.voxels[e][1] < rows; };
+  if (effect == Effect::viscosity)
+  {
+    model.materials.push_back(model.materials[0]);
+    model.materials.back().viscous_share = { { 0.3, 0.2 } };
+    model.materials.back().viscous_time = { { 0.1, 1 } };
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+      model.mixture_material[e] = has(e) ? 1 : 0;
+  }
+  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  {
+    Muscle muscle;
+    muscle.name = "pull";
+    muscle.stress_reference = 1e3;
+    muscle.passive = effect == Effect::fibre_stiffness;
+    model.muscles.push_back(muscle);
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    {
+      if (has(e))
+      {
+        model.fibre_muscle.push_back(0);
+        model.fibre_weight.push_back(1);
+        model.fibre_direction.push_back({ { 1, 0, 0 } });
+      }
+      model.fibre_begin[e + 1] = static_cast<std::int32_t>(model.fibre_muscle.size());
+    }
+  }
+  if (effect == Effect::sliding)
+  {
+    ConstraintSurface floor;
+    floor.name = "floor";
+    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
+    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
+    model.constraint_surfaces.push_back(floor);
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < rows)
+        model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
+  }
+}
+
+}  // namespace
+
+std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
+{
+  const std::vector<double> shares{ 0, 0.1, 0.5, 1 };
+  std::vector<PresenceCost> costs;
+  for (const Effect effect : { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding })
+  {
+    std::vector<std::unique_ptr<Solver>> solvers;
+    std::vector<TimedSolver> timed;
+    for (const double share : shares)
+    {
+      Model model = dense_block(length, depth, depth);
+      model.gravity = {};
+      give(model, effect, share);
+      solvers.push_back(make_solver(std::make_shared<const Model>(std::move(model)), settings));
+      Controls controls = solvers.back()->controls();
+      std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
+      timed.push_back({ solvers.back().get(), controls });
+    }
+    const auto turns = time_in_turn(timed, seconds, is_alone(settings));
+    for (std::size_t s = 0; s < shares.size(); ++s)
+    {
+      std::vector<double> base, more;
+      for (const auto& turn : turns)
+      {
+        base.push_back(turn[0]);
+        more.push_back(turn[s] - turn[0]);
+      }
+      const Spread spread = spread_of(more);
+      costs.push_back({ effect, shares[s], spread.median, spread.half, spread_of(base).median });
+    }
+  }
+  return costs;
+}
+
+ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
+                                  double seconds)
+{
+  const auto one = make_solver(model, settings), all = make_solver(model, settings);
+  Controls of_one = one->controls(), of_all = all->controls();
+  of_one.activation.at(0) = 0.75f;
+  std::fill(of_all.activation.begin(), of_all.activation.end(), 0.75f);
+  std::vector<double> ones, alls, differences;
+  for (const auto& turn : time_in_turn({ { one.get(), of_one }, { all.get(), of_all } }, seconds, is_alone(settings)))
+  {
+    ones.push_back(turn[0]);
+    alls.push_back(turn[1]);
+    differences.push_back(turn[1] - turn[0]);
+  }
+  return { spread_of(ones).median, spread_of(alls).median, spread_of(differences).half };
+}
+
+}  // namespace frontalis
