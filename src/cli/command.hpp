@@ -37,6 +37,7 @@ void add_bake_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_effects_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);
+void add_stability_command(CLI::App& app, Action& action);
 void add_verify_command(CLI::App& app, Action& action);
 
 }  // namespace frontalis

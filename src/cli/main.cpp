@@ -31,6 +31,7 @@ int main(int argc, char** argv)
   frontalis::add_effects_command(app, action);
   frontalis::add_verify_command(app, action);
   frontalis::add_accuracy_command(app, action);
+  frontalis::add_stability_command(app, action);
 
   try
   {

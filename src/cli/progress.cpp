@@ -17,7 +17,10 @@ constexpr std::size_t name_width = 16;
 
 }  // namespace
 
-Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(OffTerminal off_terminal)
+    : terminal_(isatty(STDERR_FILENO) != 0), lines_(off_terminal == OffTerminal::lines)
+{
+}
 
 void Progress::update(const std::string& stage, double done)
 {
@@ -32,7 +35,7 @@ void Progress::update(const std::string& stage, double done)
       const std::string name = stage + std::string(name_width - std::min(name_width, stage.size()), ' ');
       bar_.emplace(steps, std::cerr, space, name, space);
     }
-    else
+    else if (lines_)
       std::printf("%s ...\n", stage.c_str());
     std::fflush(stdout);
   }

@@ -12,7 +12,13 @@ namespace frontalis
 class Progress
 {
 public:
-  Progress();
+  /// Where stderr is no terminal: a line a stage, or nothing.
+  enum class OffTerminal
+  {
+    lines,
+    silent
+  };
+  explicit Progress(OffTerminal off_terminal = OffTerminal::lines);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -23,7 +29,7 @@ public:
   void clear();
 
 private:
-  bool terminal_;
+  bool terminal_, lines_;
   std::string stage_;
   std::optional<boost::timer::progress_display> bar_;
 };

@@ -12,8 +12,11 @@ namespace
 using Vectors = SteppingSolver::Vectors;
 
 constexpr double margin = 1.05;          // of the frequency squared
-constexpr std::int64_t good_for = 2000;  // steps
-constexpr double growth_allowed = 1.02;  // of the element bound since the estimate
+constexpr double wide_margin = 1.25;     // soon after activations changed
+constexpr std::int64_t good_for = 2000;  // steps; fewer after activations changed
+constexpr std::int64_t shortest_good_for = 200;
+constexpr float activation_allowed = 0.1F;  // of a muscle since the estimate
+constexpr double growth_allowed = 1.02;     // of the element bound since the estimate
 
 double length(const Vectors& x)
 {
@@ -26,13 +29,32 @@ double length(const Vectors& x)
 }  // namespace
 
 // without the constraints, which only lower it
-void SteppingSolver::renew_assembled_bound()
+void SteppingSolver::renew_assembled_bound(const std::vector<float>& target)
 {
-  if (assembled_at_frequency_ > 0 && profile_.steps - assembled_at_step_ < good_for &&
-      frequency_squared_ <= growth_allowed * assembled_at_frequency_)
+  // fibres stiffen as they are activated, and what they move stiffens after that: until it has moved, the stiffest
+  // voxel by itself counts
+  bool changed = false;
+  assembled_at_activation_.resize(target.size());
+  for (std::size_t m = 0; m < target.size(); ++m)
+    changed =
+        changed || std::abs(std::max(activation_[m], target[m]) - assembled_at_activation_[m]) > activation_allowed;
+  if (changed)
+  {
+    for (std::size_t m = 0; m < target.size(); ++m)
+      assembled_at_activation_[m] = std::max(activation_[m], target[m]);
+    assembled_share_ = 1;
+    assembled_good_for_ = shortest_good_for;
+    assembled_at_step_ = profile_.steps;
+    return;
+  }
+  const bool waiting = assembled_good_for_ == shortest_good_for && assembled_share_ == 1;
+  if (profile_.steps - assembled_at_step_ < assembled_good_for_ &&
+      (waiting || (assembled_at_frequency_ > 0 && frequency_squared_ <= growth_allowed * assembled_at_frequency_)))
     return;
   const double squared = assembled_frequency_squared(assembled_at_frequency_ > 0 ? 16 : 300);
-  assembled_share_ = std::isfinite(squared) ? std::min(1.0, margin * squared / frequency_squared_) : 1.0;
+  const double allowance = assembled_good_for_ < good_for ? wide_margin : margin;
+  assembled_share_ = std::isfinite(squared) ? std::min(1.0, allowance * squared / frequency_squared_) : 1.0;
+  assembled_good_for_ = assembled_good_for_ > 0 ? std::min(2 * assembled_good_for_, good_for) : good_for;
   assembled_at_step_ = profile_.steps;
   assembled_at_frequency_ = frequency_squared_;
 }

@@ -150,7 +150,11 @@ template <class Real>
 void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3])
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
-  Sliding& s = nodes.contacts_.sliding[nodes.block_sliding_[block][lane]];
+  const auto index = nodes.block_sliding_[block][lane];
+  // a node that does not slide comes here where its displacement is not a number
+  if (index < 0)
+    return;
+  Sliding& s = nodes.contacts_.sliding[index];
   Block& b = nodes.contacts_.blocks[block];
   const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
   const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },

@@ -7,14 +7,20 @@
 #include "frontalis/solver/rigid_motion.hpp"
 #include "voxel_monitor.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace frontalis
 {
 namespace
 {
+
+constexpr double stiffening_allowed = 1.1;  // of the frequency squared from look to look
+constexpr int wary_looks = 16;
+constexpr double bone_way_a_step = 0.1;  // of the shortest edge of a voxel
 
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
@@ -106,6 +112,7 @@ void SteppingSolver::displacements_were_set()
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
   looked_at_ = frequency_squared_;
+  wary_ = wary_looks;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   velocities_were_set();
@@ -118,6 +125,7 @@ void SteppingSolver::reset()
   failed_ = false;
   frequency_squared_ = discretisation_.frequency_squared_max;
   looked_at_ = 0;
+  wary_ = 0;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   controls_ = rest_controls(*model_);
@@ -179,6 +187,31 @@ void SteppingSolver::expect_frequency(double squared)
   frequency_squared_ = std::max(squared * growth, rest);
 }
 
+// longest step in which no bone moves by more than a share of a voxel: what hangs on one that is faster would be turned
+// inside out before the time step follows it
+double SteppingSolver::steady_step(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to,
+                                   double seconds) const
+{
+  const auto& h = model_->spacing;
+  double farthest = 0;
+  for (std::size_t b = 0; b < from.size(); ++b)
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      double way = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+      {
+        double change = to[b].translation[i] - from[b].translation[i];
+        for (std::size_t j = 0; j < 3; ++j)
+          if ((corner & (1 << j)) != 0)
+            change += (to[b].rotation[3 * i + j] - from[b].rotation[3 * i + j]) * model_->size[j] * h[j];
+        way += change * change;
+      }
+      farthest = std::max(farthest, std::sqrt(way));
+    }
+  return farthest > 0 ? bone_way_a_step * std::min({ h[0], h[1], h[2] }) * seconds / farthest
+                      : std::numeric_limits<double>::infinity();
+}
+
 void SteppingSolver::advance(double seconds, const Controls& target)
 {
   check(seconds, target);
@@ -186,17 +219,21 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   const double end = time_ + seconds;
   const Controls from = controls_;
   const double begin = time_;
+  const double steady = steady_step(from.bone, target.bone, seconds);
   while (time_ < end)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
-      renew_assembled_bound();
+      renew_assembled_bound(target.activation);
     const double remaining = end - time_;
-    const double steps_left = std::ceil(remaining / safe_time_step() * (1 - 1e-9));
+    // where voxels stiffen much from look to look, looks follow closely
+    const double longest = std::min(safe_time_step(), steady);
+    const double steps_left = std::ceil(remaining / longest * (1 - 1e-9));
+    const int most_steps = wary_ > 0 || longest < safe_time_step() ? 8 : steps_a_plan();
     StepPlan plan;
-    plan.steps = static_cast<int>(std::min<double>(steps_left, steps_a_plan()));
+    plan.steps = static_cast<int>(std::min<double>(steps_left, most_steps));
     plan.dt = remaining / steps_left;
     plan.time = time_;
-    const bool last = steps_left <= steps_a_plan();
+    const bool last = steps_left <= most_steps;
     const double reached = last ? end : time_ + plan.steps * plan.dt;
     const Controls next = last ? target : interpolate(from, target, (reached - begin) / seconds);
     plan.begin = { activation_, controls_.bone };
@@ -212,6 +249,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       failed_ = true;
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
+    wary_ = squared > stiffening_allowed * frequency_squared_ ? wary_looks : std::max(0, wary_ - 1);
     if (!mutation::time_step_of_rest)
       expect_frequency(squared);
   }

@@ -31,9 +31,12 @@ struct Course
   double latest_step_ = 0;        // [s]
   double frequency_squared_ = 0;  // of the stiffest voxel, as the next plan may find it
   double looked_at_ = 0;          // the same as it was found last
+  int wary_ = 0;                  // looks that follow closely, since it grew much from one to the next
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
   double assembled_at_frequency_ = 0;
+  std::vector<float> assembled_at_activation_;
+  std::int64_t assembled_good_for_ = 0;  // steps
   std::vector<std::array<double, 3>> assembled_mode_;
   bool failed_ = false;
   Controls controls_;
@@ -133,8 +136,10 @@ private:
   double safe_time_step() const;
   double critical_frequency_squared() const;
   void set_gravity();
+  double steady_step(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to,
+                     double seconds) const;
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
-  void renew_assembled_bound();
+  void renew_assembled_bound(const std::vector<float>& target);
   void expect_frequency(double squared);
   double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
   double distance(const Vectors& a, const Vectors& b) const;

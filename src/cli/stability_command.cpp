@@ -1,0 +1,110 @@
+#include "command.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "stability_scenes.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/stability.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace frontalis
+{
+namespace
+{
+
+struct StabilityOptions
+{
+  std::vector<std::string> only;
+  std::string backend = "cpu";
+  std::string json, markdown;
+  StabilityScenes scenes;
+  bool all = false;
+};
+
+std::vector<StabilityCase> chosen_cases(const StabilityOptions& options)
+{
+  auto cases = stability_cases();
+  std::string names;
+  for (const auto& c : cases)
+    names += " " + c.name;
+  for (const auto& name : options.only)
+    if (std::none_of(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; }))
+      throw WrongUsage("--only: there is no case '" + name + "'; there are" + names);
+  const auto left_out = [&](const StabilityCase& c)
+  {
+    const bool named = std::find(options.only.begin(), options.only.end(), c.name) != options.only.end();
+    return options.only.empty() ? !options.all && !c.quick : !named;
+  };
+  cases.erase(std::remove_if(cases.begin(), cases.end(), left_out), cases.end());
+  return cases;
+}
+
+void run_stability(const StabilityOptions& options)
+{
+  const auto cases = chosen_cases(options);
+  Progress progress(Progress::OffTerminal::silent);
+  std::string name;
+  StabilitySettings settings;
+  settings.backend = backend_from_name(options.backend);
+  settings.long_runs = options.all;
+  settings.scene = [&](const std::string& scene) { return stability_scene(options.scenes, scene); };
+  settings.watch = [&](double done)
+  {
+    progress.update(name, done);
+    if (interrupt_requested())
+      throw Interrupted();
+  };
+  Trials trials;
+  int failed = 0, skipped = 0;
+  double seconds = 0;
+  std::printf("%s\n", trial_heading().c_str());
+  std::fflush(stdout);
+  for (const auto& c : cases)
+  {
+    name = c.name;
+    const Trial trial = run_case(c, settings);
+    progress.clear();
+    std::printf("%s\n", trial_line(c, trial).c_str());
+    std::fflush(stdout);
+    failed += trial.passed() ? 0 : 1;
+    skipped += trial.skipped.empty() ? 0 : 1;
+    seconds += trial.seconds;
+    trials.emplace_back(c, trial);
+  }
+  if (!options.json.empty())
+    write_text(options.json, trials_json(trials));
+  if (!options.markdown.empty())
+    write_stability(trials, options.markdown);
+  const int ran = static_cast<int>(cases.size()) - skipped;
+  if (failed > 0)
+    throw Error(std::to_string(failed) + " of " + std::to_string(ran) + " cases failed");
+  std::printf("all %d cases passed in %.0f s%s\n", ran, seconds,
+              skipped > 0 ? (", " + std::to_string(skipped) + " skipped").c_str() : "");
+}
+
+}  // namespace
+
+void add_stability_command(CLI::App& app, Action& action)
+{
+  auto options = std::make_shared<StabilityOptions>();
+  CLI::App* command = app.add_subcommand("stability", "run what explicit codes fail at, and say whether it held");
+  command->add_option("--only", options->only, "cases to run, by name");
+  command->add_flag("--all", options->all, "long cases too, and all in full length");
+  command->add_option("--backend", options->backend, "reference, cpu or cuda (cpu)")
+      ->check(CLI::IsMember({ "reference", "cpu", "cuda" }));
+  command->add_option("--mesh-dir", options->scenes.mesh_directory, "folder of the real head's meshes, for its case");
+  command->add_option(
+      "--scenes", options->scenes.folder,
+      "folder of the cases' scenes, or of models baked from them (where the program finds them itself)");
+  command->add_option("--json", options->json, "write the figures to this file");
+  command->add_option("--markdown", options->markdown,
+                      "write stability.md to this folder, its plots to a folder stability in it");
+  command->callback([options, &action] { action = [options] { run_stability(*options); }; });
+}
+
+}  // namespace frontalis

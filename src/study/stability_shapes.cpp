@@ -1,0 +1,272 @@
+// what shapes make hard: crushed, twisted, scrambled, turning, dangling, slender voxels
+
+#include "frontalis/study/equilibrium.hpp"
+#include "stability_cases.hpp"
+#include "stability_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace frontalis
+{
+namespace
+{
+
+const double pi = std::acos(-1.0);
+
+using Point = std::array<double, 3>;
+
+// stored energy left over what there was
+void expect_rest(Trial& trial, WatchedMotion& motion, const std::string& of, double stored_before)
+{
+  const Monitor& m = motion.monitor();
+  trial.checks.push_back(
+      absolute_check("stored energy left, " + of, "1", 0, (m.internal + m.hourglass) / stored_before, 1e-4));
+  trial.checks.push_back(absolute_check("smallest J in the end, " + of, "1", 1, m.worst_jacobian, 0.02));
+}
+
+void crushed(const StabilitySettings& settings, Trial& trial)
+{
+  Model model = soft_block({ { 6, 6, 6 } });
+  model.damping = 50;
+  hold_face(model, 2, false);
+  hold_face(model, 2, true, "press");
+  WatchedMotion motion(settings, trial, model);
+  const RigidTransform down{ RigidTransform().rotation, { { 0, 0, -0.9 * 6e-3 } } };
+  motion.advance(20e-3, motion.controls(0, down), 20);
+  motion.advance(10e-3, motion.controls(0, down), 10);
+  const double stored = motion.energies().internal + motion.energies().hourglass;
+  motion.advance(20e-3, motion.controls(), 20);
+  motion.advance(0.2, motion.controls(), 20);
+  motion.expect_balance("pressed and let go", 0.02);
+  motion.plot("crushed", "A block is pressed to a tenth of its height in 20 ms, and back");
+  expect_rest(trial, motion, "pressed", stored);
+}
+
+void twisted(const StabilitySettings& settings, Trial& trial)
+{
+  Model model = soft_block({ { 5, 5, 10 } });
+  model.damping = 50;
+  hold_face(model, 2, false);
+  hold_face(model, 2, true, "grip");
+  WatchedMotion motion(settings, trial, model);
+  const Point axis{ { 2.5e-3, 2.5e-3, 0 } };
+  for (const int quarter : { 1, 2 })
+    motion.advance(10e-3, motion.controls(0, turned_about({ { 0, 0, quarter * pi / 2 } }, axis)), 10);
+  const double stored = motion.energies().internal + motion.energies().hourglass;
+  for (const int quarter : { 1, 0 })
+    motion.advance(10e-3, motion.controls(0, turned_about({ { 0, 0, quarter * pi / 2 } }, axis)), 10);
+  motion.advance(0.2, motion.controls(), 20);
+  motion.expect_balance("turned by 180° and back", 0.02);
+  motion.plot("twisted", "A bar's end is turned by 180° in 20 ms, and back");
+  expect_rest(trial, motion, "twisted", stored);
+}
+
+// no longer held by anything: what was forced on it is let go at once
+void released(const StabilitySettings& settings, Trial& trial)
+{
+  const std::pair<std::string, std::function<Point(const Point&)>> shapes[] = {
+    { "pressed",
+      [](const Point& p) -> Point {
+        return { { p[0], p[1], 0.1 * p[2] } };
+      } },
+    { "twisted",
+      [](const Point& p) -> Point
+      {
+        const double angle = pi * p[2] / 6e-3, x = p[0] - 3e-3, y = p[1] - 3e-3;
+        return { { std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, p[2] } };
+      } }
+  };
+  for (const auto& [name, map] : shapes)
+  {
+    Model model = soft_block({ { 6, 6, 6 } });
+    model.damping = 50;
+    WatchedMotion motion(settings, trial, model);
+    motion.set(displaced(model, map));
+    const double stored = motion.energies().initial;
+    motion.advance(5e-3, motion.controls(), 50);
+    motion.expect_balance(name, 0.2);
+    motion.plot("released_" + name, "A free block is let go, " + name);
+    motion.advance(0.3, motion.controls(), 10);
+    expect_rest(trial, motion, name, stored);
+  }
+}
+
+void scrambled(const StabilitySettings& settings, Trial& trial)
+{
+  struct Form
+  {
+    const char *file, *name;
+    HourglassControl hourglass;
+    Integration integration;
+  };
+  for (const Form& form :
+       { Form{ "scalar", "scalar hourglass control", HourglassControl::scalar, Integration::one_point },
+         Form{ "assumed_strain", "assumed strain", HourglassControl::assumed_strain, Integration::one_point },
+         Form{ "selective_reduced", "eight points", HourglassControl::scalar, Integration::selective_reduced } })
+  {
+    Model model = soft_block({ { 8, 8, 8 } });
+    model.hourglass = form.hourglass;
+    model.integration = form.integration;
+    model.damping = 50;
+    std::mt19937 random(7);
+    // half a voxel in a random direction
+    Vectors u(model.nodes.size());
+    for (auto& p : u)
+    {
+      double length = 0;
+      do
+      {
+        for (double& x : p)
+          x = 2 * (static_cast<double>(random()) / 4294967295.0) - 1;
+        length = std::hypot(p[0], p[1], p[2]);
+      } while (length > 1 || length < 0.1);
+      for (double& x : p)
+        x *= 0.5e-3 / length;
+    }
+    WatchedMotion motion(settings, trial, model);
+    motion.set(u);
+    const double stored = motion.energies().initial;
+    motion.advance(2e-3, motion.controls(), 40);
+    motion.expect_balance(form.name, 0.1);
+    motion.plot(std::string("scrambled_") + form.file,
+                std::string("Every node of a block moved by half a voxel, ") + form.name);
+    motion.advance(0.3, motion.controls(), 10);
+    expect_rest(trial, motion, form.name, stored);
+  }
+}
+
+void rigid_rotation(const StabilitySettings& settings, Trial& trial)
+{
+  const Model model = soft_block({ { 6, 6, 6 } });
+  const double rate = 2 * pi * 20;  // [1/s]: centrifugal stretch of 0.2 %
+  Vectors u(model.nodes.size()), v(model.nodes.size());
+  const std::array<double, 3> axis{ { 1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0) } };
+  for (std::size_t n = 0; n < v.size(); ++n)
+  {
+    auto r = rest_position(model, n);
+    for (double& x : r)
+      x -= 3e-3;
+    for (std::size_t i = 0; i < 3; ++i)
+      v[n][i] = rate * (axis[(i + 1) % 3] * r[(i + 2) % 3] - axis[(i + 2) % 3] * r[(i + 1) % 3]);
+  }
+  WatchedMotion motion(settings, trial, model);
+  motion.set(u, v);
+  const double kinetic = motion.energies().kinetic;
+  motion.advance(10 * 2 * pi / rate, motion.controls(), 50);
+  motion.expect_balance("ten turns", 0.01);
+  motion.plot("rigid_rotation", "A free block turns ten times");
+  trial.checks.push_back(
+      relative_check("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies().kinetic, 0.01));
+  // its diagonals keep their length
+  const auto now = motion.displacements();
+  double worst = 0;
+  for (std::size_t n = 0; n < now.size(); ++n)
+  {
+    const std::size_t opposite = now.size() - 1 - n;
+    const auto a = rest_position(model, n), b = rest_position(model, opposite);
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      before += (a[i] - b[i]) * (a[i] - b[i]);
+      after += std::pow(a[i] + now[n][i] - b[i] - now[opposite][i], 2);
+    }
+    if (before > 0)
+      worst = std::max(worst, std::abs(std::sqrt(after / before) - 1));
+  }
+  trial.checks.push_back(absolute_check("change of a diagonal", "%", 0, 100 * worst, 1));
+}
+
+void dangling(const StabilitySettings& settings, Trial& trial)
+{
+  VoxelBox box;
+  box.size = { { 11, 10, 7 } };
+  box.materials = { soft_tissue() };
+  // a held slab, from which a sheet sticks out, a strip, one voxel by an edge, one by a corner; and one that is free
+  box.fill = [](const std::array<std::int32_t, 3>& v) -> double
+  {
+    const bool top = v[2] == 6;
+    const bool slab = top && v[0] < 3 && v[1] < 9, sheet = top && v[1] < 3, strip = top && v[1] == 7;
+    const bool edge = v[0] == 3 && v[1] == 5 && v[2] == 5, corner = v[0] == 3 && v[1] == 9 && v[2] == 5;
+    const bool alone = v[0] == 8 && v[1] == 5 && v[2] == 0;
+    return slab || sheet || strip || edge || corner || alone ? 1 : 0;
+  };
+  Model model = voxel_model(box);
+  hold(model, [](const auto& p) { return p[2] > 5.5e-3 && p[0] < 2.5e-3; });
+  model.gravity = { { 0, 0, -9.81 } };
+  WatchedMotion motion(settings, trial, model);
+  const double seconds = 0.1;
+  motion.advance(seconds, motion.controls(), 50);
+  motion.expect_balance("hanging and falling", 0.01);
+  motion.plot("dangling", "A sheet, a strip and single voxels hang by faces, an edge and a corner; one falls");
+  const auto alone = nodes_where(model, [](const auto& p) { return p[2] < 1.5e-3; });
+  trial.checks.push_back(relative_check("fall of the free voxel", "mm", -1e3 * 0.5 * 9.81 * seconds * seconds,
+                                        1e3 * mean_displacement(motion.displacements(), alone)[2], 1e-3));
+}
+
+void slender(const StabilitySettings& settings, Trial& trial)
+{
+  for (const bool long_way : { true, false })
+  {
+    VoxelBox box;
+    box.size = long_way ? std::array<std::int32_t, 3>{ { 4, 4, 4 } } : std::array<std::int32_t, 3>{ { 16, 3, 1 } };
+    box.spacing = { { 1e-3, 1e-3, 10e-3 } };
+    box.materials = { soft_tissue() };
+    Model model = voxel_model(box);
+    const std::string name = long_way ? "hung along the long edges" : "hung across them";
+    const std::size_t along = long_way ? 2 : 0;
+    const double length = box.size[along] * box.spacing[along];
+    hold_face(model, static_cast<int>(along), true);
+    model.gravity[along] = -9.81;
+    WatchedMotion motion(settings, trial, model);
+    motion.advance(0.1, motion.controls(), 20);
+    motion.expect_balance(name, 0.01);
+    motion.plot(long_way ? "slender_along" : "slender_across", "Voxels of 1 × 1 × 10 mm, " + name + " at once");
+    motion.settle(motion.controls(), 1e-4, 20);
+    const auto end = nodes_where(model, [&](const auto& p) { return p[along] < 0.1e-3; });
+    trial.checks.push_back(relative_check("lengthening, " + name, "um",
+                                          -1e6 * 1000 * 9.81 * length * length / (2 * 34e3),
+                                          1e6 * mean_displacement(motion.displacements(), end)[along], 0.1));
+  }
+}
+
+}  // namespace
+
+std::vector<StabilityCase> hard_shapes()
+{
+  return {
+    { "crushed", true, "a block pressed to a tenth of its height",
+      "A block is pressed to a tenth of its height in 20 ms and let go as fast. Voxels stiffen by more than ten times; "
+      "the time step must follow. Energy explained to 2 %, at rest in the end.",
+      crushed },
+    { "twisted", true, "a bar twisted by 180 degrees",
+      "A bar's end is turned by 180° in 20 ms, and back. Energy explained to 2 %, at rest in the end.", twisted },
+    { "released", true, "the same forced on a free block and let go",
+      "A free block starts pressed to a tenth of its height without any sideways stretch (J = 0.1), another twisted by "
+      "180°; both are let go at once. Voxels turn inside out on the way; laws must push them open again. Energy "
+      "explained to 20 %, at rest in the end. A time step that follows each look up and down gained more energy than "
+      "there was; it may now grow by 2.5 % from look to look only, and looks follow closely where voxels stiffen.",
+      released },
+    { "scrambled", true, "every node moved by half a voxel, elements inverted",
+      "Every node of a free block is moved by half a voxel in a random direction, so that voxels are inside out from "
+      "the start, with each form of hourglass control and with eight integration points. It must come back to rest. "
+      "With laws that end at J = 0 nothing brings these voxels back.",
+      scrambled },
+    { "rigid_rotation", true, "ten turns of a free block",
+      "A free block turns ten times. It must keep its kinetic energy to 1 % and its shape to 1 %: strain measures that "
+      "are not objective would grow with every turn.",
+      rigid_rotation },
+    { "dangling", true, "voxels that hang by an edge or a corner, or by nothing",
+      "A sheet of one voxel's thickness, a strip, voxels that hang by an edge and by a corner and one that falls "
+      "freely, for 0.1 s of gravity. Hinges have no stiffness and swing; the free voxel must fall by g t²/2 to 0.1 %, "
+      "although it is then 49 voxels away from where it rested.",
+      dangling },
+    { "slender", true, "voxels of 1 x 1 x 10",
+      "Voxels of 1 × 1 × 10 mm hang along their long edges, and across them, and come to rest. Lengthening against ρ g "
+      "L²/2E, to 10 %: what the held end keeps from narrowing is in that. The time step must be the short edge's.",
+      slender }
+  };
+}
+
+}  // namespace frontalis

@@ -1,0 +1,150 @@
+#include "watched_motion.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+WatchedMotion::WatchedMotion(const StabilitySettings& settings, Trial& trial, std::shared_ptr<const Model> model,
+                             bool ledger, const GuardSettings& guard)
+    : settings_(settings), trial_(trial), model_(std::move(model)), wants_ledger_(ledger)
+{
+  // few voxels are not worth a second thread's waiting
+  const int threads = model_->voxels.size() < 2000 ? 1 : 0;
+  SolverSettings own{ settings.backend, threads, 0 };
+  own.ledger = ledger;
+  solver_ = make_solver(model_, own);
+  guard_ = std::make_unique<Guard>(*solver_, model_, guard);
+  trial_.voxels = std::max(trial_.voxels, static_cast<std::int64_t>(model_->voxels.size()));
+}
+
+WatchedMotion::~WatchedMotion()
+{
+  trial_.steps += solver_->profile().steps;
+  trial_.rollbacks += guard_->counts().rollbacks;
+}
+
+Controls WatchedMotion::controls(float activation, const RigidTransform& pose) const
+{
+  return { std::vector<float>(model_->muscles.size(), activation),
+           std::vector<RigidTransform>(model_->bones.size(), pose) };
+}
+
+void WatchedMotion::advance(double seconds, const Controls& target, int looks)
+{
+  for (int i = 0; i < looks; ++i)
+  {
+    // controls go on from where they are: each part gets its share of the way
+    Controls next = target;
+    const double share = 1.0 / (looks - i);
+    const Controls& now = solver_->controls();
+    for (std::size_t m = 0; m < next.activation.size(); ++m)
+      next.activation[m] = now.activation[m] + static_cast<float>(share) * (target.activation[m] - now.activation[m]);
+    for (std::size_t b = 0; b < next.bone.size(); ++b)
+      next.bone[b] = interpolate(now.bone[b], target.bone[b], share);
+    guard_->advance(seconds / looks, next);
+    look();
+    settings_.watch((i + 1.0) / looks);
+  }
+}
+
+void WatchedMotion::settle(const Controls& target, double tolerance, double seconds)
+{
+  const Equilibrium end = solver_->settle(target, tolerance, seconds,
+                                          [&](const Equilibrium& now)
+                                          {
+                                            settings_.watch(now.seconds / seconds);
+                                            return true;
+                                          });
+  if (!end.reached)
+    throw Error("no equilibrium within " + readable(seconds) + " s: " + readable(end.residual, 3) +
+                " of the displacement is still to go");
+  guard_->restart();
+  look();
+}
+
+void WatchedMotion::hold_or_stop(const std::function<void()>& play)
+{
+  try
+  {
+    play();
+  }
+  catch (const Unstable& stop)
+  {
+    trial_.stopped = stop.what();
+    const Monitor last = solver_->monitor();
+    trial_.checks.push_back(absolute_check("stopped in a state that is not finite", "", 0, last.finite ? 0 : 1, 0));
+    trial_.checks.push_back(
+        absolute_check("report names no voxel", "", 0, stop.report.voxel < 0 || stop.report.advice.empty() ? 1 : 0, 0));
+  }
+}
+
+void WatchedMotion::set(const Vectors& displacements, const Vectors& velocities)
+{
+  solver_->set_displacements(displacements);
+  if (!velocities.empty())
+    solver_->set_velocities(velocities);
+  guard_->restart();
+  look();
+}
+
+Vectors WatchedMotion::displacements() const
+{
+  Vectors u;
+  solver_->displacements(u);
+  return u;
+}
+
+void WatchedMotion::look()
+{
+  monitor_ = solver_->monitor();
+  if (!monitor_.finite)
+    throw Error("energies are no longer finite at " + readable(solver_->time()) + " s");
+  trial_.worst_jacobian = std::min(trial_.worst_jacobian, monitor_.worst_jacobian);
+  if (!wants_ledger_)
+    return;
+  ledger_ = solver_->ledger();
+  worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
+  largest_ = ledger_.largest;
+  most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
+  moments_.push_back({ solver_->time(), ledger_.kinetic, ledger_.internal + ledger_.hourglass, ledger_.imbalance(),
+                       monitor_.worst_jacobian });
+}
+
+void WatchedMotion::expect_balance(const std::string& of, double share)
+{
+  const double error = worst_imbalance_ / largest_;
+  trial_.energy_error = std::fmax(trial_.energy_error, error);
+  trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
+  trial_.checks.push_back(absolute_check("energy unexplained, " + of, "%", 0, 100 * error, 100 * share));
+}
+
+void WatchedMotion::plot(const std::string& file, const std::string& title)
+{
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "time [s]";
+  plot.y_label = "energies over the largest, smallest J [1]";
+  plot.key = "below";
+  plot.curves = { { "kinetic energy", {}, {}, Plot::Style::line },
+                  { "stored energy", {}, {}, Plot::Style::line },
+                  { "unexplained", {}, {}, Plot::Style::line },
+                  { "smallest J", {}, {}, Plot::Style::dashed } };
+  for (const Moment& m : moments_)
+  {
+    const std::array<double, 4> y{ { m.kinetic / largest_, m.stored / largest_, m.unexplained / largest_,
+                                     m.jacobian } };
+    for (std::size_t c = 0; c < y.size(); ++c)
+    {
+      plot.curves[c].x.push_back(m.time);
+      plot.curves[c].y.push_back(y[c]);
+    }
+  }
+  trial_.plots.emplace_back(file, plot);
+}
+
+}  // namespace frontalis
