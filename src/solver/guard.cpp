@@ -169,8 +169,9 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
 }
 
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)
-    : self_(new Implementation{ solver, model, settings, EnergyBound(*model), {}, {}, {}, 0, 0, 0, {} })
 {
+  const Model& watched = *model;
+  self_.reset(new Implementation{ solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, 0, 0, 0, {} });
   const auto refuse = [](const char* what, double value, const char* allowed)
   { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
   if (settings.interval < 0)
