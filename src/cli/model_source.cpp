@@ -25,7 +25,8 @@ namespace frontalis
 void add_scene_options(CLI::App& command, ModelSource& source)
 {
   command.add_option("--mesh-dir", source.mesh_directory, "folder of the scene's mesh files");
-  command.add_option("--accuracy", source.accuracy, "name of one of the scene's accuracy profiles, or a file with one (.yaml)");
+  command.add_option("--accuracy", source.accuracy,
+                     "name of one of the scene's accuracy profiles, or a file with one (.yaml)");
   command.add_option("--voxel", source.voxel, "voxel edge, in the scene's length unit (1.5) or with one (\"1.5 mm\")");
 }
 
