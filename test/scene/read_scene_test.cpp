@@ -1,17 +1,14 @@
-// what good scenes are read as, and what their content hashes depend on
+// what good scenes are read as
 
 #include "frontalis/error.hpp"
-#include "frontalis/scene/content_hash.hpp"
 #include "frontalis/scene/read_scene.hpp"
+#include "scene/files.hpp"
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -23,12 +20,6 @@ namespace
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::string source = FRONTALIS_SOURCE_DIRECTORY;
 
-std::string text_of(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-}
-
 void expect_vector(const Vector3& found, const Vector3& expected)
 {
   for (std::size_t i = 0; i < 3; ++i)
@@ -37,34 +28,6 @@ void expect_vector(const Vector3& found, const Vector3& expected)
     else
       EXPECT_NEAR(found[i], expected[i], 1e-15) << "component " << i;
 }
-
-// a folder of its own, removed with its contents
-class TemporaryFolder
-{
-public:
-  TemporaryFolder()
-  {
-    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_scene_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw Error(pattern + ": cannot be made");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const
-  {
-    const std::filesystem::path path = path_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary) << text;
-    return path.string();
-  }
-  std::string path() const { return path_.string(); }
-
-private:
-  std::filesystem::path path_;
-};
 
 const Scene& every_key()
 {
@@ -359,43 +322,6 @@ TEST(Document, its_example_is_a_good_scene)
   EXPECT_EQ(scene.surfaces.size(), 2U);
   EXPECT_EQ(scene.muscles.at(0).volume, "bar");
   expect_vector(scene.accuracy.voxel, { 0.0025, 0.0025, 0.0025 });
-}
-
-TEST(Content, hash_is_fnv_1a_of_64_bits)
-{
-  // test vectors of Fowler, Noll and Vo
-  EXPECT_EQ(content_hash(""), "cbf29ce484222325");
-  EXPECT_EQ(content_hash("a"), "af63dc4c8601ec8c");
-  EXPECT_EQ(content_hash("foobar"), "85944171f73967e8");
-}
-
-TEST(Content, depends_on_what_decides_the_bake_alone)
-{
-  const std::string text = text_of(source + "/test/scene/every_key.yaml");
-  const TemporaryFolder folder;
-  const std::string mesh = folder.write("a/meshes/triangle.obj", "v 0 0 0\n");
-  const std::string content = read_scene(folder.write("a/scene.yaml", text)).content;
-
-  // another place, comments and profiles that are not chosen: the same bake
-  folder.write("b/meshes/triangle.obj", "v 0 0 0\n");
-  std::string changed = "# a comment\n" + text;
-  changed.replace(changed.find("draft: {voxel: 3 mm"), 19, "draft: {voxel: 4 mm");
-  EXPECT_EQ(read_scene(folder.write("b/scene.yaml", changed)).content, content);
-
-  // the same lengths in other words
-  changed = text;
-  changed.replace(changed.find("minor_radius: 1,"), 16, "minor_radius: 10 mm,");
-  EXPECT_EQ(read_scene(folder.write("a/scene.yaml", changed)).content, content);
-
-  // a number, the profile and a byte of a mesh count
-  changed = text;
-  changed.replace(changed.find("poisson: 0.49"), 13, "poisson: 0.48");
-  EXPECT_NE(read_scene(folder.write("a/scene.yaml", changed)).content, content);
-  SceneOptions options;
-  options.accuracy = "draft";
-  EXPECT_NE(read_scene(folder.write("a/scene.yaml", text), options).content, content);
-  folder.write("a/meshes/triangle.obj", "v 0 0 1\n");
-  EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
 }
 
 }  // namespace

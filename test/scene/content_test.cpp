@@ -1,0 +1,56 @@
+// what a scene's content hash depends on
+
+#include "frontalis/scene/content_hash.hpp"
+#include "frontalis/scene/read_scene.hpp"
+#include "scene/files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+const std::string source = FRONTALIS_SOURCE_DIRECTORY;
+
+TEST(Content, hash_is_fnv_1a_of_64_bits)
+{
+  // test vectors of Fowler, Noll and Vo
+  EXPECT_EQ(content_hash(""), "cbf29ce484222325");
+  EXPECT_EQ(content_hash("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(content_hash("foobar"), "85944171f73967e8");
+}
+
+TEST(Content, depends_on_what_decides_the_bake_alone)
+{
+  const std::string text = text_of(source + "/test/scene/every_key.yaml");
+  const TemporaryFolder folder;
+  const std::string mesh = folder.write("a/meshes/triangle.obj", "v 0 0 0\n");
+  const std::string content = read_scene(folder.write("a/scene.yaml", text)).content;
+
+  // another place, comments and profiles that are not chosen: the same bake
+  folder.write("b/meshes/triangle.obj", "v 0 0 0\n");
+  std::string changed = "# a comment\n" + text;
+  changed.replace(changed.find("draft: {voxel: 3 mm"), 19, "draft: {voxel: 4 mm");
+  EXPECT_EQ(read_scene(folder.write("b/scene.yaml", changed)).content, content);
+
+  // the same lengths in other words
+  changed = text;
+  changed.replace(changed.find("minor_radius: 1,"), 16, "minor_radius: 10 mm,");
+  EXPECT_EQ(read_scene(folder.write("a/scene.yaml", changed)).content, content);
+
+  // a number, the profile and a byte of a mesh count
+  changed = text;
+  changed.replace(changed.find("poisson: 0.49"), 13, "poisson: 0.48");
+  EXPECT_NE(read_scene(folder.write("a/scene.yaml", changed)).content, content);
+  SceneOptions options;
+  options.accuracy = "draft";
+  EXPECT_NE(read_scene(folder.write("a/scene.yaml", text), options).content, content);
+  folder.write("a/meshes/triangle.obj", "v 0 0 1\n");
+  EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
+}
+
+}  // namespace
+}  // namespace frontalis
