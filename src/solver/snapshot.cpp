@@ -39,10 +39,15 @@ void SteppingSolver::restore(const Snapshot& snapshot)
   // effects stay as they are now
   if (motion->effects == effects_)
     return;
+  const auto differs = [&](Effect effect) { return motion->effects.has(effect) != runs(effect); };
   for (const Effect effect : every_effect())
-    if (motion->effects.has(effect) != runs(effect))
+    if (differs(effect))
       effect_switched(effect);
-  displacements_were_set();
+  // as switch_effect() does
+  if (differs(Effect::contraction) || differs(Effect::fibre_stiffness))
+    displacements_were_set();
+  else
+    velocities_were_set();
 }
 
 void SteppingSolver::slow_down(double share)

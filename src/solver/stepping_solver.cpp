@@ -111,7 +111,6 @@ void SteppingSolver::displacements_were_set()
   frequency_squared_ = discretisation_.frequency_squared_max;
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
-  looked_at_ = frequency_squared_;
   wary_ = wary_looks;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
@@ -124,7 +123,6 @@ void SteppingSolver::reset()
   time_ = 0;
   failed_ = false;
   frequency_squared_ = discretisation_.frequency_squared_max;
-  looked_at_ = 0;
   wary_ = 0;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
@@ -178,13 +176,11 @@ void SteppingSolver::respond(const std::vector<float>& from, const std::vector<f
   }
 }
 
-// what stiffens is expected to go on doing so until the next look, for at most as much again
+// what softens is believed slowly: it may stiffen again before the next look, and each change of the time step costs
+// accuracy
 void SteppingSolver::expect_frequency(double squared)
 {
-  const double rest = discretisation_.frequency_squared_max;
-  const double growth = std::clamp(squared / std::max(looked_at_, rest), 1.0, 2.0);
-  looked_at_ = squared;
-  frequency_squared_ = std::max(squared * growth, rest);
+  frequency_squared_ = std::max({ squared, 0.95 * frequency_squared_, discretisation_.frequency_squared_max });
 }
 
 // longest step in which no bone moves by more than a share of a voxel: what hangs on one that is faster would be turned

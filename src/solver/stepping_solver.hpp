@@ -29,8 +29,7 @@ struct Course
 {
   double time_ = 0;
   double latest_step_ = 0;        // [s]
-  double frequency_squared_ = 0;  // of the stiffest voxel, as the next plan may find it
-  double looked_at_ = 0;          // the same as it was found last
+  double frequency_squared_ = 0;  // of the stiffest voxel, as it is believed
   int wary_ = 0;                  // looks that follow closely, since it grew much from one to the next
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
