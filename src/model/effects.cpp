@@ -63,6 +63,7 @@ template <class Entry>
 std::size_t distinct_nodes(const std::vector<Entry>& entries)
 {
   std::vector<std::int32_t> nodes;
+  nodes.reserve(entries.size());
   for (const Entry& entry : entries)
     nodes.push_back(entry.node);
   std::sort(nodes.begin(), nodes.end());

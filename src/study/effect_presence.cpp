@@ -4,6 +4,7 @@
 #include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
@@ -14,7 +15,7 @@ constexpr std::int32_t length = 64, depth = 40;
 
 void give(Model& model, Effect effect, double share)
 {
-  const auto rows = static_cast<std::int32_t>(share * depth + 0.5);
+  const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
   const auto has = [&](std::size_t e) { return model.voxels[e][1] < rows; };
   if (effect == Effect::viscosity)
   {

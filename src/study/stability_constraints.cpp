@@ -150,9 +150,10 @@ void bone_jump(const StabilitySettings& settings, Trial& trial)
   hold_face(model, 0, false, "bone");
   const RigidTransform jumped{ RigidTransform().rotation, { { 3e-3, 4e-3, 0 } } };
   const double frame = 1.0 / 30, step = make_solver(std::make_shared<const Model>(model))->time_step();
-  for (const auto& [name, seconds] :
-       { std::pair("frame", frame), std::pair("millisecond", 1e-3), std::pair("step", step) })
+  for (const auto& jump : { std::pair("frame", frame), std::pair("millisecond", 1e-3), std::pair("step", step) })
   {
+    const std::string name = jump.first;
+    const double seconds = jump.second;
     WatchedMotion motion(settings, trial, model);
     // ten times as fast as sound in the tissue
     const bool violent = seconds < 1e-4;
@@ -160,13 +161,13 @@ void bone_jump(const StabilitySettings& settings, Trial& trial)
     {
       motion.advance(seconds, motion.controls(0, jumped), 1);
       motion.advance(20e-3, motion.controls(0, jumped), 40);
-      motion.expect_balance(std::string("within a ") + name, violent ? 1 : 0.05);
+      motion.expect_balance("within a " + name, violent ? 1 : 0.05);
     };
     if (violent)
       motion.hold_or_stop(play);
     else
       play();
-    motion.plot(std::string("bone_jump_") + name, std::string("A bone jumps by 5 mm within a ") + name);
+    motion.plot("bone_jump_" + name, "A bone jumps by 5 mm within a " + name);
     if (violent && !trial.stopped.empty())
       continue;
     motion.advance(0.3, motion.controls(0, jumped), 10);
