@@ -89,7 +89,7 @@ TEST_P(Ledger, closes_for_a_muscle_that_shortens_and_lets_go)
 TEST_P(Ledger, closes_after_a_random_distortion)
 {
   Model model = bar(20);
-  model.time_step_share = 0.2;
+  model.time_step_share = 0.3;
   const auto solver = accounting(model);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-0.2e-3, 0.2e-3);
