@@ -161,7 +161,7 @@ void bone_jump(const StabilitySettings& settings, Trial& trial)
     {
       motion.advance(seconds, motion.controls(0, jumped), 1);
       motion.advance(20e-3, motion.controls(0, jumped), 40);
-      motion.expect_balance("within a " + name, violent ? 1 : 0.05);
+      motion.expect_balance("within a " + name, 0.05);
     };
     if (violent)
       motion.hold_or_stop(play);
