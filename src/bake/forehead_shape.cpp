@@ -116,24 +116,6 @@ void add_rim(TriangleMesh& mesh, const Grid& grid, bool upper, bool lower, bool 
 
 }  // namespace
 
-const std::vector<std::string>& forehead_parts()
-{
-  static const std::vector<std::string> parts{ "skin",
-                                               "skull",
-                                               "rim",
-                                               "rim_upper",
-                                               "rim_lower",
-                                               "rim_lateral",
-                                               "tissue",
-                                               "frontalis_left",
-                                               "frontalis_right",
-                                               "corrugator_left",
-                                               "corrugator_right",
-                                               "procerus",
-                                               "galea" };
-  return parts;
-}
-
 std::vector<std::string> forehead_dimension_names()
 {
   std::vector<std::string> names;

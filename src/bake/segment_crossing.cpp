@@ -41,29 +41,8 @@ bool TriangleTree::crossed_by(const Vector3& p, const Vector3& q) const
   Box box;
   box.include(p);
   box.include(q);
-  std::int32_t stack[64];
-  int top = 0;
-  if (!nodes_.empty())
-    stack[top++] = 0;
-  while (top > 0)
-  {
-    const std::int32_t index = stack[--top];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!node.box.overlaps(box))
-      continue;
-    if (node.right != 0)
-    {
-      stack[top++] = node.right;
-      stack[top++] = index + 1;
-      continue;
-    }
-    for (std::int32_t i = node.begin; i < node.end; ++i)
-    {
-      if (crossing(*mesh_, order_[static_cast<std::size_t>(i)], p, q) != 0)
-        return true;
-    }
-  }
-  return false;
+  return visit([&](std::size_t node) { return nodes_[node].box.overlaps(box); },
+               [&](std::size_t i) { return crossing(*mesh_, order_[i], p, q) != 0; });
 }
 
 }  // namespace frontalis

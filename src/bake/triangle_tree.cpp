@@ -208,56 +208,20 @@ bool TriangleTree::overlaps_triangle(const std::array<Vector3, 3>& corners, cons
 
 bool TriangleTree::overlaps(const Box& box) const
 {
-  std::int32_t stack[64];
-  int top = 0;
-  if (!nodes_.empty())
-    stack[top++] = 0;
-  while (top > 0)
-  {
-    const std::int32_t index = stack[--top];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!node.box.overlaps(box))
-      continue;
-    if (node.right != 0)
-    {
-      stack[top++] = node.right;
-      stack[top++] = index + 1;
-      continue;
-    }
-    for (std::int32_t i = node.begin; i < node.end; ++i)
-    {
-      if (overlaps_triangle(corners_[static_cast<std::size_t>(i)], box))
-        return true;
-    }
-  }
-  return false;
+  return visit([&](std::size_t node) { return nodes_[node].box.overlaps(box); },
+               [&](std::size_t i) { return overlaps_triangle(corners_[i], box); });
 }
 
 void TriangleTree::gather(const Box& box, std::vector<std::int32_t>& triangles) const
 {
   const std::size_t before = triangles.size();
-  std::int32_t stack[64];
-  int top = 0;
-  if (!nodes_.empty())
-    stack[top++] = 0;
-  while (top > 0)
-  {
-    const std::int32_t index = stack[--top];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!node.box.overlaps(box))
-      continue;
-    if (node.right != 0)
-    {
-      stack[top++] = node.right;
-      stack[top++] = index + 1;
-      continue;
-    }
-    for (std::int32_t i = node.begin; i < node.end; ++i)
-    {
-      if (overlaps_triangle(corners_[static_cast<std::size_t>(i)], box))
-        triangles.push_back(order_[static_cast<std::size_t>(i)]);
-    }
-  }
+  visit([&](std::size_t node) { return nodes_[node].box.overlaps(box); },
+        [&](std::size_t i)
+        {
+          if (overlaps_triangle(corners_[i], box))
+            triangles.push_back(order_[i]);
+          return false;
+        });
   std::sort(triangles.begin() + static_cast<std::ptrdiff_t>(before), triangles.end());
 }
 

@@ -59,6 +59,34 @@ private:
     std::array<double, 18> second{};  ///< sum of area normal i times offsets jk: xx, yy, zz, xy, yz, zx
   };
 
+  /// Visits nodes from the root down: below those where `enter(node index)` is true, and `leaf(place in order_)` for
+  /// each triangle there, until one answers true. Returns whether one did.
+  template <class Enter, class Leaf>
+  bool visit(const Enter& enter, const Leaf& leaf) const
+  {
+    std::int32_t stack[64];
+    int top = 0;
+    if (!nodes_.empty())
+      stack[top++] = 0;
+    while (top > 0)
+    {
+      const std::int32_t index = stack[--top];
+      if (!enter(static_cast<std::size_t>(index)))
+        continue;
+      const Node& node = nodes_[static_cast<std::size_t>(index)];
+      if (node.right != 0)
+      {
+        stack[top++] = node.right;
+        stack[top++] = index + 1;
+        continue;
+      }
+      for (std::int32_t i = node.begin; i < node.end; ++i)
+        if (leaf(static_cast<std::size_t>(i)))
+          return true;
+    }
+    return false;
+  }
+
   std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3>& centroids);
   Expansion expand(const Node& node) const;
   static double far_field(const Expansion& node, const Vector3& p);

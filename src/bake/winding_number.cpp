@@ -97,33 +97,22 @@ double TriangleTree::far_field(const Expansion& node, const Vector3& p)
 double TriangleTree::winding_number(const Vector3& p) const
 {
   double sum = 0;
-  std::int32_t stack[64];
-  int top = 0;
-  if (!nodes_.empty())
-    stack[top++] = 0;
-  while (top > 0)
-  {
-    const std::int32_t index = stack[--top];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    const Expansion& expansion = expansions_[static_cast<std::size_t>(index)];
-    const Vector3 r = expansion.centre - p;
-    if (dot(r, r) > far_ratio * far_ratio * expansion.squared_reach)
-    {
-      sum += far_field(expansion, p);
-      continue;
-    }
-    if (node.right != 0)
-    {
-      stack[top++] = node.right;
-      stack[top++] = index + 1;
-      continue;
-    }
-    for (std::int32_t i = node.begin; i < node.end; ++i)
-    {
-      const auto& corners = corners_[static_cast<std::size_t>(i)];
-      sum += winding_of_triangle(p, corners[0], corners[1], corners[2]);
-    }
-  }
+  visit(
+      [&](std::size_t node)
+      {
+        const Expansion& expansion = expansions_[node];
+        const Vector3 r = expansion.centre - p;
+        const bool near = dot(r, r) <= far_ratio * far_ratio * expansion.squared_reach;
+        if (!near)
+          sum += far_field(expansion, p);
+        return near;
+      },
+      [&](std::size_t i)
+      {
+        const auto& corners = corners_[i];
+        sum += winding_of_triangle(p, corners[0], corners[1], corners[2]);
+        return false;
+      });
   return sum;
 }
 

@@ -1,4 +1,4 @@
-#include "command.hpp"
+#include "chosen_cases.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "stability_scenes.hpp"
@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -26,27 +25,9 @@ struct StabilityOptions
   bool all = false;
 };
 
-std::vector<StabilityCase> chosen_cases(const StabilityOptions& options)
-{
-  auto cases = stability_cases();
-  std::string names;
-  for (const auto& c : cases)
-    names += " " + c.name;
-  for (const auto& name : options.only)
-    if (std::none_of(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; }))
-      throw WrongUsage("--only: there is no case '" + name + "'; there are" + names);
-  const auto left_out = [&](const StabilityCase& c)
-  {
-    const bool named = std::find(options.only.begin(), options.only.end(), c.name) != options.only.end();
-    return options.only.empty() ? !options.all && !c.quick : !named;
-  };
-  cases.erase(std::remove_if(cases.begin(), cases.end(), left_out), cases.end());
-  return cases;
-}
-
 void run_stability(const StabilityOptions& options)
 {
-  const auto cases = chosen_cases(options);
+  const auto cases = chosen_cases(stability_cases(), options.only, options.all);
   Progress progress(Progress::OffTerminal::silent);
   std::string name;
   StabilitySettings settings;

@@ -1,4 +1,4 @@
-#include "command.hpp"
+#include "chosen_cases.hpp"
 #include "interrupt.hpp"
 
 #include "frontalis/error.hpp"
@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -24,27 +23,9 @@ struct VerifyOptions
   bool quick = false;
 };
 
-std::vector<VerificationCase> chosen_cases(const VerifyOptions& options)
-{
-  auto cases = verification_cases();
-  std::string names;
-  for (const auto& c : cases)
-    names += " " + c.name;
-  for (const auto& name : options.only)
-    if (std::none_of(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; }))
-      throw WrongUsage("--only: there is no case '" + name + "'; there are" + names);
-  const auto left_out = [&](const VerificationCase& c)
-  {
-    const bool named = std::find(options.only.begin(), options.only.end(), c.name) != options.only.end();
-    return options.only.empty() ? options.quick && !c.quick : !named;
-  };
-  cases.erase(std::remove_if(cases.begin(), cases.end(), left_out), cases.end());
-  return cases;
-}
-
 void verify(const VerifyOptions& options)
 {
-  const auto cases = chosen_cases(options);
+  const auto cases = chosen_cases(verification_cases(), options.only, !options.quick);
   const VerificationSettings settings{ backend_from_name(options.backend) };
   Findings findings;
   int failed = 0, bounded = 0;

@@ -19,24 +19,6 @@ const std::vector<std::pair<std::string, Shape::Kind>>& shape_kinds()
   return kinds;
 }
 
-const std::vector<std::string>& forehead_parts()
-{
-  static const std::vector<std::string> parts{ "skin",
-                                               "skull",
-                                               "rim",
-                                               "rim_upper",
-                                               "rim_lower",
-                                               "rim_lateral",
-                                               "tissue",
-                                               "frontalis_left",
-                                               "frontalis_right",
-                                               "corrugator_left",
-                                               "corrugator_right",
-                                               "procerus",
-                                               "galea" };
-  return parts;
-}
-
 double read_length(const Node& node) { return node.number(Dimension::length, positive, 0); }
 
 void read_forehead(Mapping& mapping, Shape& shape)
@@ -155,6 +137,24 @@ private:
 };
 
 }  // namespace
+
+const std::vector<std::string>& forehead_parts()
+{
+  static const std::vector<std::string> parts{ "skin",
+                                               "skull",
+                                               "rim",
+                                               "rim_upper",
+                                               "rim_lower",
+                                               "rim_lateral",
+                                               "tissue",
+                                               "frontalis_left",
+                                               "frontalis_right",
+                                               "corrugator_left",
+                                               "corrugator_right",
+                                               "procerus",
+                                               "galea" };
+  return parts;
+}
 
 void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
                    SceneNames& names)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -7,11 +9,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,33 +18,6 @@
 
 namespace frontalis
 {
-
-inline std::string text_of(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-}
-
-/// A folder of its own, removed with its contents.
-class TemporaryFolder
-{
-public:
-  TemporaryFolder()
-  {
-    path_ = (std::filesystem::temp_directory_path() / "frontalis_cli_XXXXXX").string();
-    if (mkdtemp(path_.data()) == nullptr)
-      throw std::runtime_error(path_ + ": cannot be made");
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-  const std::string& path() const { return path_; }
-
-private:
-  std::string path_;
-};
 
 struct ProgramResult
 {

@@ -2,7 +2,7 @@
 
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/scene/read_scene.hpp"
-#include "scene/files.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -38,17 +38,11 @@ struct ForeheadDimensions
   double galea_thickness = 1e-3;       ///< of the tendon sheet
 };
 
-/// Parts: `skin`, `skull` (both face outwards; open sheets), `rim` (joins the edges of skin and bone) and its pieces
-/// `rim_upper`, `rim_lower`, `rim_lateral`; `tissue` (closed: skin, rim and the bone below them); the muscles
-/// `frontalis_left`, `frontalis_right`, `corrugator_left`, `corrugator_right`, `procerus` and the tendon sheet `galea`
-/// (closed, following the curvature).
-const std::vector<std::string>& forehead_parts();
-
 /// Names of the dimensions that a scene may set.
 std::vector<std::string> forehead_dimension_names();
 
-/// Triangles of one part. Throws Error on an unknown part or dimension, listing those that exist, and on dimensions
-/// that make no forehead.
+/// Triangles of one of the forehead_parts(). Throws Error on an unknown part or dimension, listing those that exist,
+/// and on dimensions that make no forehead.
 TriangleMesh make_forehead(const Shape& shape);
 
 }  // namespace frontalis

@@ -75,4 +75,10 @@ struct Volume
   int line = 0;
 };
 
+/// Parts of the generated forehead: `skin`, `skull` (both face outwards; open sheets), `rim` (joins the edges of skin
+/// and bone) and its pieces `rim_upper`, `rim_lower`, `rim_lateral`; `tissue` (closed: skin, rim and the bone below
+/// them); the muscles `frontalis_left`, `frontalis_right`, `corrugator_left`, `corrugator_right`, `procerus` and the
+/// tendon sheet `galea` (closed, following the curvature).
+const std::vector<std::string>& forehead_parts();
+
 }  // namespace frontalis

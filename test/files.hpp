@@ -25,7 +25,7 @@ class TemporaryFolder
 public:
   TemporaryFolder()
   {
-    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_scene_XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_test_XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr)
       throw Error(pattern + ": cannot be made");
     path_ = pattern;
@@ -34,6 +34,8 @@ public:
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  std::string operator/(const std::string& name) const { return path_ / name; }
+  /// Writes a file and says its path.
   std::string write(const std::string& name, const std::string& text) const
   {
     const std::filesystem::path path = path_ / name;
