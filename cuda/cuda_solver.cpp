@@ -93,6 +93,7 @@ void CudaSolver::rest()
   device_.reset_contacts();
   device_.viscosity().reset();
   viscous_elapsed_ = 0;
+  mode_.reset();
   require(cudaDeviceSynchronize(), "coming to rest");
 }
 

@@ -124,13 +124,10 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
   const auto& h = model.spacing;
-  double sum = 0;
-  for (const double x : h)
-    sum += 1 / (x * x);
   for (int axis = 0; axis < 3; ++axis)
   {
     g.scale[axis] = static_cast<float>(0.25 / h[axis]);
-    g.stretch_weight[axis] = static_cast<float>(1 / (h[axis] * h[axis]) / sum);
+    g.stretch_weight[axis] = static_cast<float>(discretisation.stretch_weight[axis]);
     g.hourglass_weight[axis] = static_cast<float>(discretisation.hourglass_weight[axis]);
   }
 }

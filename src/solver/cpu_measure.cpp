@@ -18,7 +18,7 @@ Monitor CpuSolver<Real>::measure()
     wide_[axis].resize(u_[axis].size());
     g.u[axis] = wide_[axis].data();
     g.scale[axis] = 0.25 / model_->spacing[axis];
-    g.stretch_weight[axis] = double(from.stretch_weight[axis]);
+    g.stretch_weight[axis] = discretisation_.stretch_weight[axis];
     g.hourglass_weight[axis] = discretisation_.hourglass_weight[axis];
   }
   g.tiles = from.tiles;

@@ -12,7 +12,6 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
 {
   Arguments g{};
   const auto& h = model_->spacing;
-  double sum = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     g.u[axis] = u_[axis].data();
@@ -22,10 +21,8 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
     g.scale[axis] = static_cast<Real>(0.25 / h[axis]);
     g.impulse[axis] = static_cast<Real>(gain(dt) * gravity_[axis]);
     g.hourglass_weight[axis] = static_cast<Real>(discretisation_.hourglass_weight[axis]);
-    sum += 1 / (h[axis] * h[axis]);
+    g.stretch_weight[axis] = static_cast<Real>(discretisation_.stretch_weight[axis]);
   }
-  for (int axis = 0; axis < 3; ++axis)
-    g.stretch_weight[axis] = static_cast<Real>(1 / (h[axis] * h[axis]) / sum);
   g.inverse_mass = inverse_mass_.data();
   g.tiles = rows_.tiles.data();
   g.plane_tiles = rows_.plane_tiles.data();

@@ -117,8 +117,14 @@ Discretisation::Discretisation(const Model& model)
 {
   const auto& h = model.spacing;
   volume = h[0] * h[1] * h[2];
+  double sum = 0;
+  for (const double edge : h)
+    sum += 1 / (edge * edge);
   for (int axis = 0; axis < 3; ++axis)
+  {
     hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
+    stretch_weight[axis] = 1 / (h[axis] * h[axis]) / sum;
+  }
   assumed_strain = assumed_strain && !selective_reduced;
   for (const Material& material : model.materials)
     for (int term = 0; term < 2 && running_.has(Effect::viscosity); ++term)
@@ -132,7 +138,6 @@ Discretisation::Discretisation(const Model& model)
 
   node_mass.assign(model.nodes.size(), 0);
   std::vector<double> weight(mass_factor_.empty() ? 0 : model.nodes.size(), 0.0);
-  double unscaled = 0, scaled = 0;
   VoxelProperties v;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
@@ -140,17 +145,13 @@ Discretisation::Discretisation(const Model& model)
     laws = laws || !v.laws.empty();
     frequency_squared_max = std::max(frequency_squared_max, v.frequency_squared);
     const double mass = v.density * v.tissue_volume;
-    const double own = mass_factor_.empty() ? mass : mass / double(mass_factor_[e]);
-    unscaled += own;
-    scaled += mass;
     for (const auto node : model.voxel_nodes[e])
     {
       node_mass[node] += mass / 8;
       if (!weight.empty())
-        weight[node] += own / 8;
+        weight[node] += mass / double(mass_factor_[e]) / 8;
     }
   }
-  mass_added = unscaled > 0 ? scaled / unscaled - 1 : 0;
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
 }

@@ -57,10 +57,10 @@ public:
   int viscous_terms = 0;                     ///< 0..2
   double viscous_time_min = 0;               ///< [s]
   std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
+  std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
   double frequency_squared_max = 0;          ///< [1/s2]
-  double mass_added = 0;                     ///< by mass scaling, proportion of the unscaled mass
 
 private:
   void mix(std::size_t index, VoxelProperties& out) const;

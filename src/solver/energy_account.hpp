@@ -40,8 +40,6 @@ public:
 
   EnergyAccount(const Model& model, const Discretisation& discretisation);
 
-  /// Nodes of plane k: plane_nodes()[k] .. plane_nodes()[k + 1].
-  const std::vector<std::int32_t>& plane_nodes() const { return plane_nodes_; }
   void open();
   /// Velocities before the update of nodes [first, last).
   void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }

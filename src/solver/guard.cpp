@@ -31,8 +31,9 @@ struct Guard::Implementation
     double time = 0;
     double imbalance = 0;  // [J]
     std::vector<RigidTransform> bone;
-    std::vector<float> activation;
+    std::vector<float> since;  // largest activation of each muscle since the good state before
     double largest_internal = 0;
+    bool there = false;  // else the snapshot is memory to be used again
   };
 
   Solver& solver;
@@ -40,7 +41,7 @@ struct Guard::Implementation
   GuardSettings settings;
   EnergyBound bound;
   Good good, before;              // the latest, and the one before
-  std::vector<float> activation;  // largest of each muscle since `before`
+  std::vector<float> activation;  // largest of each muscle since `good`
   std::int64_t checked_at = 0;    // steps
   int good_checks = 0;            // since the latest rollback
   int tries = 0;
@@ -51,8 +52,8 @@ struct Guard::Implementation
   void keep(const Monitor& monitor, double imbalance);
   Instability judged(const Monitor& monitor, double imbalance, double largest) const;
   Instability check();
-  void go_back(Instability finding, const Controls& target);
-  InstabilityReport examined(Instability finding, const Controls& target);
+  void go_back(Instability finding, const Controls& target, double end);
+  InstabilityReport examined(Instability finding, const Controls& target, double end);
 };
 
 void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
@@ -63,9 +64,10 @@ void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
   good.time = solver.time();
   good.imbalance = imbalance;
   good.bone = solver.controls().bone;
-  good.activation = solver.activation();
+  good.since = activation;
   good.largest_internal = std::max(before.largest_internal, monitor.internal);
-  activation = good.activation;
+  good.there = true;
+  activation = solver.activation();
 }
 
 Instability Guard::Implementation::judged(const Monitor& m, double imbalance, double largest) const
@@ -106,13 +108,17 @@ Instability Guard::Implementation::check()
 }
 
 // the first try begins at the latest good state, later ones earlier: what was found there may have begun before
-void Guard::Implementation::go_back(Instability finding, const Controls& target)
+void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
 {
-  if (tries > 0 && before.snapshot)
+  if (tries > 0 && before.there)
+  {
+    for (std::size_t m = 0; m < activation.size(); ++m)
+      activation[m] = std::max(activation[m], good.since[m]);
     std::swap(good, before);
+  }
   if (tries == settings.tries)
   {
-    const InstabilityReport report = examined(finding, target);
+    const InstabilityReport report = examined(finding, target, end);
     solver.restore(*good.snapshot);
     solver.slow_down(1);
     tries = 0;
@@ -124,13 +130,13 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target)
   counts.latest = finding;
   solver.restore(*good.snapshot);
   solver.slow_down(std::pow(settings.slower, tries));
-  before.snapshot.reset();
+  before.there = false;
   checked_at = steps();
   good_checks = 0;
 }
 
 // where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
-InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target)
+InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
 {
   std::vector<bool> moved;
   for (std::size_t b = 0; b < target.bone.size(); ++b)
@@ -145,20 +151,24 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
     worst = good.monitor;
     for (int step = 0; step < 2 * settings.interval; ++step)
     {
+      const double left = end - solver.time();
+      const double dt = std::min(solver.time_step(), left);
+      bool diverged = !(left > 0);
       try
       {
-        solver.advance(solver.time_step(), target);
+        if (!diverged)
+          solver.advance(dt, interpolate(solver.controls(), target, dt / left));
       }
       catch (const Diverged&)
       {
-        // the monitor sees it too
+        diverged = true;
       }
       const Monitor now = solver.monitor();
       const bool shows =
           worst.worst_jacobian < crushed || worst.critical_time_step < 0.5 * good.monitor.critical_time_step;
       if (now.finite || !shows)
         worst = now;
-      if (!now.finite)
+      if (!now.finite || diverged)
         break;
     }
   }
@@ -198,7 +208,7 @@ void Guard::restart()
   const double imbalance = g.settings.ledger ? g.solver.ledger().imbalance() : 0;
   g.good.largest_internal = g.before.largest_internal = 0;
   g.keep(monitor, imbalance);
-  g.before.snapshot.reset();
+  g.before.there = false;
   g.tries = 0;
   g.solver.slow_down(1);
   g.checked_at = g.steps();
@@ -232,7 +242,7 @@ void Guard::advance(double seconds, const Controls& target)
     }
     if (finding != Instability::none)
     {
-      g.go_back(finding, target);
+      g.go_back(finding, target, end);
       done = false;
     }
     else if (g.tries > 0 && g.good_checks >= g.settings.recovery)

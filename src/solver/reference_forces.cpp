@@ -105,11 +105,9 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
 void ReferenceSolver::look(std::size_t e, const Kinematics& k)
 {
   const auto& h = model_->spacing;
-  const double d[3] = { 1 / (h[0] * h[0]), 1 / (h[1] * h[1]), 1 / (h[2] * h[2]) };
-  const double sum = d[0] + d[1] + d[2];
-  const double weight[3] = { d[0] / sum, d[1] / sum, d[2] / sum };
-  const double squared = frequency_squared_now(voxels_[e], k, weight, *std::min_element(h.begin(), h.end()));
-  if (!(squared <= frequency_squared_))
+  const double squared = frequency_squared_now(voxels_[e], k, discretisation_.stretch_weight.data(),
+                                               *std::min_element(h.begin(), h.end()));
+  if (!(squared <= frequency_squared_) && frequency_squared_ == frequency_squared_)
     frequency_squared_ = squared;
 }
 

@@ -120,12 +120,8 @@ void SteppingSolver::displacements_were_set()
 void SteppingSolver::reset()
 {
   rest();
-  time_ = 0;
-  failed_ = false;
+  static_cast<Course&>(*this) = {};
   frequency_squared_ = discretisation_.frequency_squared_max;
-  wary_ = 0;
-  assembled_share_ = 1;
-  assembled_at_frequency_ = 0;
   controls_ = rest_controls(*model_);
   activation_ = controls_.activation;
   profile_ = {};

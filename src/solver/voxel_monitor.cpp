@@ -76,10 +76,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
   const auto& h = model.spacing;
   const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
   const double shortest = std::min({ h[0], h[1], h[2] });
-  double weight[3] = { 1 / (h[0] * h[0]), 1 / (h[1] * h[1]), 1 / (h[2] * h[2]) };
-  const double total = weight[0] + weight[1] + weight[2];
-  for (double& w : weight)
-    w /= total;
+  const double* const weight = d.stretch_weight.data();
   PlaneMonitor sum;
   for (std::size_t n = 0; n < v.size(); ++n)
     sum.kinetic += 0.5 * d.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);

@@ -1,5 +1,6 @@
 #include "backends.hpp"
 #include "effect_scene.hpp"
+#include "wrapped_solver.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/guard.hpp"
@@ -176,6 +177,87 @@ TEST_P(Guarded, bad_input_changes_nothing)
   for (const GuardSettings& bad : { GuardSettings{ -1 }, GuardSettings{ 64, 1.0 }, GuardSettings{ 64, 0.5, 0 },
                                     GuardSettings{ 64, 0.5, 4, -1 }, GuardSettings{ 64, 0.5, 4, 3, 1.5 } })
     EXPECT_THROW(Guard(*solver, model, bad), Error);
+}
+
+/// Shows the guard what a test wants, from a time on until the guard has gone back `times` times.
+struct ShownOtherwise : test::WrappedSolver
+{
+  using WrappedSolver::WrappedSolver;
+  std::function<void(Monitor&)> change;
+  double more_work = 0;  // that the ledger does not explain [J]
+  double from = 1;       // [s]
+  int times = 1, restored = 0;
+
+  bool now() { return WrappedSolver::time() > from && restored < times; }
+  void restore(const Snapshot& snapshot) override
+  {
+    ++restored;
+    WrappedSolver::restore(snapshot);
+  }
+  Monitor monitor() override
+  {
+    Monitor result = WrappedSolver::monitor();
+    if (change && now())
+      change(result);
+    return result;
+  }
+  EnergyLedger ledger() override
+  {
+    EnergyLedger result = WrappedSolver::ledger();
+    if (now())
+      result.kinetic += more_work;
+    return result;
+  }
+};
+
+TEST_P(Guarded, finds_hourglass_energy_too_long_steps_and_an_unbalanced_ledger)
+{
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  const std::pair<Instability, std::function<void(ShownOtherwise&)>> cases[] = {
+    { Instability::hourglass, [](ShownOtherwise& s) { s.change = [](Monitor& m) { m.hourglass += 1; }; } },
+    { Instability::time_step, [](ShownOtherwise& s) { s.change = [](Monitor& m) { m.step_share = 1.2; }; } },
+    { Instability::energy, [](ShownOtherwise& s) { s.more_work = s.ledger().largest; } },
+  };
+  for (const auto& [kind, show] : cases)
+  {
+    ShownOtherwise solver(make_solver(model, { GetParam(), 2, 0, true }));
+    GuardSettings settings = close();
+    settings.ledger = true;
+    Guard guard(solver, model, settings);
+    guard.advance(4e-3, full(solver, 0.7f));
+    EXPECT_EQ(guard.counts().rollbacks, 0);
+    show(solver);
+    solver.from = 4e-3;
+    guard.advance(4e-3, full(solver, 0.7f));
+    EXPECT_EQ(guard.counts().rollbacks, 1) << words_for(kind);
+    EXPECT_EQ(guard.counts().latest, kind) << words_for(guard.counts().latest);
+    EXPECT_DOUBLE_EQ(solver.time(), 8e-3);
+  }
+}
+
+// what led to the end is gone again as it was gone: no control may jump ahead
+TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
+{
+  struct Watched : ShownOtherwise
+  {
+    using ShownOtherwise::ShownOtherwise;
+    double begin = 0, most_ahead = 0;
+    void advance(double seconds, const Controls& target) override
+    {
+      const double due = (WrappedSolver::time() + seconds - begin) / 0.1;
+      most_ahead = std::max(most_ahead, double(target.activation[0]) - due);
+      ShownOtherwise::advance(seconds, target);
+    }
+  };
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  Watched solver(make_solver(model, { GetParam(), 2 }));
+  solver.from = 2e-3;
+  solver.times = 100;
+  solver.change = [](Monitor& m) { m.finite = false; };
+  Guard guard(solver, model, close());
+  EXPECT_THROW(guard.advance(0.1, full(solver, 1)), Unstable);
+  EXPECT_LT(solver.most_ahead, 1e-6);
+  EXPECT_GT(solver.restored, 4);
 }
 
 FRONTALIS_EVERY_BACKEND(Guarded);

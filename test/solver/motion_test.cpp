@@ -273,4 +273,22 @@ TEST_P(Motion, SameInputSameBits)
   }
 }
 
+// rigid nodes keep it from spreading
+TEST_P(Motion, OneNodeWithoutANumberIsFound)
+{
+  test::BlockSettings settings;
+  settings.voxels = { { 6, 2, 3 } };
+  Model model = test::block_model(settings);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] >= 2)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  const auto solver_ = solver(model);
+  Vectors u;
+  solver_->displacements(u);
+  u[0][1] = std::nan("");
+  solver_->set_displacements(u);
+  EXPECT_FALSE(solver_->monitor().finite);
+  EXPECT_THROW(solver_->advance(5e-3, solver_->controls()), Diverged);
+}
+
 FRONTALIS_EVERY_BACKEND(Motion);

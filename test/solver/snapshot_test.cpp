@@ -34,6 +34,7 @@ struct Variant
   std::string name;
   std::function<void(Model&)> change;
   bool ledger = false;
+  int parts = 1;  // of a play, 80 steps each
 };
 
 // every effect at once; a floor that a bone moves, with friction; all precisions; what is renewed now and then
@@ -41,7 +42,7 @@ std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
            { "ledger", [](Model&) {}, true },
-           { "assembled", [](Model& m) { m.time_step_estimate = TimeStepEstimate::assembled; } },
+           { "assembled", [](Model& m) { m.time_step_estimate = TimeStepEstimate::assembled; }, false, 4 },
            { "compensated", [](Model& m) { m.precision = Precision::compensated; } },
            { "double", [](Model& m) { m.precision = Precision::double_precision; } },
            { "reduced", [](Model& m) { m.integration = Integration::selective_reduced; } },
@@ -65,17 +66,17 @@ protected:
     variant.change(model);
     return make_solver(std::make_shared<const Model>(model), { GetParam(), 2, 0, variant.ledger });
   }
-  static Seen play(Solver& solver, bool ledger, float activation, double along)
+  static Seen play(Solver& solver, const Variant& variant, float activation, double along)
   {
     Controls controls = solver.controls();
     std::fill(controls.activation.begin(), controls.activation.end(), activation);
     for (auto& bone : controls.bone)
       bone = rigid_motion({ { 0, 0, 0 } }, { { along, 0, 2e-5 } });
-    // steps of about 5 us
-    solver.advance(5e-4, controls);
+    for (int part = 0; part < variant.parts; ++part)
+      solver.advance(1.6e-3, controls);
     Seen seen{ {}, solver.activation(), solver.time(), solver.time_step(), 0 };
     solver.displacements(seen.u);
-    if (ledger)
+    if (variant.ledger)
     {
       const EnergyLedger l = solver.ledger();
       seen.work = l.muscle + 3 * l.constraint + 5 * l.viscous + 7 * l.damping + 11 * l.friction + 13 * l.load;
@@ -89,29 +90,51 @@ TEST_P(Snapshots, motion_goes_on_with_the_same_bits)
   for (const Variant& variant : variants())
   {
     const auto solver = solver_of(variant);
-    play(*solver, variant.ledger, 0.7f, 1e-4);
+    play(*solver, variant, 0.7f, 1e-4);
     std::unique_ptr<Snapshot> snapshot;
     solver->save(snapshot);
-    const Seen first = play(*solver, variant.ledger, 0.2f, 3e-4);
+    const Seen first = play(*solver, variant, 0.2f, 3e-4);
     solver->restore(*snapshot);
-    const Seen second = play(*solver, variant.ledger, 0.2f, 3e-4);
+    const Seen second = play(*solver, variant, 0.2f, 3e-4);
     EXPECT_TRUE(first == second) << variant.name;
     // whatever happened in between
     solver->set_displacements(Vectors(first.u.size(), { { 1e-5, 0, 0 } }));
-    play(*solver, variant.ledger, 1, 0);
+    play(*solver, variant, 1, 0);
     solver->reset();
     solver->restore(*snapshot);
-    EXPECT_TRUE(play(*solver, variant.ledger, 0.2f, 3e-4) == first) << variant.name;
+    EXPECT_TRUE(play(*solver, variant, 0.2f, 3e-4) == first) << variant.name;
     // a snapshot does not show in the motion, nor does its memory in the next
     const auto plain = solver_of(variant);
-    play(*plain, variant.ledger, 0.7f, 1e-4);
-    EXPECT_TRUE(play(*plain, variant.ledger, 0.2f, 3e-4) == first) << variant.name;
+    play(*plain, variant, 0.7f, 1e-4);
+    EXPECT_TRUE(play(*plain, variant, 0.2f, 3e-4) == first) << variant.name;
     solver->save(snapshot);
-    const Seen third = play(*solver, variant.ledger, 0.5f, 0);
+    const Seen third = play(*solver, variant, 0.5f, 0);
     EXPECT_FALSE(third == first);
     solver->restore(*snapshot);
-    EXPECT_TRUE(play(*solver, variant.ledger, 0.5f, 0) == third) << variant.name;
+    EXPECT_TRUE(play(*solver, variant, 0.5f, 0) == third) << variant.name;
   }
+}
+
+TEST_P(Snapshots, a_reset_leaves_nothing_behind)
+{
+  for (const Variant& variant : variants())
+  {
+    const auto fresh = solver_of(variant), used = solver_of(variant);
+    play(*used, variant, 0.7f, 3e-4);
+    used->slow_down(0.5);
+    play(*used, variant, 0.2f, 1e-4);
+    used->slow_down(1);
+    used->reset();
+    EXPECT_EQ(used->monitor().step_share, 0) << variant.name;
+    EXPECT_TRUE(play(*used, variant, 0.7f, 1e-4) == play(*fresh, variant, 0.7f, 1e-4)) << variant.name;
+  }
+}
+
+// else the variant is the plain one
+TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
+{
+  const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);
+  EXPECT_GT(play(*other, variants()[2], 0.7f, 0).time_step, 1.01 * play(*one, variants()[2], 0.7f, 0).time_step);
 }
 
 TEST_P(Snapshots, belong_to_their_solver)
@@ -125,15 +148,15 @@ TEST_P(Snapshots, belong_to_their_solver)
 TEST_P(Snapshots, lead_back_from_a_motion_that_diverged)
 {
   const auto solver = solver_of(variants()[0]);
-  play(*solver, false, 0.7f, 0);
+  play(*solver, variants()[0], 0.7f, 0);
   std::unique_ptr<Snapshot> snapshot;
   solver->save(snapshot);
-  const Seen first = play(*solver, false, 0.2f, 0);
+  const Seen first = play(*solver, variants()[0], 0.2f, 0);
   solver->set_displacements(Vectors(first.u.size(), { { std::nan(""), 0, 0 } }));
-  EXPECT_THROW(play(*solver, false, 0.2f, 0), Diverged);
-  EXPECT_THROW(play(*solver, false, 0.2f, 0), Error);
+  EXPECT_THROW(play(*solver, variants()[0], 0.2f, 0), Diverged);
+  EXPECT_THROW(play(*solver, variants()[0], 0.2f, 0), Error);
   solver->restore(*snapshot);
-  EXPECT_TRUE(play(*solver, false, 0.2f, 0) == first);
+  EXPECT_TRUE(play(*solver, variants()[0], 0.2f, 0) == first);
 }
 
 TEST_P(Snapshots, the_time_step_can_be_taken_shorter)

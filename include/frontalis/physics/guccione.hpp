@@ -100,7 +100,7 @@ FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
   const GuccioneStrain<T> s = guccione_strain(material, k, g.value, fibre);
-  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T bend = isochoric_bend(g, k.J);
   T gradient_squared = N::of(0), cofactor_squared = N::of(0), strain_squared = N::of(0), along = N::of(0);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)

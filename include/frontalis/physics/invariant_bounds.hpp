@@ -27,7 +27,7 @@ FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>&
     for (int j = 0; j < 3; ++j)
       cofactor_squared = cofactor_squared + k.cofactor.a[i][j] * k.cofactor.a[i][j];
   const IsochoricScale<T> g = isochoric_scale(k.J);
-  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T bend = isochoric_bend(g, k.J);
   const T first = N::of(4) * g.value * g.value * w + N::of(4 * lines) * g.value * g.slope * w * k.J +
                   g.slope * g.slope * w * w * cofactor_squared;
   const T second = N::of(2) * g.value - N::of(4) * g.slope * N::sqrt(w * cofactor_squared) +

@@ -32,5 +32,13 @@ FRONTALIS_LAW IsochoricScale<T> isochoric_scale(T J)
   return { y2 + slope * N::min(J - N::of(j0), N::of(0)), slope };
 }
 
+/// g'' = 10/9 J^(-8/3) = 5/2 g'^2 / g, and 0 where g goes on as a straight line.
+template <class T>
+FRONTALIS_LAW T isochoric_bend(const IsochoricScale<T>& g, T J)
+{
+  using N = Number<T>;
+  return N::select(J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+}
+
 }  // namespace physics
 }  // namespace frontalis

@@ -70,7 +70,7 @@ FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinemat
   using N = Number<T>;
   const double root = 1.7320508075688772;
   const IsochoricScale<T> g = isochoric_scale(k.J);
-  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T bend = isochoric_bend(g, k.J);
   const T I2 = second_invariant(right_cauchy_green(k.F)), steep = -g.value * g.slope, stretch = N::sqrt(k.I1);
   const T second = g.value * g.value * (N::of(2) * k.I1 + N::of(4 / root) * N::sqrt(I2)) +
                    I2 * (N::of(8) * steep * stretch + N::of(2) * (g.slope * g.slope + g.value * bend) * I2 +

@@ -39,8 +39,7 @@ FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k
   const T dilatation = N::max(k.J - N::of(1), N::of(1) - k.J);
   const T volumetric = along - N::of(1) + dilatation * turning;
   const IsochoricScale<T> g = isochoric_scale(k.J);
-  // g'' = 10/9 J^(-8/3) = 5/2 g'^2 / g, and 0 where g goes on as a straight line
-  const T bend = N::select(k.J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
+  const T bend = isochoric_bend(g, k.J);
   const T isochoric = N::of(0.5) * k.I1 * bend * along - N::of(2) * g.slope * N::sqrt(k.I1 * along * largest) +
                       N::of(2) * g.value * largest - N::of(0.5) * g.slope * k.I1 * turning;
   // the same at F = 1: I1 = 3, cof F = 1, g' = -2/3

@@ -59,7 +59,7 @@ struct InstabilityReport
   std::string text() const;           ///< all of it, two or three sentences
 };
 
-/// The motion was stopped; the solver is at its last good state.
+/// The motion was stopped; the solver is at a good state: the latest, or the one before where that led here too.
 class Unstable : public Error
 {
 public:
@@ -71,10 +71,11 @@ public:
 /// there is nothing, and otherwise goes back to the last good one and takes shorter steps for a while.
 ///
 /// Energy, without a ledger: kinetic, internal and hourglass energy E may have grown since the last good check, t ago,
-/// to no more than twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2, where W is what the fibres can give (tension
-/// times volume times a stretch of 1.2), what bones and prescribed nodes that moved by d can have brought (half the
-/// bound of frequency squared times mass times d^2 of the voxels that hang on them) and what viscous stresses can give
-/// back; f are gravity and surface loads on nodes of mass m.
+/// to no more than twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2, where W is the energy of a strain of 1e-4
+/// everywhere, what the fibres can give (tension times volume times a stretch of 1.2, and of 0.3 of passive ones), what
+/// bones and prescribed nodes that moved by d can have brought (half the bound of frequency squared times mass times
+/// d^2 of the voxels that hang on them) and what viscous stresses can give back; f are gravity and surface loads on
+/// nodes of mass m.
 class Guard
 {
 public:
@@ -86,8 +87,8 @@ public:
   Guard& operator=(const Guard&) = delete;
 
   /// As Solver::advance, in parts, so that checks are in time. After a rollback controls go linearly from those of the
-  /// snapshot to `target`. Throws Error as advance() does; throws Unstable when `tries` in a row were in vain, with the
-  /// last good state restored.
+  /// snapshot to `target`. Throws Error as advance() does; throws Unstable when `tries` in a row were in vain, with a
+  /// good state restored.
   void advance(double seconds, const Controls& target);
   /// The present state is good: to be called after reset(), settle(), or displacements were set.
   void restart();
