@@ -56,7 +56,7 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
 
   // windows last until the change is a share of the displacement that rounding errors in float cannot make
   constexpr double clear = 1e-4;
-  constexpr int longest = 64;  // plans
+  constexpr int longest = 64;  // looks
   Equilibrium result;
   result.residual = 1;
   const double begin = time_;
@@ -66,15 +66,15 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
   displacements(u);
   internal_forces(f);
   double opened = time_;
-  int plans = 0;
+  int looks = 0;
   for (int good = 0; good < 4 && time_ - begin < seconds;)
   {
-    advance(std::min(steps_a_plan() * safe_time_step(), seconds - (time_ - begin)), target);
+    advance(std::min(steps_a_look() * safe_time_step(), seconds - (time_ - begin)), target);
     displacements(u_now);
     const double change = distance(u, u_now), moved = distance(rest, u_now);
-    if (change < clear * moved && ++plans < longest && time_ - begin < seconds)
+    if (change < clear * moved && ++looks < longest && time_ - begin < seconds)
       continue;
-    plans = 0;
+    looks = 0;
     const double window = time_ - opened;
     opened = time_;
     internal_forces(f_now);

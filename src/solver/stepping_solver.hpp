@@ -84,6 +84,8 @@ protected:
   virtual double run(const StepPlan& plan) = 0;
   /// Most steps between two looks at how far the voxels have stiffened.
   virtual int steps_a_plan() const { return 32; }
+  /// Steps between two looks at all displacements while it settles.
+  virtual int steps_a_look() const { return steps_a_plan(); }
   virtual void rest() = 0;  ///< displacements and velocities to zero
   /// What a backend keeps of its motion for a snapshot; `to` may hold an earlier one of its own, for its memory.
   virtual void save_fields(std::unique_ptr<Fields>& to) const = 0;

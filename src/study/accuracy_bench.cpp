@@ -28,15 +28,32 @@ std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend
   return content_hash(text + " " + std::to_string(plan_.history.ramp) + " " + std::to_string(plan_.history.hold));
 }
 
-// of any backend where it is the reference: a folder may come from a faster machine
-std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting) const
+// any for what has the reference's form: a folder may come from a faster machine
+std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) const
 {
-  std::optional<VariantMotion> motion = store_.motion(key_of(setting));
-  if (!motion && is_reference(setting))
-    for (const Backend backend : { Backend::cuda, Backend::cpu })
-      if (!motion)
-        motion = store_.motion(key_of(setting, backend));
-  return motion;
+  std::vector<Backend> backends{ setting.backend };
+  if (name_of(setting, reference_setting(plan_.standard, setting.profile.voxel[0])) == "standard")
+    backends.insert(backends.end(), { Backend::cuda, Backend::cpu });
+  return backends;
+}
+
+std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting, Backend& played_by) const
+{
+  for (const Backend backend : backends_of(setting))
+    if (std::optional<VariantMotion> motion = store_.motion(key_of(setting, backend)))
+    {
+      played_by = backend;
+      return motion;
+    }
+  return std::nullopt;
+}
+
+bool VariantBench::is_kept(const AccuracySetting& setting) const
+{
+  for (const Backend backend : backends_of(setting))
+    if (store_.has_motion(key_of(setting, backend)))
+      return true;
+  return false;
 }
 
 bool VariantBench::is_reference(const AccuracySetting& setting) const
@@ -46,13 +63,12 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
 
 double VariantBench::predicted(const AccuracySetting& setting) const
 {
-  return store_.has_motion(key_of(setting)) ? 0 : overhead_ + rate_ * relative_time(setting);
+  return is_kept(setting) ? 0 : overhead_ + rate_ * relative_time(setting);
 }
 
 bool VariantBench::fits(const AccuracySetting& setting)
 {
-  const bool fit =
-      plan_.budget <= 0 || store_.has_motion(key_of(setting)) || now() - begin_ + predicted(setting) <= plan_.budget;
+  const bool fit = plan_.budget <= 0 || is_kept(setting) || now() - begin_ + predicted(setting) <= plan_.budget;
   left_out_ += fit ? 0 : 1;
   return fit;
 }
@@ -71,7 +87,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   for (std::size_t p = 0; p < pending_.size(); ++p)
     if (key_of(pending_[p]) == key)
       pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(p--));
-  MeasuredVariant measured{ name.empty() ? name_of(setting, plan_.standard) : name, setting, {}, {} };
+  MeasuredVariant measured{ name.empty() ? name_of(setting, plan_.standard) : name, setting, setting.backend, {}, {} };
   double left = 0;
   for (const AccuracySetting& later : pending_)
     left += predicted(later);
@@ -79,7 +95,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   if (!go_on(0))
     throw StudyInterrupted();
 
-  std::optional<VariantMotion> motion = kept_motion(setting);
+  std::optional<VariantMotion> motion = kept_motion(setting, measured.played_by);
   std::optional<VariantCost> cost = store_.cost(key);
   // the reference's time says nothing and takes long
   const bool time_it = !is_reference(setting) && (!cost || cost->machine != machine_.at(setting.backend) ||
@@ -99,15 +115,16 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = now() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      motion = play_variant(model, setting, plan_.history, plan_.threads, go_on);
+      // a ledger says nothing of the reference, and a GPU takes twice as long with one
+      motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting), go_on);
       if (!motion)
         throw StudyInterrupted();
       store_.keep(key, *motion);
+      const double wall = now() - begin, relative = relative_time(setting);
+      overhead_ = overhead_ > 0 ? std::min(overhead_, wall) : wall;
+      if (wall > 4 * overhead_ || rate_ == 0 || wall < rate_ * relative)
+        rate_ = wall / relative;
     }
-    const double wall = now() - begin;
-    overhead_ = overhead_ > 0 ? std::min(overhead_, wall) : wall;
-    if (const double relative = relative_time(setting); wall > 4 * overhead_ || rate_ == 0)
-      rate_ = wall / relative;
     if (motion->fault.empty() && !is_reference(setting))
     {
       cost = time_variant(model, setting, plan_.history, plan_.threads, plan_.quick ? 0.3 : 1);

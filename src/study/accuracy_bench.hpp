@@ -19,6 +19,7 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
+  Backend played_by;  ///< another than the setting's where the folder had it of a faster machine
   VariantMotion motion;
   VariantCost cost;
 };
@@ -44,7 +45,7 @@ public:
   /// What is still to come, for the estimate of the time left.
   void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
 
-  /// Not timed, and taken from the folder whatever backend computed it.
+  /// Not timed. What has the reference's form, of any edge, is taken from the folder whatever backend computed it.
   void set_reference(const AccuracySetting& setting) { reference_ = setting; }
   /// Time step of the standard setting by the element bound, without scaled mass [s].
   double critical_time_step() const { return critical_; }
@@ -54,7 +55,9 @@ private:
   std::string key_of(const AccuracySetting& setting, Backend backend) const;
   std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
   bool is_reference(const AccuracySetting& setting) const;
-  std::optional<VariantMotion> kept_motion(const AccuracySetting& setting) const;
+  std::vector<Backend> backends_of(const AccuracySetting& setting) const;
+  bool is_kept(const AccuracySetting& setting) const;
+  std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
   void look_at_standard();
 
   const AccuracyPlan& plan_;

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <map>
+#include <numeric>
 
 namespace frontalis
 {
@@ -16,16 +17,34 @@ double mm(double metres) { return 1e3 * metres; }
 
 std::string short_mm(double metres) { return readable(mm(metres), 2) + " mm"; }
 
-// rows of a line that have figures, by cost
-Plot::Curve curve_of(const AccuracyFindings& findings, std::vector<std::size_t> rows, const std::string& name)
+// a knob as a reader knows it
+std::string knob_words(const std::string& knob)
 {
-  Plot::Curve curve;
-  curve.name = name;
+  static const std::map<std::string, std::string> words = {
+    { "voxel", "voxel edge" },         { "samples", "sampling density" },      { "fill_min", "least filling" },
+    { "hourglass", "hourglass form" }, { "integration", "selective reduced" }, { "share", "share of critical step" },
+    { "time_step", "time step form" }, { "mass_scaling", "mass scaling" },     { "poisson", "Poisson's ratio" },
+    { "time_scaling", "time scaling" }
+  };
+  const auto known = words.find(knob);
+  return known == words.end() ? knob : known->second;
+}
+
+// rows that have figures, cheapest first
+std::vector<std::size_t> by_cost(const AccuracyFindings& findings, std::vector<std::size_t> rows)
+{
   const auto figures = [&](std::size_t r) { return findings.rows[r].error.rms > 0 && findings.rows[r].cost > 0; };
   rows.erase(std::remove_if(rows.begin(), rows.end(), [&](std::size_t r) { return !figures(r); }), rows.end());
   std::sort(rows.begin(), rows.end(),
             [&](std::size_t a, std::size_t b) { return findings.rows[a].cost < findings.rows[b].cost; });
-  for (const std::size_t r : rows)
+  return rows;
+}
+
+Plot::Curve curve_of(const AccuracyFindings& findings, const std::vector<std::size_t>& rows, const std::string& name)
+{
+  Plot::Curve curve;
+  curve.name = name;
+  for (const std::size_t r : by_cost(findings, rows))
   {
     curve.x.push_back(findings.rows[r].cost);
     curve.y.push_back(mm(findings.rows[r].error.rms));
@@ -71,13 +90,13 @@ Table accuracy_table(const AccuracyFindings& findings)
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
 {
   Plot plot;
-  plot.title = title;
+  plot.title = title + "\n" + findings.machine;
   plot.x_label = "wall seconds a simulated second";
   plot.y_label = "error of the skin, RMS [mm]";
   plot.x_log = plot.y_log = true;
-  plot.key = "outside right top Left reverse";
-  plot.width = 1100;
-  plot.height = 640;
+  plot.key = "below Left reverse maxcols 3";
+  plot.width = 900;
+  plot.height = 680;
   double least = 1e300, most = 0, low = 1e300, high = 0;
   for (const AccuracyRow& row : findings.rows)
     if (row.error.rms > 0 && row.cost > 0)
@@ -89,10 +108,12 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
     }
   if (most == 0)
     return plot;
-  plot.x_from = least / 1.6;
-  plot.x_to = most * 1.6;
-  plot.y_from = std::min(low, mm(findings.reference_error)) / 1.3;
+  const double own = mm(findings.reference_error);
+  plot.x_from = std::min(least / 1.6, 0.7);
+  plot.x_to = std::max(most * 1.6, 1.5);
+  plot.y_from = std::min(low, own) / 1.3;
   plot.y_to = high * 1.3;
+  plot.shaded_below = own;
   for (double decade = 1e-6; decade < 1e6; decade *= 10)
     for (const double step : { 1.0, 1.5, 2.0, 3.0, 5.0, 7.0 })
     {
@@ -103,33 +124,35 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
         plot.x_ticks.push_back(tick);
     }
   std::vector<std::size_t> all(findings.rows.size());
-  for (std::size_t r = 0; r < all.size(); ++r)
-    all[r] = r;
+  std::iota(all.begin(), all.end(), 0);
   plot.curves.push_back(curve_of(findings, all, "all that was measured"));
   plot.curves.back().style = Plot::Style::faint;
   for (const KnobLine& line : findings.knobs)
   {
-    Plot::Curve curve = curve_of(findings, line.rows, line.knob);
-    if (curve.x.size() > 1)
-      plot.curves.push_back(std::move(curve));
+    Plot::Curve curve = curve_of(findings, line.rows, knob_words(line.knob));
+    if (curve.x.size() < 2)
+      continue;
+    if (line.knob == "voxel")
+    {
+      curve.coloured_labels = true;
+      for (const std::size_t r : by_cost(findings, line.rows))
+        curve.labels.push_back(short_mm(findings.rows[r].setting.profile.voxel[0]));
+    }
+    plot.curves.push_back(std::move(curve));
   }
-  Plot::Curve front = curve_of(findings, findings.front, "Pareto front");
-  front.style = Plot::Style::strong;
-  plot.curves.push_back(front);
+  plot.curves.push_back(curve_of(findings, findings.front, "Pareto front"));
+  plot.curves.back().style = Plot::Style::strong;
   // its points have numbers, their names stand in the legend
   for (std::size_t p = 0; p < findings.front.size(); ++p)
   {
     const AccuracyRow& row = findings.rows[findings.front[p]];
     const std::string number = std::to_string(p + 1);
     plot.curves.push_back(
-        { number + ": " + row.name, { row.cost }, { mm(row.error.rms) }, Plot::Style::strong, { number } });
+        { number + ": " + row.name, { row.cost }, { mm(row.error.rms) }, Plot::Style::strong, { number }, true });
   }
-  plot.curves.push_back({ "the reference's own error",
-                          { plot.x_from, plot.x_to },
-                          { mm(findings.reference_error), mm(findings.reference_error) },
-                          Plot::Style::dashed });
-  if (least < 1 && most > 1)
-    plot.curves.push_back({ "real time", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::dashed });
+  plot.curves.push_back(
+      { "", { plot.x_from, plot.x_to }, { own, own }, Plot::Style::guide, { "", "error of the reference" }, true });
+  plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
   return plot;
 }
 

@@ -127,7 +127,8 @@ double heap_bytes()
 }
 
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
-                                          const ActivationHistory& history, int threads, const GoOn& go_on)
+                                          const ActivationHistory& history, int threads, bool wants_ledger,
+                                          const GoOn& go_on)
 {
   VariantMotion motion;
   motion.voxels = static_cast<double>(model->voxels.size());
@@ -137,7 +138,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     SolverSettings settings;
     settings.backend = setting.backend;
     settings.threads = threads;
-    settings.ledger = true;
+    settings.ledger = wants_ledger;
     const auto solver = make_solver(model, settings);
     motion.phases.push_back(look(*solver, *model));
     const double length = history.ramp + history.hold;
@@ -157,8 +158,8 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       check_size(motion, *model);
     }
     motion.steps = static_cast<double>(solver->profile().steps) / length;
-    const EnergyLedger ledger = solver->ledger();
-    motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : 0;
+    const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
+    motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
 
     // it is at rest for a viewer when the skin no longer moves, whatever noise the nodes inside have
     VariantMotion last;

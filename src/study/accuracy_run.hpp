@@ -46,9 +46,11 @@ std::string machine_of(const Solver& solver, int threads);
 
 using GoOn = std::function<bool(double done)>;
 
-/// Plays the history and settles. nullopt where `go_on` ended it; faults of the motion are told in the result.
+/// Plays the history and settles. nullopt where `go_on` ended it; faults of the motion are told in the result. Without
+/// `ledger` its energy is NaN.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
-                                          const ActivationHistory& history, int threads, const GoOn& go_on);
+                                          const ActivationHistory& history, int threads, bool ledger,
+                                          const GoOn& go_on);
 
 /// Times steps with the history's activations reached, for about so many wall seconds.
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,

@@ -47,7 +47,7 @@ private:
   AccuracyFindings findings_;
 };
 
-// the coarse end tells what the fine one takes; levels that the budget does not allow are dropped
+// coarse to fine, each level telling what the next takes; those that the budget does not allow are dropped
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
@@ -56,30 +56,31 @@ void Study::choose_reference()
   for (const double edge : edges)
     levels.push_back(reference_at(edge));
   bench_.expect(levels);
-  for (std::size_t level = 0; level < 2; ++level)
-    bench_.measure(levels[level]);
-  if (plan_.budget > 0)
+  for (std::size_t level = 0; level < edges.size(); ++level)
   {
-    const auto share = [&](double edge) { return bench_.predicted(reference_at(edge)) / plan_.budget; };
-    while (edges.size() > 3 && share(edges.back()) > 0.4)
+    if (level + 1 == edges.size())
+      bench_.set_reference(levels[level]);
+    const double takes = bench_.predicted(levels[level]);
+    const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
+    if (level > 2 && share > 0.4)
     {
-      findings_.notes.push_back("Voxels of " + millimetres(edges.back()) + " were left out: about " +
-                                readable(share(edges.back()) * plan_.budget, 2) + " s do not fit the budget.");
-      edges.pop_back();
+      findings_.notes.push_back("Voxels of " + millimetres(edges[level]) +
+                                (level + 1 < edges.size() ? " and less" : "") + " were left out: about " +
+                                readable(takes, 2) + " s do not fit the budget.");
+      edges.resize(level);
+      break;
     }
-    if (share(edges.back()) > 0.8)
+    if (share > 0.8)
       throw Error("a budget of " + readable(plan_.budget, 4) + " s is too small for a comparison: the reference of " +
-                  millimetres(edges.back()) + " alone takes about " + readable(share(edges.back()) * plan_.budget, 2) +
+                  millimetres(edges[level]) + " alone takes about " + readable(takes, 2) +
                   " s here; allow more, or begin with larger voxels");
+    bench_.measure(levels[level]);
   }
   findings_.reference = reference_at(edges.back());
   bench_.set_reference(findings_.reference);
   reference_ = bench_.measure(findings_.reference);
   if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
     throw Error("the reference, voxels of " + millimetres(edges.back()) + ", is of no use: " + fault);
-  for (std::size_t level = 2; level + 1 < edges.size(); ++level)
-    if (bench_.fits(reference_at(edges[level])))
-      bench_.measure(reference_at(edges[level]));
 }
 
 void Study::measure_knobs()
@@ -211,6 +212,8 @@ AccuracyRow Study::row_of(const MeasuredVariant& measured) const
   row.landmark = landmark_error(measured.motion, motion_of(reference_));
   row.energy = measured.motion.energy;
   row.steps = measured.motion.steps;
+  if (measured.cost.machine.empty())
+    return row;
   row.step = measured.cost.step;
   row.cost = row.steps * row.step + plan_.frame_rate * measured.cost.skin;
   row.spread = measured.cost.spread;
@@ -254,7 +257,12 @@ AccuracyFindings Study::run()
     findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
   estimate_reference_error();
   for (const MeasuredVariant& measured : bench_.done())
+  {
     findings_.rows.push_back(row_of(measured));
+    if (measured.played_by != measured.setting.backend)
+      findings_.notes.push_back("'" + measured.name + "' has its motion of backend " + name_of(measured.played_by) +
+                                ", which the folder had.");
+  }
   // the reference is no setting among others
   AccuracyRow& reference = findings_.rows[reference_];
   reference.name = "reference: " + reference.name;

@@ -21,12 +21,12 @@ const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E6
 const char* const marks[] = { "7", "5" };
 const char* const more_marks[] = { "9", "13", "11" };
 
-// text between single quotes: doubled inside
+// text between single quotes: doubled inside; lines are joined from strings between double quotes
 std::string quoted(const std::string& text)
 {
   std::string out = "'";
   for (const char c : text)
-    out += c == '\'' ? std::string("''") : std::string(1, c);
+    out += c == '\'' ? std::string("''") : c == '\n' ? std::string("'.\"\\n\".'") : std::string(1, c);
   return out + "'";
 }
 
@@ -39,9 +39,11 @@ std::string quoted_as_format(const std::string& text)
   return out;
 }
 
+const char* colour_of(std::size_t index) { return colours[index % std::size(colours)]; }
+
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
-  const std::string colour = std::string(" lc rgb '") + colours[index % std::size(colours)] + "'";
+  const std::string colour = std::string(" lc rgb '") + colour_of(index) + "'";
   // a colour that comes again has another mark
   const bool again = index >= std::size(colours);
   const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
@@ -59,6 +61,8 @@ std::string style_of(const Plot::Curve& curve, std::size_t index)
       return "with points pt 7 ps 0.5 lc rgb '#bbbbbb'";
     case Plot::Style::strong:
       return "with linespoints lw 2.5 pt 7 ps 1.2 lc rgb '#222222'";
+    case Plot::Style::guide:
+      return "with lines lw 1.2 dt 4 lc rgb '#666666'";
     case Plot::Style::line_and_points:
       break;
   }
@@ -80,11 +84,15 @@ std::string script(const Plot& plot, const std::string& path)
     for (std::size_t i = 0; i < curve.labels.size(); ++i)
       if (!curve.labels[i].empty())
         out << "set label " << quoted(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i]
-            << " left offset 0.7,0.7 font ',13' front\n";
+            << (curve.labels_below ? " right offset -0.6,-0.8" : " left offset 0.7,0.7") << " font ',13' tc rgb '"
+            << (curve.coloured_labels ? colour_of(c) : "#222222") << "' front\n";
   }
+  if (plot.shaded_below > 0)
+    out << "set object rectangle from graph 0, graph 0 to graph 1, first " << plot.shaded_below
+        << " fc rgb '#f0f0f0' fs solid noborder behind\n";
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
-      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (plot.key == "below" ? "" : " opaque")
-      << " samplen 2 spacing 1.2\n"
+      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key
+      << (plot.key.rfind("below", 0) == 0 ? "" : " opaque") << " samplen 2 spacing 1.2\n"
       << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
       << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, from, to] :
@@ -119,10 +127,11 @@ std::string script(const Plot& plot, const std::string& path)
 
 void write_plot(const Plot& plot, const std::string& path)
 {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    throw Error("plot " + path + ": the program gnuplot is missing (Debian's package gnuplot-nox)");
   const std::string commands = path + ".gnuplot", messages = path + ".log";
   write_text(commands, script(plot, path));
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    throw Error("plot " + path + ": the program gnuplot is missing (Debian's package gnuplot-nox); " + commands +
+                " has what it is to draw");
   const bool drawn = std::system(("gnuplot '" + commands + "' 2>'" + messages + "' >&2").c_str()) == 0;
   std::ifstream log(messages);
   const std::string said{ std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>() };
