@@ -32,7 +32,8 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
   require(cudaStreamCreateWithFlags(&beside_, cudaStreamNonBlocking), "making a stream");
   for (cudaEvent_t* const event : { &asked_, &found_ })
     require(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "making an event");
-  const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2);
+  const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2) +
+                               (discretisation_.viscous_terms > 0 ? 128 * sizeof(float) : 0);
   for (auto& slot : slots_)
   {
     slot.staged = PinnedArray<char>(controls);

@@ -61,7 +61,7 @@ private:
   static constexpr int plan_slots = 3;
 
   StepArguments arguments(double dt) const;
-  void stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g);
+  void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(StepArguments& g, int begin, int end);
   std::vector<double> renewals(const StepPlan& plan);

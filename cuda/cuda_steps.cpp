@@ -28,12 +28,14 @@ StepArguments CudaSolver::arguments(double dt) const
   return g;
 }
 
-// look (cleared), activations, poses: one copy through page-locked memory
-void CudaSolver::stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g)
+// look (cleared), activations, poses, seconds by which viscous stresses relax within launches (none of them: empty):
+// one copy through page-locked memory
+void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
   const std::size_t poses_at = sizeof(double) * (1 + muscles);
-  const std::size_t bytes = poses_at + sizeof(double) * 12 * (plan.steps + 1) * bones;
+  const std::size_t relaxation_at = poses_at + sizeof(double) * 12 * (plan.steps + 1) * bones;
+  const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
   if (bytes > slot.staged.size())
   {
     slot.staged = PinnedArray<char>(bytes);
@@ -59,12 +61,15 @@ void CudaSolver::stage(const StepPlan& plan, PlanSlot& slot, StepArguments& g)
       std::memcpy(pose + 9 * sizeof(double), poses[b].translation.data(), 3 * sizeof(double));
     }
   }
+  if (!relaxation.empty())
+    std::memcpy(staged + relaxation_at, relaxation.data(), sizeof(float) * relaxation.size());
   require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
   char* const controls = slot.controls.data();
   g.look = reinterpret_cast<std::uint32_t*>(controls);
   g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
   g.activation_end = g.activation_begin + muscles;
   g.poses = reinterpret_cast<const double*>(controls + poses_at);
+  g.relaxation = relaxation.empty() ? nullptr : reinterpret_cast<const float*>(controls + relaxation_at);
 }
 
 void CudaSolver::step(StepArguments& g, int begin, int end)
@@ -123,7 +128,20 @@ double CudaSolver::run(const StepPlan& plan)
   StepArguments g = arguments(plan.dt);
   g.time = plan.time;
   g.steps = plan.steps;
-  stage(plan, slot, g);
+  const std::vector<double> elapsed = renewals(plan);
+  // patches relax their viscous stresses themselves, where nobody asks for their work
+  std::vector<float> relaxation;
+  if (launch_.patches && !account_ && !device_.viscosity().idle())
+  {
+    relaxation.push_back(0);
+    relaxation.insert(relaxation.end(), elapsed.begin(), elapsed.end() - 1);
+  }
+  stage(plan, relaxation, slot, g);
+  const auto relax_after = [&](int step)
+  {
+    if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
+      device_.viscosity().relax(g, u_[present_].data(), elapsed[step], stream_);
+  };
   require(launch_renewals(g, stream_), "renewing contacts");
   require(cudaEventRecord(asked_, stream_), "recording an event");
   require(cudaStreamWaitEvent(beside_, asked_), "waiting for an event");
@@ -138,18 +156,15 @@ double CudaSolver::run(const StepPlan& plan)
             "holding still nodes");
     still_moved_ = false;
     done = 1;
+    relax_after(0);
   }
-  const std::vector<double> elapsed = renewals(plan);
-  if (done == 1 && elapsed[0] > 0)
-    device_.viscosity().relax(g, u_[present_].data(), elapsed[0], stream_);
   while (done < plan.steps)
   {
     int end = done + 1;
-    while (end < plan.steps && elapsed[end - 1] == 0)
+    while (end < plan.steps && (!relaxation.empty() || elapsed[end - 1] == 0))
       ++end;
     do_steps(g, done, end);
-    if (elapsed[end - 1] > 0)
-      device_.viscosity().relax(g, u_[present_].data(), elapsed[end - 1], stream_);
+    relax_after(end - 1);
     done = end;
   }
   require(cudaStreamWaitEvent(stream_, found_), "waiting for an event");

@@ -37,7 +37,7 @@ void DeviceModel::run(const Model& model, const Discretisation& discretisation, 
   run_fibres(model, discretisation, running);
   run_tasks(running);
   run_friction(model, running);
-  choose_effects(discretisation, running);
+  choose_effects(running);
 }
 
 void DeviceModel::run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running)
@@ -76,9 +76,9 @@ void DeviceModel::run_tasks(EffectSet running)
   for (NodeTask& task : tasks)
   {
     if (loads_.idle())
-      task.load = -1;
+      task.of[node_load] = -1;
     if (!slides)
-      task.sliding = -1;
+      task.of[node_sliding] = -1;
   }
   tasks_.upload(tasks.data(), tasks.size());
   auto words = whole_.patch_tasks;
@@ -103,14 +103,16 @@ void DeviceModel::run_friction(const Model& model, EffectSet running)
   sliding_.upload(contacts.data(), contacts.size());
 }
 
-// the least of the instantiations that does what runs, among those that walk the strips as they are cut
-void DeviceModel::choose_effects(const Discretisation& discretisation, EffectSet running)
+// the least of the kernels that does what runs, among those that walk the strips as they are cut
+void DeviceModel::choose_effects(EffectSet running)
 {
-  const bool all = discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws ||
-                   (discretisation.viscous_terms > 0 && running.has(Effect::viscosity));
-  const bool fibres =
-      fibre_muscle_.size() > 0 && (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness));
-  const Effects least = all ? Effects::all : fibres ? Effects::fibres : Effects::none;
+  Effects least = most_effects_ & Effects::forms;
+  if (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness))
+    least = least | (most_effects_ & Effects::fibres);
+  if (running.has(Effect::viscosity))
+    least = least | (most_effects_ & Effects::viscosity);
+  if (running.has(Effect::sliding))
+    least = least | (most_effects_ & Effects::sliding);
   effects_ = launch_.patches || strip_rows(least) == strip_rows(most_effects_) ? least : Effects::fibres;
   launch_.effects = effects_;
 }

@@ -59,10 +59,14 @@ void expect_room(const Model& model, const VoxelCut& cut)
 
 Effects effects_of(const Model& model, const Discretisation& discretisation)
 {
-  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws ||
-      discretisation.viscous_terms > 0)
-    return Effects::all;
-  return model.fibre_muscle.empty() ? Effects::none : Effects::fibres;
+  Effects effects = Effects::none;
+  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws)
+    effects = effects | Effects::forms;
+  if (discretisation.viscous_terms > 0)
+    effects = effects | Effects::viscosity;
+  if (!model.fibre_muscle.empty())
+    effects = effects | Effects::fibres;
+  return effects;
 }
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut)
@@ -72,13 +76,12 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
     : most_effects_(effects_of(model, discretisation)),
-      effects_(most_effects_),
       device_node_((expect_room(model, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
-                 discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>())
+                 discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
+                 cut.patches != nullptr)
 {
-  launch_.effects = effects_;
   palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
@@ -86,6 +89,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
     add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
+  launch_.effects = effects_ = most_effects_;
   tasks_ = DeviceArray<NodeTask>(tasks);
 
   StepArguments& g = constants_;
@@ -251,7 +255,7 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     contact.friction = surface.friction;
     glides_.push_back(contact.glides ? 1 : 0);
     contact_surface_.push_back(node.surface);
-    task_of[node.node].sliding = static_cast<std::int32_t>(contacts.size());
+    task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(contacts.size());
     contacts.push_back(contact);
   }
   sliding_ = DeviceArray<SlidingContact>(contacts);
@@ -285,14 +289,14 @@ void DeviceModel::reset_contacts()
 // what holds or moves nodes, by device node; those that never move are not stepped at all
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
-  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, -1, -1, -1, -1 });
+  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1 } });
   add_sliding(model, task_of);
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-    task_of[loads_.nodes()[l]].load = static_cast<std::int32_t>(l);
+    task_of[loads_.nodes()[l]].of[node_load] = static_cast<std::int32_t>(l);
   std::vector<PrescribedMotion> prescribed;
   for (const auto& node : model.prescribed)
   {
-    std::int32_t& index = task_of[node.node].prescribed;
+    std::int32_t& index = task_of[node.node].of[node_prescribed];
     if (index < 0)
     {
       index = static_cast<std::int32_t>(prescribed.size());
@@ -312,7 +316,7 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
   for (const auto& node : model.rigid)
   {
     still[node.node] = node.bone < 0;
-    task_of[node.node].rigid = node.bone < 0 ? -1 : static_cast<std::int32_t>(rigid.size());
+    task_of[node.node].of[node_rigid] = node.bone < 0 ? -1 : static_cast<std::int32_t>(rigid.size());
     if (node.bone < 0)
       continue;
     RigidMotion motion{};
@@ -329,7 +333,7 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
     t.node = device_node_[n];
     if (still[n] != 0)
       still_nodes_.push_back(static_cast<std::uint32_t>(n));
-    else if (t.load >= 0 || t.sliding >= 0 || t.prescribed >= 0 || t.rigid >= 0)
+    else if (std::any_of(std::begin(t.of), std::end(t.of), [](std::int32_t index) { return index >= 0; }))
       tasks.push_back(t);
   }
   std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });

@@ -89,7 +89,7 @@ private:
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   void run_friction(const Model& model, EffectSet running);
-  void choose_effects(const Discretisation& discretisation, EffectSet running);
+  void choose_effects(EffectSet running);
 
   /// What arrays hold where every effect runs; kept from the first switch on.
   struct Whole
@@ -99,8 +99,8 @@ private:
     std::vector<std::int32_t> patch_tasks;
   };
 
-  const Effects most_effects_;  // where every effect of the model runs
-  Effects effects_;
+  Effects most_effects_;  // where every effect of the model runs
+  Effects effects_ = Effects::none;
   StepLaunch launch_{};
   std::vector<std::uint32_t> device_node_;
   std::vector<std::uint32_t> still_nodes_;

@@ -7,35 +7,42 @@ namespace cuda
 
 DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discretisation,
                                  const std::vector<std::uint32_t>& device_node,
-                                 const std::vector<std::uint32_t>& voxel_at)
+                                 const std::vector<std::uint32_t>& voxel_at, bool apart)
     : terms_(discretisation.viscous_terms)
 {
   if (terms_ == 0)
     return;
-  std::vector<std::uint32_t> index(model.voxels.size() + 1, 0);
+  std::vector<std::uint32_t> index(model.voxels.size() + 1, 0), words(voxel_at.size(), 0);
+  std::vector<float4> makes;
   VoxelProperties voxel;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  for (std::size_t place = 0; place < voxel_at.size(); ++place)
   {
+    std::uint32_t& known = index[voxel_at[place]];
+    if (voxel_at[place] == 0)
+      continue;
+    if (known > 0 && !apart)
+    {
+      words[place] = known;
+      continue;
+    }
+    const std::uint32_t e = voxel_at[place] - 1;
     discretisation.voxel(e, voxel);
     if (!(voxel.viscous_share[0] > 0 || voxel.viscous_share[1] > 0))
       continue;
-    voxel_.push_back(static_cast<std::uint32_t>(e));
-    index[e + 1] = static_cast<std::uint32_t>(voxel_.size());
+    counted_.push_back(known == 0 ? 1 : 0);
+    voxel_.push_back(e);
+    words[place] = known = static_cast<std::uint32_t>(voxel_.size());
     ViscousVoxel v{};
     for (int b = 0; b < 8; ++b)
       v.node[b] = device_node[model.voxel_nodes[e][b]];
-    for (int term = 0; term < 2; ++term)
-    {
-      v.share[term] = static_cast<float>(voxel.viscous_share[term]);
-      v.rate[term] = static_cast<float>(voxel.viscous_rate[term]);
-    }
     host_.push_back(v);
+    makes.push_back({ static_cast<float>(voxel.viscous_share[0]), static_cast<float>(voxel.viscous_share[1]),
+                      static_cast<float>(voxel.viscous_rate[0]), static_cast<float>(voxel.viscous_rate[1]) });
   }
-  std::vector<std::uint32_t> words(voxel_at.size());
-  for (std::size_t p = 0; p < voxel_at.size(); ++p)
-    words[p] = index[voxel_at[p]];
   words_ = DeviceArray<std::uint32_t>(words);
-  relaxed_ = DeviceArray<float>(static_cast<std::size_t>(terms_) * 6 * voxel_.size());
+  makes_ = DeviceArray<float4>(makes);
+  // of two terms their sum too, which is what a step reads
+  relaxed_ = DeviceArray<float>(static_cast<std::size_t>(terms_ == 2 ? 3 : 1) * 6 * voxel_.size());
 }
 
 void DeviceViscosity::set_palette(const std::vector<std::uint32_t>& entry_of_voxel)
@@ -49,13 +56,14 @@ void DeviceViscosity::set_palette(const std::vector<std::uint32_t>& entry_of_vox
 
 ViscousVoxels DeviceViscosity::view() const
 {
-  return { voxels_.data(), static_cast<std::uint32_t>(voxels_.size()), terms_, relaxed_.data(), account_.data() };
+  return { voxels_.data(), static_cast<std::uint32_t>(voxels_.size()), account_.data() };
 }
 
 void DeviceViscosity::describe(StepArguments& g) const
 {
   g.viscous_words = runs_ ? words_.data() : nullptr;
   g.relaxed = relaxed_.data();
+  g.viscous_makes = makes_.data();
   g.viscous_count = static_cast<std::uint32_t>(voxels_.size());
   g.viscous_terms = runs_ ? terms_ : 0;
 }
@@ -64,7 +72,7 @@ void DeviceViscosity::run(EffectSet running) { runs_ = running.has(Effect::visco
 
 void DeviceViscosity::list_allocations(AllocationList& list) const
 {
-  list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + words_.bytes());
+  list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + makes_.bytes() + words_.bytes());
   list.add(Effect::viscosity, "relaxed stresses", relaxed_.bytes());
   list.add(Effect::viscosity, "work of viscous stresses", account_.bytes());
 }
@@ -115,7 +123,8 @@ double DeviceViscosity::work() const
   account_.download(account);
   double sum = 0;
   for (std::size_t v = 0; v < voxels_.size(); ++v)
-    sum += account[2 * v] - account[2 * v + 1];
+    if (counted_[v] != 0)
+      sum += account[2 * v] - account[2 * v + 1];
   return sum;
 }
 

@@ -15,17 +15,17 @@ namespace cuda
 class DeviceViscosity
 {
 public:
-  /// `voxel_at`: 1 + the model voxel at each place of the strips or patches, 0: none.
+  /// `voxel_at`: 1 + the model voxel at each place of the strips or patches, 0: none. `apart`: a voxel in several
+  /// places has stresses of its own in each, so that those who compute it need not wait for each other.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
-                  const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at);
+                  const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
+                  bool apart);
 
   bool empty() const { return voxels_.size() == 0; }
   /// Off, nothing is read or renewed.
   void run(EffectSet running);
   bool idle() const { return empty() || !runs_; }
   void list_allocations(AllocationList& list) const;
-  /// Model voxels that are viscous, ascending.
-  const std::vector<std::uint32_t>& voxels() const { return voxel_; }
   /// Fills in what a step needs.
   void describe(StepArguments& g) const;
   /// The voxels' palette entries, once they are known.
@@ -54,10 +54,12 @@ private:
 
   int terms_ = 0;
   bool runs_ = true;
-  std::vector<std::uint32_t> voxel_;
-  std::vector<ViscousVoxel> host_;  // until palette entries are known
+  std::vector<std::uint32_t> voxel_;  // model voxel of each that is kept
+  std::vector<char> counted_;         // of each whether it is the first of its model voxel
+  std::vector<ViscousVoxel> host_;    // until palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
+  DeviceArray<float4> makes_;
   DeviceArray<float> relaxed_;
   DeviceArray<double> account_;
 };

@@ -62,8 +62,10 @@ __device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace 
       for (int i = 0; i < 3; ++i)
         along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
       const float squared = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
-      const float S = physics::fibre_stress<float>(squared, k.J, fibre.w, active, (word & 0x40000000u) ? 1.0f : 0.0f,
-                                                   (word & 0x80000000u) ? 1.0f : 0.0f);
+      const float with_length = (word & 0x40000000u) ? 1.0f : 0.0f;
+      const float S = (word & 0x80000000u) != 0
+                          ? physics::fibre_stress<float>(squared, k.J, fibre.w, active, with_length, 1.0f)
+                          : physics::fibre_stress<float, false>(squared, k.J, fibre.w, active, with_length, 0.0f);
 #pragma unroll
       for (int i = 0; i < 3; ++i)
       {
@@ -119,7 +121,7 @@ __device__ __forceinline__ physics::Matrix3<float> elastic_stress(const StepArgu
 #pragma unroll
     for (int j = 0; j < 3; ++j)
       P.a[i][j] = isotropic.on_gradient * k.F.a[i][j] + isotropic.on_cofactor * k.cofactor.a[i][j];
-  if (With == Effects::all && g.law_begin != nullptr)
+  if (has<With, Effects::forms> && g.law_begin != nullptr)
     add_laws(g, palette, k, P);
   return P;
 }
@@ -131,7 +133,7 @@ __device__ __forceinline__ void look_at(const StepArguments& g, std::uint32_t pa
 {
   const float growth = physics::stiffening(physics::NeoHookean<float>{ entry.x, entry.y }, k, g.stretch_weight);
   float now = entry.w * fmaxf(growth, 1.0f);
-  if (With == Effects::all && g.law_begin != nullptr)
+  if (has<With, Effects::forms> && g.law_begin != nullptr)
     now += stiffened(g, palette, k);
   // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
   frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
@@ -150,9 +152,9 @@ static __device__ __noinline__ void gauss_points(const StepArguments& g, std::ui
     physics::at_gauss_point(point, mode, moved);
     const auto k = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
     const physics::NeoHookean<float> material{ entry.x, 0.0f };
-    physics::add_gauss_forces(point, elastic_stress<Effects::all>(g, palette, material, k), g.scale, force);
+    physics::add_gauss_forces(point, elastic_stress<Effects::forms>(g, palette, material, k), g.scale, force);
     if (look && palette != 0)
-      look_at<Effects::all>(g, palette, entry, k, frequency_bits);
+      look_at<Effects::forms>(g, palette, entry, k, frequency_bits);
   }
   for (int c = 0; c < 3; ++c)
     for (int m = 0; m < 8; ++m)
@@ -169,17 +171,71 @@ __device__ __forceinline__ physics::Symmetric3<float> load_relaxed(const StepArg
   return H;
 }
 
-/// `activation`: one a muscle, in shared memory. Replaces the transformed displacements of a voxel by the forces
-/// conjugate to them; the one place where the GPU computes stress. Palette entry 0 has no stiffness, so that places
-/// without a voxel give exact zeros.
+/// Viscous stresses of a voxel relax by `elapsed` [s] towards those at k (physics/viscosity.hpp). `account`: two
+/// numbers a voxel, or null: see ViscousVoxels.
+template <Effects With>
+__device__ __forceinline__ void relax_voxel(const StepArguments& g, std::uint32_t voxel, std::uint32_t palette,
+                                            float elapsed, const physics::Kinematics<float>& k, double* account)
+{
+  const physics::NeoHookean<float> material{ __ldg(&g.palette[palette].x), 0.0f };
+  const auto S = physics::second_piola(k, elastic_stress<With>(g, palette, material, k));
+  const float4 make = __ldg(g.viscous_makes + voxel);
+  const auto store = [&](std::int32_t term, const physics::Symmetric3<float>& H)
+  {
+    for (int n = 0; n < 6; ++n)
+      g.relaxed[(6 * static_cast<std::size_t>(term) + n) * g.viscous_count + voxel] = H.a[n];
+  };
+  physics::Symmetric3<float> sum{};
+  double change = 0, now = 0;
+  for (std::int32_t term = 0; term < g.viscous_terms; ++term)
+  {
+    auto H = load_relaxed(g, voxel, term);
+    const float before = along_strain(k, H);
+    physics::relax(term == 0 ? make.x : make.y, expf(-(term == 0 ? make.z : make.w) * elapsed), S, H);
+    store(term, H);
+    for (int n = 0; n < 6; ++n)
+      sum.a[n] += H.a[n];
+    const float after = along_strain(k, H);
+    change += static_cast<double>(after - before);
+    now += static_cast<double>(after);
+  }
+  if (g.viscous_terms == 2)
+    store(2, sum);
+  if (account != nullptr)
+  {
+    account[2 * static_cast<std::size_t>(voxel)] += change;
+    account[2 * static_cast<std::size_t>(voxel) + 1] = now;
+  }
+}
+
+/// The same within a step: seldom, so that it is not inlined, and with copies, so that the others' numbers stay in
+/// registers.
+template <Effects With>
+static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t voxel, std::uint32_t palette,
+                                               float elapsed, const physics::Kinematics<float>& k)
+{
+  relax_voxel<With>(g, voxel, palette, elapsed, k, nullptr);
+}
+
+template <Effects With>
+__device__ __forceinline__ void relax_apart(const StepArguments& g, const ElementPlace& place, float elapsed,
+                                            const physics::Kinematics<float>& k)
+{
+  const physics::Kinematics<float> copy = k;
+  relax_copy<part<With, Effects::forms>>(g, place.viscous - 1, place.palette, elapsed, copy);
+}
+
+/// `activation`: one a muscle, in shared memory; `relaxes`: seconds by which viscous stresses relax first. Replaces the
+/// transformed displacements of a voxel by the forces conjugate to them; the one place where the GPU computes stress.
+/// Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
-                                               const float* activation, float (&mode)[3][8], bool look,
+                                               const float* activation, float relaxes, float (&mode)[3][8], bool look,
                                                std::uint32_t& frequency_bits)
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
-  const bool reduced = With == Effects::all && g.selective_reduced;
+  const bool reduced = has<With, Effects::forms> && g.selective_reduced;
   physics::Matrix3<float> P;
   if (reduced)
   {
@@ -192,21 +248,35 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
   }
   else
     P = elastic_stress<With>(g, place.palette, physics::NeoHookean<float>{ entry.x, entry.y }, k);
-  if (With != Effects::none)
+  if (has<With, Effects::fibres>)
     add_fibres(g, place, activation, k, P);
-  if (With == Effects::all && place.viscous != 0)
-    for (std::int32_t term = 0; term < g.viscous_terms; ++term)
-      physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, term), P);
+  if (has<With, Effects::viscosity> && place.viscous != 0)
+  {
+    if (relaxes > 0)
+      relax_apart<With>(g, place, relaxes, k);
+    // of two terms the sum lies behind them
+    physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, g.viscous_terms == 2 ? 2 : 0), P);
+  }
   if (look && place.palette != 0 && !reduced)
     look_at<With>(g, place.palette, entry, k, frequency_bits);
-  if (With == Effects::all && g.stabilisation != nullptr)
+  if (has<With, Effects::forms> && g.stabilisation != nullptr)
   {
     const float4 s = __ldg(g.stabilisation + place.palette);
     const physics::AssumedStrain<float> stiffness{ s.x, s.y, s.z, s.w };
     physics::hourglass_forces(stiffness, entry.z, g.hourglass_weight, k.F, mode, P);
   }
   else if (reduced)
-    gauss_points(g, place.palette, entry, mode, look, frequency_bits);
+  {
+    // a copy, so that the others' modes stay in registers
+    float force[3][8];
+    for (int c = 0; c < 3; ++c)
+      for (int m = 0; m < 8; ++m)
+        force[c][m] = mode[c][m];
+    gauss_points(g, place.palette, entry, force, look, frequency_bits);
+    for (int c = 0; c < 3; ++c)
+      for (int m = 0; m < 8; ++m)
+        mode[c][m] = force[c][m];
+  }
   else
   {
 #pragma unroll

@@ -86,7 +86,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<With>(g, place, activation, mode, look, frequency_bits);
+  element_forces<With>(g, place, activation, 0, mode, look, frequency_bits);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -193,12 +193,12 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
         raw_a = displacement(u, further[0]);
         raw_b = displacement(u, further[1]);
       }
-      if (With != Effects::none && fibre_word != nullptr)
+      if (has<With, Effects::fibres> && fibre_word != nullptr)
       {
         fetch_fibre(g, *fibre_word, place);
         fibre_word += 32;
       }
-      if (With == Effects::all && viscous_word != nullptr)
+      if (has<With, Effects::viscosity> && viscous_word != nullptr)
         place.viscous = viscous_word[(plane * nodes + r) * 32];
       NodeFetch fetch{};
       if (r > 0)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "built_effects.hpp"
 #include "frontalis/physics/sliding.hpp"
 #include "step_kernel.hpp"
 
@@ -162,60 +163,92 @@ __device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t 
       to[i][node] = v[i];
 }
 
-/// Loads, then sliding, prescribed and rigid motion of one node, after its update. `old`: displacement before it.
-__device__ __forceinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float* old,
-                                           float inverse_mass, int step, NodeState& n)
+/// A node in a step: displacement before it and inverse mass.
+struct NodeStep
 {
-  if (task.load >= 0)
+  float4 before;
+  std::uint32_t node;
+  int step;
+};
+
+static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                             NodeState& n)
+{
+  double force[3] = { 0, 0, 0 };
+  for (auto l = g.load_begin[index]; l < g.load_begin[index + 1]; ++l)
   {
-    double force[3] = { 0, 0, 0 };
-    for (auto l = g.load_begin[task.load]; l < g.load_begin[task.load + 1]; ++l)
-    {
-      const LoadPart part = g.load_parts[l];
-      const double share = part.weight * ramped(g.time + step * g.dt_exact, g.load_ramp[part.load]);
-      for (int i = 0; i < 3; ++i)
-        force[i] += share * g.vertex_force[3 * part.vertex + i];
-    }
+    const LoadPart part = g.load_parts[l];
+    const double share = part.weight * ramped(g.time + at.step * g.dt_exact, g.load_ramp[part.load]);
     for (int i = 0; i < 3; ++i)
+      force[i] += share * g.vertex_force[3 * part.vertex + i];
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    if (g.load_relief != nullptr)
+      force[i] += g.load_relief[3 * index + i];
+    const float change = g.gain * at.before.w * static_cast<float>(force[i]);
+    n.v[i] += change;
+    n.u[i] += g.dt * change;
+  }
+  keep_velocity(g.velocity_free, at.node, n.v);
+}
+
+static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                  NodeState& n)
+{
+  if (g.sliding[index].glides)
+    glide(g, index, at.step, at.before.w, n);
+  else
+    slide(g, index, g.contact_planes[index], n);
+}
+
+static __device__ __noinline__ void follow_path(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                NodeState& n)
+{
+  const PrescribedMotion& motion = g.prescribed[index];
+  const float old[3] = { at.before.x, at.before.y, at.before.z };
+  for (int i = 0; i < 3; ++i)
+    if (motion.fixed[i])
     {
-      if (g.load_relief != nullptr)
-        force[i] += g.load_relief[3 * task.load + i];
-      const float change = g.gain * inverse_mass * static_cast<float>(force[i]);
-      n.v[i] += change;
-      n.u[i] += g.dt * change;
-    }
-    keep_velocity(g.velocity_free, task.node, n.v);
-  }
-  if (task.sliding >= 0)
-  {
-    if (g.sliding[task.sliding].glides)
-      glide(g, task.sliding, step, inverse_mass, n);
-    else
-      slide(g, task.sliding, g.contact_planes[task.sliding], n);
-  }
-  if (task.prescribed >= 0)
-  {
-    const PrescribedMotion& motion = g.prescribed[task.prescribed];
-    for (int i = 0; i < 3; ++i)
-      if (motion.fixed[i])
-      {
-        n.u[i] = static_cast<float>(motion.value[i] * ramped(g.time + (step + 1) * g.dt_exact, motion.ramp[i]));
-        n.v[i] = (n.u[i] - old[i]) / g.dt;
-      }
-  }
-  if (task.rigid >= 0)
-  {
-    const RigidMotion& motion = g.rigid[task.rigid];
-    const double* pose = g.poses + 12 * ((step + std::size_t(1)) * g.bones + motion.bone);
-    for (int i = 0; i < 3; ++i)
-    {
-      double x = pose[9 + i] - motion.rest[i];
-      for (int j = 0; j < 3; ++j)
-        x += pose[3 * i + j] * motion.rest[j];
-      n.u[i] = static_cast<float>(x);
+      n.u[i] = static_cast<float>(motion.value[i] * ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
       n.v[i] = (n.u[i] - old[i]) / g.dt;
     }
+}
+
+static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                NodeState& n)
+{
+  const RigidMotion& motion = g.rigid[index];
+  const double* pose = g.poses + 12 * ((at.step + std::size_t(1)) * g.bones + motion.bone);
+  const float old[3] = { at.before.x, at.before.y, at.before.z };
+  for (int i = 0; i < 3; ++i)
+  {
+    double x = pose[9 + i] - motion.rest[i];
+    for (int j = 0; j < 3; ++j)
+      x += pose[3 * i + j] * motion.rest[j];
+    n.u[i] = static_cast<float>(x);
+    n.v[i] = (n.u[i] - old[i]) / g.dt;
   }
+}
+
+/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' code.
+using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
+static __device__ const NodeFunction node_functions[node_effects] = {
+  built_with(Effect::surface_loads) ? add_load : nullptr,
+  built_with(Effect::sliding) ? keep_distance : nullptr,
+  built_with(Effect::prescribed_displacement) ? follow_path : nullptr,
+  built_with(Effect::rigid_nodes) ? follow_bone : nullptr,
+};
+
+/// What one node has, after its update.
+static __device__ __noinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float4& before,
+                                               int step, NodeState& n)
+{
+  const NodeStep at{ before, task.node, step };
+#pragma unroll 1
+  for (int effect = 0; effect < node_effects; ++effect)
+    if (task.of[effect] >= 0)
+      node_functions[effect](g, task.of[effect], at, n);
 }
 
 /// The same for a node that has been written already.
@@ -224,9 +257,9 @@ __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask&
 {
   const float4 before = u[task.node];
   const float4 now = next[task.node];
-  const float old[3] = { before.x, before.y, before.z };
   NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  apply_task(g, task, old, now.w, step, n);
+  // the inverse mass of what is written: a buffer that was never stepped holds none
+  apply_task(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
   for (int i = 0; i < 3; ++i)
     g.v[i][task.node] = n.v[i];
   next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
@@ -254,7 +287,8 @@ __device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32
   NodeState n;
 #pragma unroll
   for (int i = 0; i < 3; ++i)
-    n.v[i] = g.keep * fetch.v[i] - share * force[i] + g.impulse[i];
+    // two multiply-adds, with gravity or without
+    n.v[i] = (g.keep * fetch.v[i] + g.impulse[i]) - share * force[i];
   n.u[0] = fetch.own.x + g.dt * n.v[0];
   n.u[1] = fetch.own.y + g.dt * n.v[1];
   n.u[2] = fetch.own.z + g.dt * n.v[2];

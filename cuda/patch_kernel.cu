@@ -1,6 +1,8 @@
 #include "element_stress.cuh"
 #include "node_tasks.cuh"
 
+#include <utility>
+
 namespace frontalis
 {
 namespace cuda
@@ -82,24 +84,23 @@ __device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::u
 {
   VoxelFetch voxel{};
   voxel.corner = __ldg(g.patch_corners + index);
-  if (With == Effects::none)
-    voxel.place.palette = __ldg(&g.patch_makes[index].x);
-  else
+  if (has<With, Effects::fibres>)
   {
     const uint2 make = __ldg(g.patch_makes + index);
     voxel.place.palette = make.x;
-    if (g.fibres != nullptr)
-      fetch_fibre(g, make.y, voxel.place);
+    fetch_fibre(g, make.y, voxel.place);
   }
-  if (With == Effects::all && g.viscous_words != nullptr)
+  else
+    voxel.place.palette = __ldg(&g.patch_makes[index].x);
+  if (has<With, Effects::viscosity>)
     voxel.place.viscous = __ldg(g.viscous_words + index);
   return voxel;
 }
 
 template <Effects With>
 __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel, const float* activation,
-                                           bool look, std::uint32_t& frequency_bits, const PatchMemory& memory,
-                                           std::uint32_t column)
+                                           float relaxes, bool look, std::uint32_t& frequency_bits,
+                                           const PatchMemory& memory, std::uint32_t column)
 {
   std::uint32_t corner[8];
   split(voxel.corner, corner);
@@ -115,7 +116,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
 #pragma unroll
   for (int c = 0; c < 3; ++c)
     physics::walsh_hadamard(mode[c]);
-  element_forces<With>(g, voxel.place, activation, mode, look, frequency_bits);
+  element_forces<With>(g, voxel.place, activation, relaxes, mode, look, frequency_bits);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
@@ -142,13 +143,14 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
 }
 
 /// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
+template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, std::uint32_t most_halo, bool on_border, bool last,
                                                 float4* next, int step)
 {
   const std::int32_t task = __ldg(g.patch_tasks + node);
   TangentPlane plane{};
-  if (task >= 0)
+  if (has<With, Effects::sliding> && task >= 0)
     plane = g.contact_planes[task];
   float force[3];
   sum_forces(memory, __ldg(g.node_voxels + node), force);
@@ -163,12 +165,14 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
   if (task != patch_task::still)
   {
     n = updated(g, node, fetch, force);
-    if (task >= 0)
+    if (has<With, Effects::sliding> && task >= 0)
       slide(g, task, plane, n);
     else if (task != patch_task::none)
     {
-      const float old[3] = { fetch.own.x, fetch.own.y, fetch.own.z };
-      apply_task(g, g.tasks[patch_task::other - task], old, fetch.own.w, step, n);
+      // a copy, so that the others' numbers stay in registers
+      NodeState held = n;
+      apply_task(g, g.tasks[patch_task::other - task], fetch.own, step, held);
+      n = held;
     }
 #pragma unroll
     for (int i = 0; i < 3; ++i)
@@ -186,11 +190,14 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
     send(next + node, n.u, mark(g, step + 1));
 }
 
-template <Effects With>
+// an int: nvcc does not name the sets of an enumeration
+template <int Set>
 __global__ void __launch_bounds__(512, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
 {
-  __shared__ float activation[With != Effects::none ? most_muscles : 1];
+  constexpr Effects With = static_cast<Effects>(Set);
+  __shared__ float activation[has<With, Effects::fibres> ? most_muscles : 1];
+  constexpr Effects plain = plain_part<With>;
   const PatchMemory memory = patch_memory(launch);
   std::uint32_t filled = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
@@ -215,14 +222,20 @@ __global__ void __launch_bounds__(512, 1)
     const bool look = g.look != nullptr && step + 1 == g.steps;
     std::uint32_t frequency_bits = 0;
     filled = 0;
-    if (With != Effects::none)
+    if (has<With, Effects::fibres>)
       set_activations(g, step, activation);
+    const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
     for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
     {
       const Patch patch = g.patches[p];
       VoxelFetch voxel{};
+      // whole warps: the first voxels have fibres or viscosity, the others ask for neither
+      const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
+      const auto fetch = [&](std::uint32_t v) {
+        return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
+      };
       if (threadIdx.x < patch.voxels)
-        voxel = fetch_voxel<With>(g, patch.voxel_begin + threadIdx.x);
+        voxel = fetch(threadIdx.x);
       for (std::uint32_t h = threadIdx.x; h < patch.halo; h += blockDim.x)
       {
         const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
@@ -232,13 +245,16 @@ __global__ void __launch_bounds__(512, 1)
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += blockDim.x)
       {
         if (v != threadIdx.x)
-          voxel = fetch_voxel<With>(g, patch.voxel_begin + v);
-        put_forces<With>(g, voxel, activation, look, frequency_bits, memory, v);
+          voxel = fetch(v);
+        if (is_plain(v))
+          put_forces<plain>(g, voxel, activation, 0, look, frequency_bits, memory, v);
+        else
+          put_forces<With>(g, voxel, activation, relaxes, look, frequency_bits, memory, v);
       }
       __syncthreads();
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
-        step_patch_node(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
-                        step + 1 == g.step_end, g.u[1 - present], step);
+        step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
+                              step + 1 == g.step_end, g.u[1 - present], step);
       filled += patch.nodes;
     }
     if (look)
@@ -253,12 +269,14 @@ __global__ void __launch_bounds__(512, 1)
 namespace
 {
 
-const void* kernel(Effects effects)
+template <int... Sets>
+const void* kernel(Effects effects, std::integer_sequence<int, Sets...>)
 {
-  return effects == Effects::none     ? reinterpret_cast<const void*>(patch_kernel<Effects::none>)
-         : effects == Effects::fibres ? reinterpret_cast<const void*>(patch_kernel<Effects::fibres>)
-                                      : reinterpret_cast<const void*>(patch_kernel<Effects::all>);
+  const void* const kernels[] = { reinterpret_cast<const void*>(patch_kernel<Sets>)... };
+  return kernels[static_cast<int>(effects)];
 }
+
+const void* kernel(Effects effects) { return kernel(effects, std::make_integer_sequence<int, effect_sets>()); }
 
 }  // namespace
 }  // namespace cuda

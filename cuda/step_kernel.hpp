@@ -1,5 +1,6 @@
 #pragma once
 
+#include "built_effects.hpp"
 #include "surface_contact.hpp"
 #include "voxel_patches.hpp"
 #include "voxel_strips.hpp"
@@ -12,14 +13,21 @@
 namespace frontalis
 {
 
-/// What holds or moves one node besides the forces of its voxels; indices below 0: not there.
+/// What holds or moves nodes besides the forces of their voxels, in the order in which it does.
+enum NodeEffect : std::uint8_t
+{
+  node_load,        ///< into StepArguments::load_begin
+  node_sliding,     ///< into StepArguments::sliding
+  node_prescribed,  ///< into StepArguments::prescribed
+  node_rigid,       ///< into StepArguments::rigid
+  node_effects      ///< how many there are
+};
+
+/// What one node has of them.
 struct NodeTask
 {
-  std::uint32_t node;       ///< device node
-  std::int32_t load;        ///< into StepArguments::load_begin
-  std::int32_t sliding;     ///< into StepArguments::sliding
-  std::int32_t prescribed;  ///< into StepArguments::prescribed
-  std::int32_t rigid;       ///< into StepArguments::rigid
+  std::uint32_t node;             ///< device node
+  std::int32_t of[node_effects];  ///< indices, by NodeEffect; below 0: not there
 };
 
 /// Part of a vertex's force that a node takes.
@@ -106,10 +114,12 @@ struct StepArguments
   const LawEntry* laws;
   bool selective_reduced;  ///< isochoric stress at eight points
   const std::uint32_t*
-      viscous_words;     ///< laid out as slots or patch_makes: 1 + viscous voxel, 0: none; null: no voxel is viscous
-  const float* relaxed;  ///< [term][component][viscous voxel] times tissue volume [N m]
+      viscous_words;  ///< laid out as slots or patch_makes: 1 + viscous voxel, 0: none; null: no voxel is viscous
+  float* relaxed;  ///< [term, then their sum where there are two][component][viscous voxel] times tissue volume [N m]
+  const float4* viscous_makes;  ///< of each viscous voxel: share of two terms, rate of two terms [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
+  const float* relaxation;  ///< of each step: seconds by which viscous stresses relax before it; null: not in a launch
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
@@ -171,13 +181,32 @@ constexpr std::int32_t other = -2;
 constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
-/// Kernels by what voxels need, so that those of a plain model hold no registers for more.
+/// What a kernel has within its loops over voxels and nodes. There is one for each set, so that what a model does not
+/// have takes neither registers nor instructions; what few nodes have is called through a table (node_tasks.cuh) and
+/// needs none.
 enum class Effects : std::uint8_t
 {
-  none,    ///< neo-Hookean with scalar hourglass control
-  fibres,  ///< muscles too
-  all      ///< everything else too
+  none = 0,  ///< neo-Hookean with scalar hourglass control
+  fibres = 1,
+  viscosity = 2,
+  forms = 4,   ///< other laws, hourglass controls and integrations
+  sliding = 8  ///< of nodes that do nothing else; where there are patches
 };
+constexpr int effect_sets = 16;
+constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
+constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
+// variables, which code for the device can use too
+inline constexpr Effects built_effects =
+    (built_with(Effect::fibre_stiffness) || built_with(Effect::contraction) ? Effects::fibres : Effects::none) |
+    (built_with(Effect::viscosity) ? Effects::viscosity : Effects::none) | Effects::forms |
+    (built_with(Effect::sliding) ? Effects::sliding : Effects::none);
+template <Effects Set, Effects Part>
+inline constexpr bool has = (Set & built_effects & Part) == Part;
+template <Effects Set, Effects Of>
+inline constexpr Effects part = Set& Of;
+/// What voxels that have neither fibres nor viscosity need of a kernel.
+template <Effects Set>
+inline constexpr Effects plain_part = Set&(Effects::forms | Effects::sliding);
 
 /// How the step kernel is launched for a model.
 struct StepLaunch

@@ -33,26 +33,7 @@ __global__ void __launch_bounds__(block)
     return;
   const ViscousVoxel voxel = viscous.voxels[v];
   const auto k = kinematics_of(g, u, voxel.node);
-  const float4 entry = g.palette[voxel.palette];
-  const physics::NeoHookean<float> material{ entry.x, 0.0f };
-  const auto S = physics::second_piola(k, elastic_stress<Effects::all>(g, voxel.palette, material, k));
-  double change = 0, now = 0;
-  for (std::int32_t term = 0; term < viscous.terms; ++term)
-  {
-    auto H = load_relaxed(g, v, term);
-    const float before = along_strain(k, H);
-    physics::relax(voxel.share[term], expf(-voxel.rate[term] * elapsed), S, H);
-    for (int n = 0; n < 6; ++n)
-      viscous.relaxed[(6 * static_cast<std::size_t>(term) + n) * viscous.count + v] = H.a[n];
-    const float after = along_strain(k, H);
-    change += static_cast<double>(after - before);
-    now += static_cast<double>(after);
-  }
-  if (viscous.account != nullptr)
-  {
-    viscous.account[2 * v] += change;
-    viscous.account[2 * v + 1] = now;
-  }
+  relax_voxel<Effects::forms>(g, v, voxel.palette, elapsed, k, viscous.account);
 }
 
 __global__ void __launch_bounds__(block)

@@ -10,15 +10,12 @@ struct ViscousVoxel
 {
   std::uint32_t node[8];  ///< device nodes
   std::uint32_t palette;
-  float share[2], rate[2];  ///< of the Prony terms; [1/s]
 };
 
 struct ViscousVoxels
 {
   const ViscousVoxel* voxels;
   std::uint32_t count;
-  std::int32_t terms;
-  float* relaxed;   ///< StepArguments::relaxed
   double* account;  ///< two a voxel: sum of the changes of H : E by relaxation, H : E now [J]; null: none kept
 };
 

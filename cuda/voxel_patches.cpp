@@ -11,12 +11,25 @@ namespace frontalis
 namespace
 {
 
-// what computing costs, in voxels without fibres
-constexpr float fibre_cost = 0.25f, node_cost = 0.3f;
+// what computing costs, in plain voxels
+constexpr float fibre_cost = 0.25f, viscous_cost = 0.35f, node_cost = 0.3f;
+
+std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
+
+bool is_viscous(const Model& model, std::size_t e)
+{
+  return std::any_of(model.mixture_material.begin() + model.mixture_begin[e],
+                     model.mixture_material.begin() + model.mixture_begin[e + 1],
+                     [&](auto material)
+                     {
+                       const auto& share = model.materials[material].viscous_share;
+                       return share[0] > 0 || share[1] > 0;
+                     });
+}
 
 float voxel_cost(const Model& model, std::size_t e)
 {
-  return 1 + fibre_cost * static_cast<float>(model.fibre_begin[e + 1] - model.fibre_begin[e]);
+  return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
 }
 
 // recursive bisection of nodes by weight, each time across where the nodes' cross-section is smallest
@@ -197,10 +210,12 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
     patches[p].halo = static_cast<std::uint32_t>(nodes.size());
     halo.insert(halo.end(), nodes.begin(), nodes.end());
     most_halo = std::max(most_halo, patches[p].halo);
-    std::stable_sort(
-        voxels_of[p].begin(), voxels_of[p].end(),
-        [&](std::uint32_t a, std::uint32_t b)
-        { return model.fibre_begin[a + 1] - model.fibre_begin[a] > model.fibre_begin[b + 1] - model.fibre_begin[b]; });
+    const auto rank = [&](std::uint32_t e) { return std::make_pair(is_viscous(model, e), fibres_of(model, e)); };
+    std::stable_sort(voxels_of[p].begin(), voxels_of[p].end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return rank(a) > rank(b); });
+    patches[p].special = static_cast<std::uint32_t>(
+        std::count_if(voxels_of[p].begin(), voxels_of[p].end(),
+                      [&](std::uint32_t e) { return rank(e) > std::make_pair(false, std::int32_t{ 0 }); }));
   }
 
   std::array<std::uint16_t, 8> none{};
@@ -226,7 +241,7 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   std::uint32_t next = 1;
   for (const auto& nodes : nodes_of)
   {
-    patches.push_back({ next, static_cast<std::uint32_t>(nodes.size()), 0, 0, 0, 0, 0 });
+    patches.push_back({ next, static_cast<std::uint32_t>(nodes.size()), 0, 0, 0, 0, 0, 0 });
     for (const auto n : nodes)
       device_node[n] = next++;
   }

@@ -25,6 +25,7 @@ struct Patch
   std::uint32_t border;       ///< of these the first so many are in other patches' halos
   std::uint32_t voxel_begin;  ///< into VoxelPatches::voxel
   std::uint32_t voxels;
+  std::uint32_t special;     ///< of these the first so many have fibres or viscosity
   std::uint32_t halo_begin;  ///< into VoxelPatches::halo
   std::uint32_t halo;
 };
@@ -37,7 +38,7 @@ struct VoxelPatches
   VoxelPatches(const Model& model, const PatchSettings& settings);
 
   std::vector<Patch> patches;
-  std::vector<std::uint32_t> voxel;                  ///< model voxel; those with most fibres first in each patch
+  std::vector<std::uint32_t> voxel;                  ///< model voxel; in each patch viscous ones first, then by fibres
   std::vector<std::array<std::uint16_t, 8>> corner;  ///< places of its corners
   std::vector<std::uint32_t> halo;                   ///< device nodes
   /// Of each device node: the voxel, counted within its patch, of which it is corner 0, 1, ... 7; most_voxels: there is

@@ -29,8 +29,20 @@ constexpr bool built_with([[maybe_unused]] Effect effect)
   if (effect == Effect::surface_loads)
     return false;
 #endif
+#if defined(FRONTALIS_WITHOUT_PRESCRIBED_DISPLACEMENT)
+  if (effect == Effect::prescribed_displacement)
+    return false;
+#endif
+#if defined(FRONTALIS_WITHOUT_RIGID_NODES)
+  if (effect == Effect::rigid_nodes)
+    return false;
+#endif
 #if defined(FRONTALIS_WITHOUT_SLIDING)
   if (effect == Effect::sliding)
+    return false;
+#endif
+#if defined(FRONTALIS_WITHOUT_FRICTION)
+  if (effect == Effect::friction)
     return false;
 #endif
   return true;
