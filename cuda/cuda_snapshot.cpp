@@ -1,4 +1,5 @@
 #include "cuda_mode.hpp"
+#include "device_archive.hpp"
 
 namespace frontalis
 {
@@ -8,6 +9,7 @@ namespace cuda
 // What the latest plan saw of the time step rules the plan after the next: it belongs to the motion.
 struct CudaSolver::Kept : SteppingSolver::Fields
 {
+  cudaStream_t stream = nullptr;  // which fills it
   DeviceArray<float4> u;
   DeviceArray<float> v[3];
   DeviceModel::Contacts contacts;
@@ -20,6 +22,21 @@ struct CudaSolver::Kept : SteppingSolver::Fields
   std::int64_t plans = 0;
   bool still_moved = false;
   double viscous_elapsed = 0;
+
+  void archive(ByteArchive& archive) override
+  {
+    require(cudaStreamSynchronize(stream), "waiting for a snapshot");
+    to_host(u, archive);
+    for (auto& component : v)
+      to_host(component, archive);
+    contacts.archive(archive);
+    viscosity.archive(archive);
+    book.archive(archive);
+    to_host(seen, archive);
+    archive(has_mode);
+    to_host(mode, archive);
+    archive(mode_largest)(mode_length)(plans)(still_moved)(viscous_elapsed);
+  }
 };
 
 void CudaSolver::save_fields(std::unique_ptr<Fields>& to) const
@@ -27,6 +44,7 @@ void CudaSolver::save_fields(std::unique_ptr<Fields>& to) const
   if (!to)
     to = std::make_unique<Kept>();
   Kept& kept = static_cast<Kept&>(*to);
+  kept.stream = stream_;
   kept.u.assign(u_[present_], stream_);
   for (int axis = 0; axis < 3; ++axis)
     kept.v[axis].assign(v_[axis], stream_);

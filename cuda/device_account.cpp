@@ -1,5 +1,7 @@
 #include "device_account.hpp"
 
+#include "device_archive.hpp"
+
 #include <numeric>
 
 namespace frontalis
@@ -27,6 +29,13 @@ void DeviceBook::assign(const DeviceBook& from, cudaStream_t stream)
   load.assign(from.load, stream);
   fibre_work.assign(from.fibre_work, stream);
   memory.assign(from.memory, stream);
+}
+
+void DeviceBook::archive(ByteArchive& archive)
+{
+  for (auto* const list : { &damping, &constraint, &beside, &friction, &load, &fibre_work })
+    to_host(*list, archive);
+  to_host(memory, archive);
 }
 
 DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)

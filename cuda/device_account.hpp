@@ -16,6 +16,7 @@ struct DeviceBook
   DeviceArray<float2> memory;
 
   void assign(const DeviceBook& from, cudaStream_t stream);
+  void archive(ByteArchive& archive);
 };
 
 /// Keeps such a book in device memory; summed on the host when asked for.

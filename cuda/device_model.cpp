@@ -1,5 +1,7 @@
 #include "device_model.hpp"
 
+#include "archive_contacts.hpp"
+#include "device_archive.hpp"
 #include "surface_tree.hpp"
 
 #include <algorithm>
@@ -262,6 +264,16 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
   contact_planes_ = DeviceArray<TangentPlane>(contacts.size());
   planes_ahead_ = DeviceArray<TangentPlane>(contacts.size());
   reset_contacts();
+}
+
+void DeviceModel::Contacts::archive(ByteArchive& archive)
+{
+  std::vector<SlidingContact> entries;
+  sliding.download(entries);
+  archive_contacts(entries, archive);
+  sliding.upload(entries.data(), entries.size());
+  to_host(planes, archive);
+  to_host(ahead, archive);
 }
 
 void DeviceModel::save(Contacts& to, cudaStream_t stream) const

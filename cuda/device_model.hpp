@@ -4,6 +4,7 @@
 #include "device_surface.hpp"
 #include "device_viscosity.hpp"
 #include "discretisation.hpp"
+#include "frontalis/byte_archive.hpp"
 #include "step_kernel.hpp"
 
 #include <memory>
@@ -59,6 +60,8 @@ public:
   {
     DeviceArray<SlidingContact> sliding;
     DeviceArray<TangentPlane> planes, ahead;
+
+    void archive(ByteArchive& archive);
   };
   void save(Contacts& to, cudaStream_t stream) const;
   void restore(const Contacts& from, cudaStream_t stream);

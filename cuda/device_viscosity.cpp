@@ -1,5 +1,7 @@
 #include "device_viscosity.hpp"
 
+#include "device_archive.hpp"
+
 namespace frontalis
 {
 namespace cuda
@@ -88,6 +90,12 @@ void DeviceViscosity::reset_account()
 {
   if (account_.size() > 0)
     require(cudaMemset(account_.data(), 0, account_.bytes()), "clearing an account");
+}
+
+void DeviceViscosity::Kept::archive(ByteArchive& archive)
+{
+  to_host(relaxed, archive);
+  to_host(account, archive);
 }
 
 void DeviceViscosity::save(Kept& to, cudaStream_t stream) const

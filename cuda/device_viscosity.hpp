@@ -2,6 +2,7 @@
 
 #include "device_memory.hpp"
 #include "discretisation.hpp"
+#include "frontalis/byte_archive.hpp"
 #include "voxel_kernels.hpp"
 
 #include <vector>
@@ -45,6 +46,8 @@ public:
   {
     DeviceArray<float> relaxed;
     DeviceArray<double> account;
+
+    void archive(ByteArchive& archive);
   };
   void save(Kept& to, cudaStream_t stream) const;
   void restore(const Kept& from, cudaStream_t stream);

@@ -135,6 +135,13 @@ struct CpuSolver<Real>::Kept : SteppingSolver::Fields
   double viscous_elapsed = 0;
   typename EnergyAccount<Real>::Book book;
   std::vector<FibreMemory> fibre_memory;
+
+  void archive(ByteArchive& archive) override
+  {
+    archive(u)(v)(rounding)(relaxed)(viscous_elapsed)(fibre_memory);
+    contacts.archive(archive);
+    book.archive(archive);
+  }
 };
 
 template <class Real>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "discretisation.hpp"
+#include "frontalis/byte_archive.hpp"
 
 #include <array>
 #include <vector>
@@ -27,6 +28,8 @@ struct WorkBook
   std::vector<Work> planes;
   std::array<std::vector<double>, 3>
       beside;  ///< how far constraints moved each node beside dt v in the latest step [m]
+
+  void archive(ByteArchive& archive) { archive(muscle)(viscous)(planes)(beside); }
 };
 
 /// Work of a step's impulses on the nodes, each along the mean of the velocities before and after the step: with that

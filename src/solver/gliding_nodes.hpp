@@ -1,5 +1,6 @@
 #pragma once
 
+#include "archive_contacts.hpp"
 #include "drive.hpp"
 #include "frontalis/solver/allocation.hpp"
 #include "surface_contact.hpp"
@@ -37,6 +38,7 @@ public:
   void rub(bool on) { rubs_ = on; }
   void list_allocations(AllocationList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   bool empty() const { return nodes_.empty(); }
+  void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }
   /// Those in [first, last), by node; they were added in the order of their nodes.
   std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
   /// As RestrictedNodes::friction_loss.

@@ -87,6 +87,13 @@ struct ReferenceSolver::Kept : Fields
   EnergyAccount<double>::Book book;
   std::vector<std::array<double, 2>> fibre_memory;
   double frequency_squared = 0;
+
+  void archive(ByteArchive& archive) override
+  {
+    archive(u)(v)(relaxed)(viscous_elapsed)(fibre_memory)(frequency_squared);
+    contacts.archive(archive);
+    book.archive(archive);
+  }
 };
 
 void ReferenceSolver::save_fields(std::unique_ptr<Fields>& to) const

@@ -28,6 +28,13 @@ public:
     GlidingNodes<Real> gliding;    ///< those whose surface follows a bone or has friction
     std::vector<Sliding> sliding;  ///< the others
     std::vector<Block> blocks;
+
+    void archive(ByteArchive& archive)
+    {
+      gliding.archive(archive);
+      archive_contacts(sliding, archive);
+      archive(blocks);
+    }
   };
 
   /// The kernel may read and write, unchanged, what lies between sliding nodes of one node plane.

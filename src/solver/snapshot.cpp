@@ -10,6 +10,13 @@ struct SteppingSolver::Motion : Snapshot
   std::int64_t steps = 0;
   EffectSet effects;
   std::unique_ptr<Fields> fields;
+
+  void archive(ByteArchive& archive)
+  {
+    course.archive(archive);
+    archive(steps)(effects);
+    fields->archive(archive);
+  }
 };
 
 void SteppingSolver::save(std::unique_ptr<Snapshot>& to)
@@ -48,6 +55,45 @@ void SteppingSolver::restore(const Snapshot& snapshot)
     displacements_were_set();
   else
     velocities_were_set();
+}
+
+// what it is a motion of comes first
+std::string SteppingSolver::pack()
+{
+  std::unique_ptr<Snapshot> snapshot;
+  save(snapshot);
+  ByteArchive archive;
+  std::string whose = owner();
+  archive(whose);
+  static_cast<Motion&>(*snapshot).archive(archive);
+  return archive.bytes();
+}
+
+void SteppingSolver::unpack(const std::string& bytes)
+{
+  std::unique_ptr<Snapshot> snapshot;
+  save(snapshot);
+  ByteArchive archive(bytes);
+  std::string whose;
+  try
+  {
+    archive(whose);
+    if (whose == owner())
+      static_cast<Motion&>(*snapshot).archive(archive);
+  }
+  catch (const Error& error)
+  {
+    throw Error(std::string("bytes of a motion: ") + error.what());
+  }
+  if (whose != owner())
+    throw Error("a motion of " + whose + ": allowed is one of " + owner());
+  restore(*snapshot);
+}
+
+std::string SteppingSolver::owner() const
+{
+  return description() + ", " + std::to_string(model_->voxels.size()) + " voxels, " +
+         std::to_string(model_->nodes.size()) + " nodes" + (wants_ledger_ ? ", with a ledger" : "");
 }
 
 void SteppingSolver::slow_down(double share)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "discretisation.hpp"
+#include "frontalis/byte_archive.hpp"
 #include "energy_account.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "restricted_nodes.hpp"
@@ -42,6 +43,13 @@ struct Course
   std::vector<float> activation_;
   EnergyLedger ledger_;
   double initial_ = 0;
+
+  void archive(ByteArchive& archive)
+  {
+    archive(time_)(latest_step_)(frequency_squared_)(wary_)(assembled_share_)(assembled_at_step_);
+    archive(assembled_at_frequency_)(assembled_at_activation_)(assembled_good_for_)(assembled_mode_);
+    archive(failed_)(controls_.activation)(controls_.bone)(activation_)(ledger_)(initial_);
+  }
 };
 
 /// What the backends on the host share: time, controls, the choice of the time step, equilibrium, energies.
@@ -54,6 +62,7 @@ public:
   struct Fields
   {
     virtual ~Fields() = default;
+    virtual void archive(ByteArchive& archive) = 0;
   };
 
   SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
@@ -65,6 +74,8 @@ public:
                      const std::function<bool(const Equilibrium&)>& go_on) override;
   void save(std::unique_ptr<Snapshot>& to) override;
   void restore(const Snapshot& snapshot) override;
+  std::string pack() override;
+  void unpack(const std::string& bytes) override;
   int steps_a_check() const override { return 512; }
   void slow_down(double share) override;
   double time() const override { return time_; }
@@ -147,6 +158,8 @@ private:
   void open_ledger();
 
   struct Motion;
+  /// Whose motions it can take back, for messages too.
+  std::string owner() const;
 
   EffectSet effects_;
   std::unique_ptr<SkinValues> skin_values_;  // from the first request on

@@ -39,6 +39,9 @@ public:
     turned_ = false;
   }
 
+  /// Takes the other's surface.
+  void stay_on(const SurfaceContact& other) { surface_ = other.surface_; }
+
 private:
   using N = physics::Number<double>;
   using Triangle = SurfaceSearch::Triangle;

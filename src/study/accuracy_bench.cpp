@@ -116,7 +116,9 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     if (!motion)
     {
       // a ledger says nothing of the reference, and a GPU takes twice as long with one
-      motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting), go_on);
+      motion =
+          play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
+                       { store_.checkpoint(key), [&](const VariantCheckpoint& c) { store_.keep(key, c); } }, go_on);
       if (!motion)
         throw StudyInterrupted();
       store_.keep(key, *motion);

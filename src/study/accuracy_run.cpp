@@ -7,6 +7,7 @@
 #include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +25,7 @@ namespace
 
 constexpr int slices_a_phase = 10;
 constexpr int repetitions = 9;
+constexpr double seconds_a_checkpoint = 30;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -89,6 +91,21 @@ std::vector<float> vertex_areas(const Model& model)
   return areas;
 }
 
+// false: nothing can be done with it
+bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
+{
+  try
+  {
+    solver.unpack(checkpoint.solver);
+  }
+  catch (const Error&)
+  {
+    return false;
+  }
+  state = checkpoint;
+  return true;
+}
+
 }  // namespace
 
 std::string machine_of(const Solver& solver, int threads)
@@ -128,9 +145,10 @@ double heap_bytes()
 
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool wants_ledger,
-                                          const GoOn& go_on)
+                                          const Checkpoints& checkpoints, const GoOn& go_on)
 {
-  VariantMotion motion;
+  VariantCheckpoint state;
+  VariantMotion& motion = state.motion;
   motion.voxels = static_cast<double>(model->voxels.size());
   motion.area = vertex_areas(*model);
   try
@@ -140,24 +158,46 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     settings.threads = threads;
     settings.ledger = wants_ledger;
     const auto solver = make_solver(model, settings);
-    motion.phases.push_back(look(*solver, *model));
-    const double length = history.ramp + history.hold;
-    double time = 0;
-    for (const double end : { 0.5 * history.ramp, history.ramp, length })
-    {
-      const double begin = time;
-      for (int slice = 1; slice <= slices_a_phase && end > begin; ++slice)
-      {
-        const double next = begin + (end - begin) * slice / slices_a_phase;
-        solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
-        time = next;
-        if (!go_on(0.8 * time / length))
-          return std::nullopt;
-      }
+    if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
       motion.phases.push_back(look(*solver, *model));
-      check_size(motion, *model);
+    const double steps_before = motion.steps;
+    double kept = now();
+    const auto keep = [&]
+    {
+      state.solver = solver->pack();
+      checkpoints.keep(state);
+      kept = now();
+    };
+    const double length = history.ramp + history.hold;
+    const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
+    const auto time_of = [&](std::int64_t slices)
+    {
+      const auto phase = static_cast<std::size_t>(slices / slices_a_phase);
+      const double share = static_cast<double>(slices % slices_a_phase) / slices_a_phase;
+      return share > 0 ? ends[phase] + (ends[phase + 1] - ends[phase]) * share : ends[phase];
+    };
+    while (state.slices < 3 * slices_a_phase)
+    {
+      const double time = time_of(state.slices), next = time_of(state.slices + 1);
+      if (next > time)
+        solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
+      ++state.slices;
+      motion.steps = steps_before + static_cast<double>(solver->profile().steps);
+      if (state.slices % slices_a_phase == 0)
+      {
+        motion.phases.push_back(look(*solver, *model));
+        check_size(motion, *model);
+      }
+      const bool interrupted = !go_on(0.8 * next / length);
+      if (interrupted || now() - kept > seconds_a_checkpoint)
+        keep();
+      if (interrupted)
+        return std::nullopt;
     }
-    motion.steps = static_cast<double>(solver->profile().steps) / length;
+    // what settles has no checkpoints of its own
+    state.solver = solver->pack();
+    const VariantCheckpoint played = state;
+    motion.steps /= length;
     const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
     motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
 
@@ -169,12 +209,12 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
     const Equilibrium found = solver->settle(controls_at(*solver, history, length), 1e-4, settling,
-                                             [&](const Equilibrium& state)
+                                             [&](const Equilibrium& equilibrium)
                                              {
-                                               interrupted = !go_on(0.8 + 0.2 * state.seconds / settling);
-                                               if (state.seconds - looked < 0.1 * settling)
+                                               interrupted = !go_on(0.8 + 0.2 * equilibrium.seconds / settling);
+                                               if (equilibrium.seconds - looked < 0.1 * settling)
                                                  return !interrupted;
-                                               looked = state.seconds;
+                                               looked = equilibrium.seconds;
                                                VariantMotion present = last;
                                                present.phases[1] = look(*solver, *model);
                                                const double moved = skin_errors(present, last)[1].rms;
@@ -182,7 +222,10 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
                                                return !interrupted && moved > 5e-4 * motion_size(last);
                                              });
     if (interrupted)
+    {
+      checkpoints.keep(played);
       return std::nullopt;
+    }
     motion.residual = found.residual;
     motion.phases.push_back(look(*solver, *model));
     check_size(motion, *model);

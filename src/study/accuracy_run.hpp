@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/byte_archive.hpp"
 #include "frontalis/study/accuracy.hpp"
 
 #include <array>
@@ -27,6 +28,8 @@ struct VariantMotion
   double energy = 0;              ///< what the ledger leaves unexplained, over its largest term
   double residual = 0;            ///< of equilibrium, as Solver::settle tells it
   double voxels = 0;
+
+  void archive(ByteArchive& archive);
 };
 
 /// What it cost: of one machine and one run.
@@ -39,6 +42,18 @@ struct VariantCost
   double skin = 0;  ///< one published skin [s]
   double memory = 0;
   double build = 0;  ///< [s]
+
+  void archive(ByteArchive& archive);
+};
+
+/// A motion under way.
+struct VariantCheckpoint
+{
+  VariantMotion motion;     ///< as far as it is known; its steps are a number
+  std::int64_t slices = 0;  ///< of the history that were played
+  std::string solver;       ///< Solver::pack()
+
+  void archive(ByteArchive& archive);
 };
 
 /// The machine that figures of cost belong to: processor or device and number of threads.
@@ -46,11 +61,19 @@ std::string machine_of(const Solver& solver, int threads);
 
 using GoOn = std::function<bool(double done)>;
 
+/// Where a motion goes on from, and what becomes of the states on its way: one each half minute of wall time and one
+/// where it is interrupted.
+struct Checkpoints
+{
+  std::optional<VariantCheckpoint> last;
+  std::function<void(const VariantCheckpoint&)> keep;
+};
+
 /// Plays the history and settles. nullopt where `go_on` ended it; faults of the motion are told in the result. Without
-/// `ledger` its energy is NaN.
+/// `ledger` its energy is NaN. Interrupted and resumed it is the same, bit for bit.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
-                                          const GoOn& go_on);
+                                          const Checkpoints& checkpoints, const GoOn& go_on);
 
 /// Times steps with the history's activations reached, for about so many wall seconds.
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
@@ -85,8 +108,13 @@ public:
   std::optional<VariantCost> cost(const std::string& key) const;
   void keep(const std::string& key, const VariantMotion& motion) const;
   void keep(const std::string& key, const VariantCost& cost) const;
+  /// Gone when the variant's motion is kept.
+  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;
+  void keep(const std::string& key, const VariantCheckpoint& checkpoint) const;
 
 private:
+  std::string checkpoint_path(const std::string& key) const;
+
   std::string folder_;
 };
 

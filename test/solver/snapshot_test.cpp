@@ -137,6 +137,30 @@ TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
   EXPECT_GT(play(*other, variants()[2], 0.7f, 0).time_step, 1.01 * play(*one, variants()[2], 0.7f, 0).time_step);
 }
 
+TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
+{
+  for (const Variant& variant : variants())
+  {
+    const auto solver = solver_of(variant);
+    play(*solver, variant, 0.7f, 1e-4);
+    const std::string bytes = solver->pack();
+    const Seen here = play(*solver, variant, 0.2f, 3e-4);
+    const auto other = solver_of(variant);
+    other->unpack(bytes);
+    EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == here) << variant.name;
+    // what is no motion of its own is refused, and nothing happens
+    const Seen before = play(*other, variant, 0.2f, 3e-4);
+    other->unpack(bytes);
+    play(*other, variant, 0.2f, 3e-4);
+    for (const std::string& bad : { std::string(), bytes.substr(0, bytes.size() / 2), "x" + bytes })
+      EXPECT_THROW(other->unpack(bad), Error);
+    EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == before) << variant.name;
+  }
+  Model larger = test::scene_of(0);
+  const auto stranger = make_solver(std::make_shared<const Model>(larger), { GetParam(), 2 });
+  EXPECT_THROW(stranger->unpack(solver_of(variants()[1])->pack()), Error);
+}
+
 TEST_P(Snapshots, belong_to_their_solver)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[0]);

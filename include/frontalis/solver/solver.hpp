@@ -91,6 +91,10 @@ public:
   virtual void save(std::unique_ptr<Snapshot>& to) = 0;
   /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on another's.
   virtual void restore(const Snapshot& snapshot) = 0;
+  /// The same as bytes, for a solver that another process makes of an equal model, on the same machine and with the
+  /// same settings. unpack() throws Error on what is no such motion, and leaves the state as it was.
+  virtual std::string pack() = 0;
+  virtual void unpack(const std::string& bytes) = 0;
   /// Steps that take about a hundred times as long as monitor() and save().
   virtual int steps_a_check() const = 0;
   /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
