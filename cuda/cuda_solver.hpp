@@ -61,6 +61,7 @@ private:
   static constexpr int plan_slots = 3;
 
   StepArguments arguments(double dt) const;
+  void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(StepArguments& g, int begin, int end);

@@ -8,23 +8,28 @@ namespace frontalis
 namespace cuda
 {
 
+void CudaSolver::kick(StepArguments& g, double seconds) const
+{
+  g.kick = seconds;
+  g.keep = static_cast<float>(keep(seconds));
+  g.gain = static_cast<float>(gain(seconds));
+  for (int axis = 0; axis < 3; ++axis)
+    g.impulse[axis] = static_cast<float>(gain(seconds) * gravity_[axis]);
+}
+
 StepArguments CudaSolver::arguments(double dt) const
 {
   StepArguments g = device_.arguments();
   for (int buffer = 0; buffer < 2; ++buffer)
     g.u[buffer] = u_[buffer].data();
   for (int axis = 0; axis < 3; ++axis)
-  {
     g.v[axis] = v_[axis].data();
-    g.impulse[axis] = static_cast<float>(gain(dt) * gravity_[axis]);
-  }
   if (account_)
     account_->describe(g);
   g.first = present_;
   g.dt = static_cast<float>(dt);
   g.dt_exact = dt;
-  g.keep = static_cast<float>(keep(dt));
-  g.gain = static_cast<float>(gain(dt));
+  kick(g, dt);
   return g;
 }
 
@@ -128,6 +133,7 @@ double CudaSolver::run(const StepPlan& plan)
   StepArguments g = arguments(plan.dt);
   g.time = plan.time;
   g.steps = plan.steps;
+  g.look_always = plan.closely;
   const std::vector<double> elapsed = renewals(plan);
   // patches relax their viscous stresses themselves, where nobody asks for their work
   std::vector<float> relaxation;
@@ -148,12 +154,15 @@ double CudaSolver::run(const StepPlan& plan)
   require(launch_renewals_ahead(g, beside_), "renewing contacts ahead");
   require(cudaEventRecord(found_, beside_), "recording an event");
   int done = 0;
-  if (still_moved_)
+  if (still_moved_ || plan.first_kick != plan.dt)
   {
     const int before = present_;
+    kick(g, plan.first_kick);
     do_steps(g, 0, 1);
-    require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
-            "holding still nodes");
+    kick(g, plan.dt);
+    if (still_moved_)
+      require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
+              "holding still nodes");
     still_moved_ = false;
     done = 1;
     relax_after(0);
@@ -172,12 +181,19 @@ double CudaSolver::run(const StepPlan& plan)
           "copying the frequency bound");
   require(cudaEventRecord(slot.done, stream_), "recording an event");
   ++plans_;
-  // the plan before, so that the device is never without work; the first one's own
-  const PlanSlot& before = slots_[(plans_ - (plans_ == 1 ? 1 : 2)) % plan_slots];
-  require(cudaEventSynchronize(before.done), "stepping");
-  float squared = 0;
-  std::memcpy(&squared, before.seen.data(), sizeof squared);
-  return squared;
+  const auto seen = [&](std::int64_t index)
+  {
+    const PlanSlot& of = slots_[index % plan_slots];
+    require(cudaEventSynchronize(of.done), "stepping");
+    float squared = 0;
+    std::memcpy(&squared, of.seen.data(), sizeof squared);
+    return double(squared);
+  };
+  // the plan before, so that the device is never without work; its own where there is none or motion changes fast
+  if (plans_ == 1 || plan.closely)
+    return seen(plans_ - 1);
+  const double before = seen(plans_ - 2);
+  return before > plan.alarm ? seen(plans_ - 1) : before;
 }
 
 // internal forces at other displacements; `out` must hold zeros where no voxel is

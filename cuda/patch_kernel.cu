@@ -219,7 +219,7 @@ __global__ void __launch_bounds__(512, 1)
   {
     const int present = (g.first + step - g.step_begin) & 1;
     const float4* const u = g.u[present];
-    const bool look = g.look != nullptr && step + 1 == g.steps;
+    const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
     filled = 0;
     if (has<With, Effects::fibres>)

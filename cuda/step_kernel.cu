@@ -19,7 +19,7 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
   const std::int32_t step = g.step_begin;
   const float4* const u = g.u[g.first];
   float4* const next = g.u[1 - g.first];
-  const bool look = g.look != nullptr && step + 1 == g.steps;
+  const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
   if (has<With, Effects::fibres>)
   {
     set_activations(g, step, activation);

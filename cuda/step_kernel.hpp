@@ -149,13 +149,15 @@ struct StepArguments
   float dt, keep, gain;       ///< v = keep v - gain f / m + impulse
   float impulse[3];
   double time, dt_exact;
+  double kick;                               ///< for how long forces change velocities in these steps [s]
   std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
-  std::uint32_t* look;                       ///< bits of the largest frequency bound squared at the plan's last step
-  bool forces_only;                          ///< internal forces into u[1 - first], nothing updated
-  float* velocity_before[3];                 ///< velocities before the update; null: no account of work is kept
-  float* velocity_free[3];                   ///< after it and the loads, before constraints
-  double* friction_work;                     ///< lost to friction, one a contact [J]; null: no account of work is kept
-  std::uint32_t steps_before;                ///< that this solver's launches have done before this one
+  std::uint32_t* look;         ///< bits of the largest frequency bound squared at the plan's last step, or all
+  bool look_always;            ///< at every step of the plan
+  bool forces_only;            ///< internal forces into u[1 - first], nothing updated
+  float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
+  float* velocity_free[3];     ///< after it and the loads, before constraints
+  double* friction_work;       ///< lost to friction, one a contact [J]; null: no account of work is kept
+  std::uint32_t steps_before;  ///< that this solver's launches have done before this one
 };
 
 /// Threads of a block of the strip kernel; a warp walks one strip.

@@ -82,12 +82,12 @@ __global__ void __launch_bounds__(block)
     const double old = g.velocity_before[i][n], free = g.velocity_free[i][n], now = g.v[i][n];
     damped += 0.25 * (old + now) * (old + free);
     constrained += 0.5 * (old + now) * (now - free);
-    const double beside = moved[i] - g.dt_exact * now, change = free - old + 0.5 * damping * g.dt_exact * (old + free);
-    constrained -= change * 0.5 * (beside + account.beside[3 * n + i]) / g.dt_exact;
+    const double beside = moved[i] - g.dt_exact * now, change = free - old + 0.5 * damping * g.kick * (old + free);
+    constrained -= change * 0.5 * (beside + account.beside[3 * n + i]) / g.kick;
     account.beside[3 * n + i] = beside;
   }
   const double mass = u.w > 0 ? 1.0 / double(u.w) : 0;
-  account.damping[n] += damping * g.dt_exact * mass * damped;
+  account.damping[n] += damping * g.kick * mass * damped;
   account.constraint[n] += mass * constrained;
 }
 
@@ -106,7 +106,7 @@ __global__ void __launch_bounds__(block)
     for (int i = 0; i < 3; ++i)
       work += share * g.vertex_force[3 * part.vertex + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
   }
-  account.load[l] += g.dt_exact * work;
+  account.load[l] += g.kick * work;
 }
 
 __global__ void __launch_bounds__(block)

@@ -49,6 +49,7 @@ struct CpuKernelArguments
   Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
   Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
   Real dt, keep, gain;         ///< v = keep v - gain f / m + impulse
+  Real kick;                   ///< for how long forces change velocities: dt, but in the first step of a plan [s]
   Real impulse[3];             ///< gain times gravity
   std::int32_t buffer_stride;  ///< numbers a component of a plane buffer
 };

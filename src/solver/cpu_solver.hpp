@@ -54,6 +54,7 @@ private:
   void separate(const Vectors& in, Components& out) const;
   void share_planes();
   Arguments arguments(double dt, const float* activation);
+  void kick(Arguments& g, double seconds) const;
   void forces(const Components& at, Vectors& out);
   void relax(double elapsed);
   void choose_passive();

@@ -8,6 +8,16 @@ namespace frontalis
 {
 
 template <class Real>
+void CpuSolver<Real>::kick(Arguments& g, double seconds) const
+{
+  g.kick = static_cast<Real>(seconds);
+  g.keep = static_cast<Real>(keep(seconds));
+  g.gain = static_cast<Real>(gain(seconds));
+  for (int axis = 0; axis < 3; ++axis)
+    g.impulse[axis] = static_cast<Real>(gain(seconds) * gravity_[axis]);
+}
+
+template <class Real>
 CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* activation)
 {
   Arguments g{};
@@ -19,7 +29,6 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
     g.v[axis] = v_[axis].data();
     g.rounding[axis] = rounding_[axis].empty() ? nullptr : rounding_[axis].data();
     g.scale[axis] = static_cast<Real>(0.25 / h[axis]);
-    g.impulse[axis] = static_cast<Real>(gain(dt) * gravity_[axis]);
     g.hourglass_weight[axis] = static_cast<Real>(discretisation_.hourglass_weight[axis]);
     g.stretch_weight[axis] = static_cast<Real>(discretisation_.stretch_weight[axis]);
   }
@@ -49,8 +58,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
     g.viscous_work = account_->viscous.data();
   }
   g.dt = static_cast<Real>(dt);
-  g.keep = static_cast<Real>(keep(dt));
-  g.gain = static_cast<Real>(gain(dt));
+  kick(g, dt);
   g.buffer_stride = buffer_stride_;
   return g;
 }
@@ -139,14 +147,14 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
 template <class Real>
 void CpuSolver<Real>::account(int thread, const Arguments& g)
 {
-  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, damping_, double(g.dt));
+  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, damping_, double(g.dt), double(g.kick));
   for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
     account_->friction(k, restricted_, g.v);
   const auto& nodes = loads_.nodes();
   for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
     for (auto l = std::lower_bound(nodes.begin(), nodes.end(), rows_.plane_nodes[k]) - nodes.begin();
          l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < rows_.plane_nodes[k + 1]; ++l)
-      account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.dt));
+      account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.kick));
 }
 
 template <class Real>
@@ -172,7 +180,8 @@ double CpuSolver<Real>::run(const StepPlan& plan)
     viscous_elapsed_ = 0;
   }
   std::vector<Real> seen(team_.size(), 0);
-  const Arguments first = arguments(plan.dt, nullptr);
+  Arguments first = arguments(plan.dt, nullptr);
+  kick(first, plan.first_kick);
   team_.run(
       [&](int t)
       {
@@ -182,6 +191,8 @@ double CpuSolver<Real>::run(const StepPlan& plan)
         Real* const buffer = buffers_[t].data();
         for (int step = 0; step < plan.steps; ++step)
         {
+          if (step == 1)
+            kick(g, plan.dt);
           g.activation = activation.data() + step * muscles;
           if (account_)
             account_->before(begin, end, g.v);
@@ -191,9 +202,9 @@ double CpuSolver<Real>::run(const StepPlan& plan)
               loads_.update(plan.time + step * plan.dt, g.u);
             team_.barrier();
           }
-          const auto task = step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
+          const auto task = plan.closely || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
-          if (step + 1 == plan.steps)
+          if (!(frequency_squared <= seen[t]))
             seen[t] = frequency_squared;
           if (!loads_.idle())
             add_loads(begin, end, g);

@@ -39,7 +39,7 @@ void EnergyAccount<Real>::copy(std::int32_t first, std::int32_t last, const Real
 
 template <class Real>
 void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Real* const u_before[3],
-                                const Real* const u[3], const Real* const v[3], double damping, double dt)
+                                const Real* const u[3], const Real* const v[3], double damping, double dt, double kick)
 {
   for (auto k = first; k < last; ++k)
     for (int axis = 0; axis < 3; ++axis)
@@ -54,21 +54,21 @@ void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Rea
         constrained += impulse * (double(v[axis][n]) - double(free[n]));
         const double apart = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
         const double change =
-            double(free[n]) - double(old[n]) + 0.5 * damping * dt * (double(old[n]) + double(free[n]));
+            double(free[n]) - double(old[n]) + 0.5 * damping * kick * (double(old[n]) + double(free[n]));
         displaced += mass_[n] * change * 0.5 * (apart + beside[axis][n]);
         beside[axis][n] = apart;
       }
-      planes[k].damping += damping * dt * damped;
-      planes[k].constraint += constrained - displaced / dt;
+      planes[k].damping += damping * kick * damped;
+      planes[k].constraint += constrained - displaced / kick;
     }
 }
 
 template <class Real>
 void EnergyAccount<Real>::load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force,
-                               const Real* const v[3], double dt)
+                               const Real* const v[3], double kick)
 {
   for (int axis = 0; axis < 3; ++axis)
-    planes[plane].load += dt * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
+    planes[plane].load += kick * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
 }
 
 template <class Real>

@@ -48,11 +48,12 @@ public:
   void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }
   /// The same after the update and the loads, before constraints.
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
-  /// Adds the step's work in planes [first, last); damping [1/s], dt [s]; u_before and u are the displacements before
+  /// Adds the step's work in planes [first, last); damping [1/s], dt [s], kick: for how long forces changed velocities
+  /// [s]; u_before and u are the displacements before
   /// and after it [m]. Where constraints moved a node by d other than dt v says, the other forces worked along d too,
   /// by the mean of those of this step and the next, and the constraints took that away.
   void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
-             const Real* const v[3], double damping, double dt);
+             const Real* const v[3], double damping, double dt, double kick);
   /// Adds what friction took in plane k; restricted: RestrictedNodes<Real>.
   template <class Restricted>
   void friction(std::int32_t k, const Restricted& restricted, const Real* const v[3])
@@ -61,9 +62,9 @@ public:
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
     planes[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
-  /// Adds the work of a force on a node of a plane over the step, after after().
+  /// Adds the work of a force on a node of a plane over the step, after after(); kick as there.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
-            double dt);
+            double kick);
   Work work() const;
 
   /// All that is in the account between two steps.

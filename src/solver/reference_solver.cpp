@@ -195,12 +195,13 @@ Work ReferenceSolver::work()
 double ReferenceSolver::run(const StepPlan& plan)
 {
   std::vector<float> activation(model_->muscles.size(), 0);
-  const double keep = this->keep(plan.dt), gain = this->gain(plan.dt);
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
   const auto count = static_cast<std::int32_t>(model_->nodes.size());
+  double worst = 0;
   for (int step = 0; step < plan.steps; ++step)
   {
+    const double kick = step == 0 ? plan.first_kick : plan.dt, keep = this->keep(kick), gain = this->gain(kick);
     if (runs(Effect::contraction))
       plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
@@ -210,6 +211,8 @@ double ReferenceSolver::run(const StepPlan& plan)
       for (int axis = 0; axis < 3; ++axis)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
     const Components before = u_;
+    if (plan.closely || step + 1 == plan.steps)
+      worst = frequency_squared_ <= worst ? worst : frequency_squared_;
     if (account_)
       account_->before(0, count, v);
     for (int axis = 0; axis < 3; ++axis)
@@ -225,11 +228,11 @@ double ReferenceSolver::run(const StepPlan& plan)
     restricted_.apply(0, count, u, v, old, plan.drive(step));
     if (account_)
     {
-      account_->after(0, model_->size[2] + 1, old, u, v, damping_, plan.dt);
+      account_->after(0, model_->size[2] + 1, old, u, v, damping_, plan.dt, kick);
       for (std::int32_t k = 0; k <= model_->size[2]; ++k)
         account_->friction(k, restricted_, v);
       for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-        account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, plan.dt);
+        account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, kick);
     }
     viscous_elapsed_ += plan.dt;
     if (relaxes() && (step + 1 == plan.steps || viscous_elapsed_ >= viscous_interval()))
@@ -238,7 +241,7 @@ double ReferenceSolver::run(const StepPlan& plan)
       viscous_elapsed_ = 0;
     }
   }
-  return frequency_squared_;
+  return worst;
 }
 
 std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)

@@ -19,8 +19,13 @@ namespace
 {
 
 constexpr double stiffening_allowed = 1.1;  // of the frequency squared from look to look
-constexpr int wary_looks = 16;
-constexpr double bone_way_a_step = 0.1;  // of the shortest edge of a voxel
+constexpr int wary_looks = 8;
+constexpr int close_steps = 8;  // between looks that follow closely
+constexpr int looks_after_a_switch = 6;
+constexpr double much_stiffer = 4;         // than at rest, of the frequency squared
+constexpr double alert_share = 0.55;       // of the critical time step
+constexpr float activation_a_plan = 0.3F;  // that calls for close looks
+constexpr double bone_way_a_step = 0.1;    // of the shortest edge of a voxel
 
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
@@ -85,13 +90,31 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
   }
 }
 
-double SteppingSolver::critical_frequency_squared() const { return frequency_squared_ * assembled_share_; }
+double SteppingSolver::critical_frequency_squared() const
+{
+  // what softens in the stiffest voxel need not soften in the assembled model
+  if (assembled_share_ < 1)
+    return assembled_share_ * std::max(frequency_squared_, assembled_at_frequency_);
+  return frequency_squared_;
+}
+
+bool SteppingSolver::alert() const
+{
+  return wary_ > 0 || frequency_squared_ > much_stiffer * discretisation_.frequency_squared_max;
+}
 
 double SteppingSolver::safe_time_step() const
 {
   const double critical = 2 / std::sqrt(critical_frequency_squared());
   return slow_share_ *
          (forced_time_step_ > 0 ? std::min(forced_time_step_, critical) : model_->time_step_share * critical);
+}
+
+// Just below the critical step what stiffens as it vibrates gains or loses energy in every swing.
+double SteppingSolver::careful_time_step() const
+{
+  const double safe = safe_time_step();
+  return alert() ? std::min(safe, slow_share_ * alert_share * 2 / std::sqrt(critical_frequency_squared())) : safe;
 }
 
 double SteppingSolver::keep(double dt) const { return (1 - 0.5 * damping_ * dt) / (1 + 0.5 * damping_ * dt); }
@@ -109,6 +132,7 @@ void SteppingSolver::displacements_were_set()
   const double critical = monitor().critical_time_step;
   const double squared = 4 / (critical * critical);
   frequency_squared_ = discretisation_.frequency_squared_max;
+  latest_step_ = 0;
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
   wary_ = wary_looks;
@@ -217,13 +241,14 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_bound(target.activation);
     const double remaining = end - time_;
-    // where voxels stiffen much from look to look, looks follow closely
-    const double longest = std::min(safe_time_step(), steady);
+    const double longest = std::min(careful_time_step(), steady);
     const double steps_left = std::ceil(remaining / longest * (1 - 1e-9));
-    const int most_steps = wary_ > 0 || longest < safe_time_step() ? 8 : steps_a_plan();
     StepPlan plan;
+    plan.closely = alert() || longest == steady;
+    const int most_steps = plan.closely ? close_steps : steps_a_plan();
     plan.steps = static_cast<int>(std::min<double>(steps_left, most_steps));
     plan.dt = remaining / steps_left;
+    plan.first_kick = latest_step_ > 0 ? 0.5 * (latest_step_ + plan.dt) : plan.dt;
     plan.time = time_;
     const bool last = steps_left <= most_steps;
     const double reached = last ? end : time_ + plan.steps * plan.dt;
@@ -231,6 +256,14 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     plan.begin = { activation_, controls_.bone };
     respond(controls_.activation, next.activation, plan.steps * plan.dt);
     plan.end = { activation_, next.bone };
+    // muscles that are switched stiffen their voxels, and so do these what they draw, a little later
+    for (std::size_t m = 0; m < plan.end.activation.size(); ++m)
+      if (std::abs(plan.end.activation[m] - plan.begin.activation[m]) > activation_a_plan)
+      {
+        plan.closely = true;
+        wary_ = std::max(wary_, looks_after_a_switch);
+      }
+    plan.alarm = stiffening_allowed * frequency_squared_;
     const double squared = run(plan);
     time_ = reached;
     latest_step_ = plan.dt;
@@ -241,7 +274,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       failed_ = true;
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
-    wary_ = squared > stiffening_allowed * frequency_squared_ ? wary_looks : std::max(0, wary_ - 1);
+    wary_ = squared > plan.alarm ? wary_looks : std::max(0, wary_ - 1);
     if (!mutation::time_step_of_rest)
       expect_frequency(squared);
   }

@@ -17,8 +17,13 @@ struct StepPlan
 {
   int steps = 0;
   double dt = 0;
-  double time = 0;      ///< at its begin
-  Controls begin, end;  ///< activations are those of the muscles, not those asked for
+  /// For how long forces change velocities in the first step [s], which may follow a longer or a shorter one:
+  /// velocities stand half a step before displacements.
+  double first_kick = 0;
+  double time = 0;       ///< at its begin
+  bool closely = false;  ///< frequency bounds are looked at in every step, and waited for
+  double alarm = 0;      ///< frequency bound squared above which they are waited for too [1/s2]
+  Controls begin, end;   ///< activations are those of the muscles, not those asked for
 
   double fraction(int step) const { return (step + 1.0) / steps; }
   void activation(int step, float* out) const;
@@ -91,7 +96,9 @@ public:
   Profile profile() const override { return profile_; }
 
 protected:
-  /// Runs the plan's steps; returns the largest frequency bound squared [1/s2] at its last step, NaN included.
+  /// Runs the plan's steps; returns the largest frequency bound squared [1/s2] that was looked at in it: at its last
+  /// step, or in all (StepPlan::closely). NaN where displacements are not finite. A backend that has not got it yet may
+  /// return that of the plan before, below StepPlan::alarm.
   virtual double run(const StepPlan& plan) = 0;
   /// Most steps between two looks at how far the voxels have stiffened.
   virtual int steps_a_plan() const { return 32; }
@@ -145,7 +152,9 @@ protected:
   std::array<double, 3> gravity_{};
 
 private:
+  bool alert() const;
   double safe_time_step() const;
+  double careful_time_step() const;
   double critical_frequency_squared() const;
   void set_gravity();
   double steady_step(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to,

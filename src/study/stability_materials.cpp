@@ -121,7 +121,7 @@ void stiffening(const StabilitySettings& settings, Trial& trial)
   motion.advance(1e-4, motion.controls(0, drawn), 1);
   motion.advance(2e-3, motion.controls(), 10);
   motion.advance(20e-3, motion.controls(), 10);
-  motion.expect_balance("drawn by 60 % while its muscle is switched on", 0.03);
+  motion.expect_balance("drawn by 60 % while its muscle is switched on", 0.01);
   motion.plot("stiffening", "A stiffening bar drawn by 60 % in 2 ms, its muscle switched on and off");
   motion.advance(0.2, motion.controls(), 20);
   trial.checks.push_back(absolute_check("left of 5 mm", "mm", 0, 1e3 * farthest(motion.displacements()), 0.05));
@@ -182,9 +182,11 @@ std::vector<StabilityCase> hard_materials()
       thin_layer },
     { "stiffening", true, "0.99 of the critical step while voxels stiffen",
       "A bar of Fung's law (b = 4) is drawn by 60 % in 2 ms at 0.99 of the critical time step while a muscle along it, "
-      "passive part included, is switched on and off at once. It must keep its energy explained to 3 % and be at rest "
+      "passive part included, is switched on and off at once. It must keep its energy explained to 1 % and be at rest "
       "in the end. With a bound that counts less than the exact slope of the exponential it ended in NaN, at 0.9 of "
-      "the bound too; with the bound alone it loses or gains some percent, and the guard goes back where it is more.",
+      "the bound too; with the bound alone it loses or gains some percent: where voxels stiffen fast, steps are at "
+      "most "
+      "0.55 of the critical one and every step is looked at.",
       stiffening },
     { "mass_scaling", true, "masses scaled by 10000",
       "A beam under gravity, a muscle switched on, with all masses times 10⁴ and without. Weight must not grow with "

@@ -134,6 +134,21 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   EXPECT_GT(ledger.load, 0);
 }
 
+// velocities stand half a step before displacements: the first step of another length takes half of both
+TEST_P(Ledger, closes_where_the_time_step_changes)
+{
+  Model model = bar(0);
+  model.gravity = { { 2000, 0, 0 } };
+  const auto solver = accounting(model);
+  for (int i = 0; i < 60; ++i)
+  {
+    solver->slow_down(i % 2 == 0 ? 1 : 0.4);
+    solver->advance((20 + i * 7 % 13) * solver->time_step(), {});
+    const EnergyLedger ledger = solver->ledger();
+    EXPECT_LT(std::abs(ledger.imbalance()), 1e-3 * ledger.largest) << "slice " << i;
+  }
+}
+
 TEST_P(Ledger, is_refused_where_it_was_not_asked_for)
 {
   const auto without = solver(bar(0));

@@ -177,7 +177,7 @@ TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
         if (!first.stopped)
         {
           RC_ASSERT(std::isfinite(first.ledger.imbalance()));
-          RC_ASSERT(std::abs(first.ledger.imbalance()) <= 0.5 * first.ledger.largest + 1e-12);
+          RC_ASSERT(std::abs(first.ledger.imbalance()) <= 0.1 * first.ledger.largest + 1e-12);
         }
         RC_ASSERT(play(model, activation, away, 1).displacements == first.displacements);
         RC_ASSERT(play(model, activation, away, 2).displacements == first.displacements);
