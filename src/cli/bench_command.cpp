@@ -202,6 +202,8 @@ void bench(const BenchOptions& options)
 {
   if (options.effects)
     return bench_effects(options);
+  if (!options.plot.empty())
+    throw WrongUsage("--plot: only with --effects");
   const int threads =
       options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const double bandwidth = copy_bandwidth(threads);

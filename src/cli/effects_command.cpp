@@ -96,6 +96,16 @@ std::string without_extension(const std::string& path)
   return path.substr(0, path.size() - extension.size());
 }
 
+void print(const Model& model, const EffectCosts& costs)
+{
+  std::printf("%s", table_of(costs).text().c_str());
+  std::printf(
+      "a step takes %s us with all of them, %s us as a plain neo-Hookean one of the same %zu voxels: %s times\n",
+      readable(1e6 * costs.step, 4).c_str(), readable(1e6 * costs.plain_step, 4).c_str(), model.voxels.size(),
+      readable(costs.step / costs.plain_step, 3).c_str());
+  std::printf("on %s; every muscle at activation 0.75\n", costs.backend.c_str());
+}
+
 void show_effects(const EffectsOptions& options)
 {
   const std::string plot = options.plot.empty() ? "" : without_extension(options.plot);
@@ -104,19 +114,14 @@ void show_effects(const EffectsOptions& options)
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const EffectCosts costs =
       measure_effects(model, { backend_from_name(options.backend), options.threads, 0 }, options.seconds);
+  if (options.json)
+    std::printf("%s", json_of(*model, costs).c_str());
+  else
+    print(*model, costs);
+  // last, so that a plot that fails loses nothing
+  std::fflush(stdout);
   if (!plot.empty())
     draw(costs, plot);
-  if (options.json)
-  {
-    std::printf("%s", json_of(*model, costs).c_str());
-    return;
-  }
-  std::printf("%s", table_of(costs).text().c_str());
-  std::printf(
-      "a step takes %s us with all of them, %s us as a plain neo-Hookean one of the same %zu voxels: %s times\n",
-      readable(1e6 * costs.step, 4).c_str(), readable(1e6 * costs.plain_step, 4).c_str(), model->voxels.size(),
-      readable(costs.step / costs.plain_step, 3).c_str());
-  std::printf("on %s; every muscle at activation 0.75\n", costs.backend.c_str());
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace frontalis
 namespace
 {
 
+constexpr double steps_a_slice = 4096;  // a second or so of a large model
+
 std::vector<std::string> fields_of(const std::string& line)
 {
   std::vector<std::string> fields;
@@ -131,7 +133,13 @@ void Motion::advance_to(double time)
   advance(time);
 }
 
-void Motion::advance(double time)
+void Motion::advance(double end)
+{
+  while (time_ < end && go_on_())
+    take_slice(std::min(end, time_ + steps_a_slice * solver_.time_step() * scaling_));
+}
+
+void Motion::take_slice(double time)
 {
   Controls controls = solver_.controls();
   controls.activation = curve_.at(time);

@@ -2,7 +2,9 @@
 
 #include "frontalis/solver/guard.hpp"
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -29,21 +31,25 @@ class Motion
 {
 public:
   Motion(Solver& solver, Guard* guard, const Model& model, ActivationCurve curve, std::vector<RigidTransform> bones,
-         double ramp)
+         double ramp, std::function<bool()> go_on)
       : solver_(solver),
         guard_(guard),
         scaling_(model.time_scaling),
         curve_(std::move(curve)),
         bones_(std::move(bones)),
-        ramp_(ramp)
+        ramp_(ramp),
+        go_on_(std::move(go_on))
   {
   }
 
-  /// Advances to `time` on the activations' clock, from knot to knot.
+  /// Advances to `time` on the activations' clock, from knot to knot; `go_on` is asked every few thousand steps, and
+  /// where it says no, the motion ends there.
   void advance_to(double time);
+  double time() const { return time_; }  ///< reached
 
 private:
-  void advance(double time);
+  void advance(double end);
+  void take_slice(double time);
 
   Solver& solver_;
   Guard* guard_;  // may be none
@@ -51,6 +57,7 @@ private:
   ActivationCurve curve_;
   std::vector<RigidTransform> bones_;
   double ramp_;
+  std::function<bool()> go_on_;
   double time_ = 0;
 };
 

@@ -81,9 +81,8 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
   Progress progress;
   for (int frame = 0; frame <= frames; ++frame)
   {
-    const double time = frame == frames ? options.seconds : frame / frame_rate;
-    if (frame > 0)
-      motion.advance_to(time);
+    motion.advance_to(frame == frames ? options.seconds : frame / frame_rate);
+    const double time = motion.time();
     look(solver, model, time, summary);
     if (guard != nullptr)
       summary.guard = guard->counts();
@@ -94,7 +93,7 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
     summary.frames = frame + 1;
     summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     progress.update("running", static_cast<double>(frame) / frames);
-    if (interrupt_requested() && frame < frames)
+    if (time < options.seconds && interrupt_requested())
     {
       summary.complete = false;
       break;
@@ -197,8 +196,20 @@ void run(const RunOptions& options)
       guard.emplace(*solver, model, watch);
     }
     Guard* const watched = guard ? &*guard : nullptr;
-    Motion motion(*solver, watched, *model, curve, bones, ramp);
-    play(*solver, watched, *model, options, motion, folder, summary);
+    Motion motion(*solver, watched, *model, curve, bones, ramp, [] { return !interrupt_requested(); });
+    try
+    {
+      play(*solver, watched, *model, options, motion, folder, summary);
+    }
+    catch (const Error& error)
+    {
+      // what was reached is kept
+      summary.complete = false;
+      summary.failure = error.what();
+      if (folder)
+        folder->finish(json_of(*model, summary));
+      throw;
+    }
   }
   if (folder)
     folder->finish(json_of(*model, summary));

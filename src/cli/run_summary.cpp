@@ -119,6 +119,8 @@ std::string json_of(const Model& model, const RunSummary& summary)
   const auto add_count = [&add](const std::string& key, std::size_t value) { add(key, std::to_string(value)); };
 
   add("complete", summary.complete ? "true" : "false");
+  if (!summary.failure.empty())
+    add("failure", json_string(summary.failure));
   add("backend", json_string(summary.backend));
   add_count("voxels", model.voxels.size());
   add_count("nodes", model.nodes.size());

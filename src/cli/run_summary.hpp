@@ -17,7 +17,8 @@ struct RunSummary
   double wall = 0;       ///< [s], all of the run but building the model and the solver
   double time_step = 0;  ///< [s]
   int frames = 0;
-  bool complete = true;     ///< false: interrupted
+  bool complete = true;     ///< false: interrupted or stopped
+  std::string failure;      ///< why it was stopped; empty: it was not
   Monitor monitor;          ///< at the end
   double peak_kinetic = 0;  ///< [J]
   double peak_internal = 0;

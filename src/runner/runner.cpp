@@ -99,6 +99,8 @@ void Runner::reset()
   self_->wake.notify_all();
   const auto before = self_->resets_done;
   self_->wake.wait(lock, [&] { return self_->resets_done != before || self_->stop; });
+  if (!self_->reset_error.empty())
+    throw Error("reset failed: " + self_->reset_error);
 }
 
 void Runner::cancel_step()
@@ -111,10 +113,11 @@ Frame Runner::step(double seconds)
 {
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw Error("step of " + std::to_string(seconds) + " s: allowed are finite durations above 0");
-  const std::lock_guard<std::mutex> one_at_a_time(self_->step_mutex);
   Implementation::StepRequest request;
   request.seconds = seconds;
   std::unique_lock<std::mutex> lock(self_->mutex);
+  if (self_->step_request != nullptr)
+    throw Error("another step is under way");
   self_->paused = true;
   self_->step_request = &request;
   self_->wake.notify_all();

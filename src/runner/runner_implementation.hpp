@@ -31,6 +31,7 @@ struct Runner::Implementation
   bool reset_wanted = false;
   bool cancel_wanted = false;
   std::uint64_t resets_done = 0;
+  std::string reset_error;  // of the latest; empty: it was done
   struct StepRequest
   {
     double seconds = 0;
@@ -48,7 +49,7 @@ struct Runner::Implementation
   };
   SwitchRequest* switch_request = nullptr;
   EffectSet effects;
-  std::mutex step_mutex, switch_mutex;  // one step, one switch at a time
+  std::mutex switch_mutex;  // one switch at a time
 
   // the runner's thread alone
   Frame frame;

@@ -44,6 +44,16 @@ void Runner::Implementation::advance(double seconds, const Controls& to)
 void Runner::Implementation::make_frame(bool renew_monitor)
 {
   const auto now = Clock::now();
+  if (!frame.failed && (renew_monitor || now - last_monitor > std::chrono::seconds(1)))
+  {
+    const Monitor monitor = solver->monitor();
+    last_monitor = now;
+    frame.failed = !monitor.finite;
+    if (frame.failed)
+      frame.failure = "the motion is no longer finite";
+    else
+      frame.monitor = monitor;
+  }
   if (!frame.failed)
   {
     SkinState skin;
@@ -62,11 +72,6 @@ void Runner::Implementation::make_frame(bool renew_monitor)
     {
       frame.failed = true;
       frame.failure = "the skin is no longer finite";
-    }
-    if (!frame.failed && (renew_monitor || now - last_monitor > std::chrono::seconds(1)))
-    {
-      frame.monitor = solver->monitor();
-      last_monitor = now;
     }
   }
   frame.time = time();
@@ -147,6 +152,8 @@ void Runner::Implementation::serve_step(StepRequest& request)
     const std::lock_guard<std::mutex> lock(mutex);
     if (stop || reset_wanted || cancel_wanted)
       request.error = "the step was ended early";
+    else if (switch_request != nullptr)
+      serve_switch(*switch_request);
   }
   publish(true);
   request.frame = frame;
@@ -155,6 +162,17 @@ void Runner::Implementation::serve_step(StepRequest& request)
 // under the mutex
 void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
+  try
+  {
+    // else a state gone bad since the latest check would become the one to go back to
+    if (guard && !frame.failed)
+      guard->check();
+  }
+  catch (const Error& error)
+  {
+    frame.failed = true;
+    frame.failure = error.what();
+  }
   try
   {
     solver->switch_effect(request.effect, request.on);
@@ -186,6 +204,7 @@ void Runner::Implementation::refuse_requests(const std::string& error)
     switch_request->done = true;
     switch_request = nullptr;
   }
+  cancel_wanted = false;
   wake.notify_all();
 }
 
@@ -224,6 +243,7 @@ void Runner::Implementation::loop()
       clock.restart(0);
       publish(true);
       const std::lock_guard<std::mutex> lock(mutex);
+      reset_error.clear();
       ++resets_done;
     }
     else if (request != nullptr)
@@ -260,6 +280,7 @@ void Runner::Implementation::guarded_loop()
       frame.failure = error.what();
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
+      reset_error = frame.failure;
       ++resets_done;  // a reset that failed must not keep its caller waiting
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }

@@ -4,6 +4,7 @@
 
 #include "frontalis/error.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace frontalis
@@ -117,7 +118,7 @@ AccuracyProfile read_profile_file(const std::string& path, double length_unit, c
 }
 
 // the edge that options ask for instead of the profile's
-void override_voxel(const Node& node, const SceneOptions& options, AccuracyProfile& profile)
+void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
   if (!options.voxel_quantity.empty())
@@ -134,8 +135,12 @@ void override_voxel(const Node& node, const SceneOptions& options, AccuracyProfi
     }
   if (!(edge > 0))
     return;
-  profile.voxel = { edge, edge, edge };
-  profile.measured = {};
+  scene.accuracy.voxel = { edge, edge, edge };
+  // what was measured was measured with other voxels
+  scene.accuracy.measured = {};
+  for (AccuracyProfile& profile : scene.profiles)
+    if (profile.name == scene.accuracy.name)
+      profile.measured = {};
 }
 
 }  // namespace
@@ -168,8 +173,11 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
+    // it takes the place of one of its name
+    const auto same = [&](const AccuracyProfile& profile) { return profile.name == scene.accuracy.name; };
+    scene.profiles.erase(std::remove_if(scene.profiles.begin(), scene.profiles.end(), same), scene.profiles.end());
     scene.profiles.push_back(scene.accuracy);
-    override_voxel(node, options, scene.accuracy);
+    override_voxel(node, options, scene);
     return;
   }
   if (!options.accuracy.empty())
@@ -196,7 +204,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
     (chosen_by ? *chosen_by : node)
         .fault("no accuracy profile is called '" + chosen + "'; the profiles are " +
                list_with_suggestion(chosen, profiles));
-  override_voxel(node, options, scene.accuracy);
+  override_voxel(node, options, scene);
 }
 
 }  // namespace frontalis

@@ -18,10 +18,10 @@ std::string read_text(const std::string& path, const std::string& what)
 {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw Error(path + ": no such file; must be " + what + " in YAML");
+    throw Error(path + ": no such file; must be a " + what + " in YAML");
   std::ifstream file(path, std::ios::binary);
   if (std::filesystem::is_directory(path, ignored) || !file)
-    throw Error(path + ": cannot be read; must be " + what + " in YAML");
+    throw Error(path + ": cannot be read; must be a " + what + " in YAML");
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 

@@ -214,6 +214,13 @@ void Guard::restart()
   g.checked_at = g.steps();
 }
 
+void Guard::check()
+{
+  const Instability finding = self_->check();
+  if (finding != Instability::none)
+    self_->go_back(finding, self_->solver.controls(), self_->solver.time());
+}
+
 void Guard::advance(double seconds, const Controls& target)
 {
   Implementation& g = *self_;

@@ -123,6 +123,15 @@ std::string script(const Plot& plot, const std::string& path)
   return out.str();
 }
 
+// one word of a shell's command, whatever is in it
+std::string shell_quoted(const std::string& text)
+{
+  std::string word = "'";
+  for (const char c : text)
+    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
 }  // namespace
 
 void write_plot(const Plot& plot, const std::string& path)
@@ -132,7 +141,8 @@ void write_plot(const Plot& plot, const std::string& path)
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
     throw Error("plot " + path + ": the program gnuplot is missing (Debian's package gnuplot-nox); " + commands +
                 " has what it is to draw");
-  const bool drawn = std::system(("gnuplot '" + commands + "' 2>'" + messages + "' >&2").c_str()) == 0;
+  const bool drawn =
+      std::system(("gnuplot " + shell_quoted(commands) + " 2>" + shell_quoted(messages) + " >&2").c_str()) == 0;
   std::ifstream log(messages);
   const std::string said{ std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>() };
   std::filesystem::remove(messages);

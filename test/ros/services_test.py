@@ -3,6 +3,7 @@
 
 import math
 import struct
+import threading
 import unittest
 
 import rospy
@@ -90,6 +91,23 @@ class Services(unittest.TestCase):
         self.assertTrue(self.face.switch_effect("contraction", True).success)
         self.assertTrue(self.face.step(0.3).success)
         wait(lambda: self.face.height("tip") - rest > 1e-3, "the tip a millimetre up", 10)
+
+    def test_a_long_step_keeps_nobody_waiting(self):
+        answers = []
+
+        def take_a_long_step():
+            while not answers or "another step" in answers[-1].message:
+                answers.append(self.face.step(1e6))
+
+        stepping = threading.Thread(target=take_a_long_step)
+        stepping.start()
+        wait(lambda: "another step" in self.face.step(1e-9).message, "the step under way", 30)
+        self.assertTrue(self.face.switch_effect("contraction", False).success)
+        self.assertTrue(self.face.list_muscles().success)
+        self.assertTrue(self.face.switch_effect("contraction", True).success)
+        self.assertTrue(self.face.reset().success)
+        stepping.join(30)
+        self.assertIn("ended early", answers[-1].message)
 
     def test_effects_that_cannot_be_switched_say_why(self):
         for effect, why in (("magic", "the effects are elasticity"), ("viscosity", "the model has no viscosity"),

@@ -262,12 +262,67 @@ TEST(Runner, EffectsGoOffAndOnAgainWhileItStandsStillAndWhileItRuns)
   EXPECT_THROW(still.switch_effect(Effect::viscosity, false), Error);
   EXPECT_THROW(still.switch_effect(Effect::elasticity, false), Error);
 
-  Runner running(bar(), settings(Pace::fastest), {});
+  std::atomic<double> at{ 0 };
+  std::atomic<int> frames{ 0 };
+  Runner running(bar(), settings(Pace::fastest),
+                 [&](const Frame& frame)
+                 {
+                   at = tip(frame);
+                   ++frames;
+                 });
+  const auto some_frames = [&]
+  {
+    for (const int before = frames; frames < before + 20;)
+      std::this_thread::sleep_for(1ms);
+  };
   running.switch_effect(Effect::contraction, false);
   running.set_activation({ { "puller", 0.5 } });
   EXPECT_EQ(names_of(running.effects()), "elasticity, rigid_nodes, output_fields");
+  some_frames();
+  EXPECT_NEAR(at, 6e-3, 1e-6);
   running.switch_effect(Effect::contraction, true);
   EXPECT_FALSE(running.paused());
+  some_frames();
+  EXPECT_LT(at, 5.9e-3);
+}
+
+TEST(Runner, ALongStepKeepsNobodyWaiting)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  runner.step(1e-3);
+  const std::string busy = "another step is under way";
+  std::string ended = busy;
+  std::thread stepping(
+      [&]
+      {
+        while (ended == busy)
+          try
+          {
+            runner.step(1e6);
+          }
+          catch (const Error& error)
+          {
+            ended = error.what();
+          }
+      });
+  // until it is under way, a step of no length to speak of is served
+  for (bool under_way = false; !under_way;)
+    try
+    {
+      runner.step(1e-9);
+      std::this_thread::sleep_for(1ms);
+    }
+    catch (const Error& error)
+    {
+      EXPECT_EQ(error.what(), busy);
+      under_way = true;
+    }
+  runner.switch_effect(Effect::contraction, false);
+  EXPECT_FALSE(runner.effects().has(Effect::contraction));
+  runner.reset();
+  stepping.join();
+  EXPECT_EQ(ended, "the step was ended early");
+  EXPECT_NEAR(runner.step(0.01).time, 0.01, 1e-12);
 }
 
 TEST(Runner, FieldsOfTheSkinAreComputedWhereSomebodyWantsThem)

@@ -267,6 +267,15 @@ TEST(Options, a_file_may_hold_the_profile)
   EXPECT_NE(content_of(scene), content_of(read_scene(path)));
   options.voxel_quantity = "2 mm";
   EXPECT_EQ(read_scene(path, options).accuracy.measured.cost, 0) << "another voxel edge was not measured";
+  EXPECT_EQ(read_scene(path, options).profiles.back().measured.cost, 0);
+
+  // it takes the place of one that the scene has
+  options.voxel_quantity.clear();
+  folder.write("chosen.yaml", "draft: {voxel: 1.25 mm, measured: {error: 0.1 mm, cost: 9}}\n");
+  const Scene replaced = read_scene(path, options);
+  EXPECT_EQ(replaced.profiles.size(), read_scene(path).profiles.size());
+  EXPECT_EQ(replaced.profiles.back().name, "draft");
+  EXPECT_EQ(replaced.profiles.back().measured.cost, 9);
 
   for (const auto& [text, fault] :
        { std::pair<const char*, const char*>("a: {voxel: 1 mm}\nb: {}\n", "found 2 profiles"),

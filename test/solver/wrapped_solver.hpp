@@ -3,6 +3,7 @@
 #include "frontalis/solver/solver.hpp"
 
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace frontalis
@@ -28,6 +29,8 @@ public:
   }
   void save(std::unique_ptr<Snapshot>& to) override { solver_->save(to); }
   void restore(const Snapshot& snapshot) override { solver_->restore(snapshot); }
+  std::string pack() override { return solver_->pack(); }
+  void unpack(const std::string& bytes) override { solver_->unpack(bytes); }
   int steps_a_check() const override { return solver_->steps_a_check(); }
   void slow_down(double share) override { solver_->slow_down(share); }
   double time() const override { return solver_->time(); }

@@ -78,12 +78,13 @@ public:
   void pause(bool paused);
   bool paused() const;
   /// Back to rest, zero activation and bones in place; clears a failure, ends a step under way. Returns when it is
-  /// done.
+  /// done; throws Error where the solver fails in it.
   void reset();
   /// Ends a step under way: its caller gets an Error.
   void cancel_step();
   /// Advances by exactly `seconds` (on the activations' clock), activations going linearly to what was set last, and
-  /// returns the frame there; pauses the runner's own stepping first. Throws Error.
+  /// returns the frame there; pauses the runner's own stepping first. Throws Error, also where another step is under
+  /// way.
   Frame step(double seconds);
 
   const Model& model() const;

@@ -90,6 +90,8 @@ public:
   /// snapshot to `target`. Throws Error as advance() does; throws Unstable when `tries` in a row were in vain, with a
   /// good state restored.
   void advance(double seconds, const Controls& target);
+  /// Checks now, whatever was checked when; goes back to a good state where something is found, or throws Unstable.
+  void check();
   /// The present state is good: to be called after reset(), settle(), or displacements were set.
   void restart();
 
