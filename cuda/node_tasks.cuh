@@ -1,6 +1,7 @@
 #pragma once
 
 #include "built_effects.hpp"
+#include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/sliding.hpp"
 #include "step_kernel.hpp"
 
@@ -14,8 +15,6 @@ struct NodeState
   float u[3];
   float v[3];
 };
-
-__device__ __forceinline__ double ramped(double time, double ramp) { return ramp > 0 ? fmin(time / ramp, 1.0) : 1.0; }
 
 /// The plane of a node at displacement u.
 static __device__ __noinline__ TangentPlane contact_plane(SlidingContact& s, const float* u)
@@ -178,7 +177,7 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
   for (auto l = g.load_begin[index]; l < g.load_begin[index + 1]; ++l)
   {
     const LoadPart part = g.load_parts[l];
-    const double share = part.weight * ramped(g.time + at.step * g.dt_exact, g.load_ramp[part.load]);
+    const double share = part.weight * physics::ramped(g.time + at.step * g.dt_exact, g.load_ramp[part.load]);
     for (int i = 0; i < 3; ++i)
       force[i] += share * g.vertex_force[3 * part.vertex + i];
   }
@@ -210,7 +209,7 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
   for (int i = 0; i < 3; ++i)
     if (motion.fixed[i])
     {
-      n.u[i] = static_cast<float>(motion.value[i] * ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
+      n.u[i] = static_cast<float>(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
       n.v[i] = (n.u[i] - old[i]) / g.dt;
     }
 }

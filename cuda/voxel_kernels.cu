@@ -102,7 +102,7 @@ __global__ void __launch_bounds__(block)
   for (auto p = g.load_begin[l]; p < g.load_begin[l + 1]; ++p)
   {
     const LoadPart part = g.load_parts[p];
-    const double share = part.weight * ramped(g.time + step * g.dt_exact, g.load_ramp[part.load]);
+    const double share = part.weight * physics::ramped(g.time + step * g.dt_exact, g.load_ramp[part.load]);
     for (int i = 0; i < 3; ++i)
       work += share * g.vertex_force[3 * part.vertex + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
   }

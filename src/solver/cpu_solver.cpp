@@ -92,6 +92,8 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
   list.add(Effect::viscosity, "relaxed stresses", relaxed_);
   restricted_.list_allocations(list);
   loads_.list_allocations(list);
+  if (account_)
+    account_->list_allocations(list);
 }
 
 // slabs of about equal numbers of tiles

@@ -71,4 +71,10 @@ private:
   std::vector<float> mass_factor_;  // one a voxel; empty without mass scaling
 };
 
+/// The corner of the grid opposite to the origin [m].
+inline std::array<double, 3> far_corner(const Model& model)
+{
+  return { { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] } };
+}
+
 }  // namespace frontalis

@@ -87,6 +87,17 @@ Work EnergyAccount<Real>::work() const
   return sum;
 }
 
+template <class Real>
+void EnergyAccount<Real>::list_allocations(AllocationList& list) const
+{
+  for (const auto* field : { &before_, &free_ })
+    for (const auto& component : *field)
+      list.add(Effect::elasticity, "account of energies", component);
+  for (const auto& component : beside)
+    list.add(Effect::elasticity, "account of energies", component);
+  list.add(Effect::elasticity, "account of energies", planes);
+}
+
 template class EnergyAccount<float>;
 template class EnergyAccount<double>;
 

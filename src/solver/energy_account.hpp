@@ -67,6 +67,7 @@ public:
             double kick);
   Work work() const;
 
+  void list_allocations(AllocationList& list) const;
   /// All that is in the account between two steps.
   const Book& book() const { return *this; }
   void restore(const Book& book) { static_cast<Book&>(*this) = book; }

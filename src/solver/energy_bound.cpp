@@ -1,6 +1,8 @@
 #include "energy_bound.hpp"
 
 #include "discretisation.hpp"
+#include "frontalis/physics/ramp.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "nodal_loads.hpp"
 
 #include <algorithm>
@@ -15,28 +17,6 @@ constexpr double margin = 2;
 constexpr double active_stretch = 1.2;   // over which a fibre pulls: from 1.6 to 0.4
 constexpr double passive_stretch = 0.3;  // energy of passive fibres at a stretch of 1.6 over tension times volume
 constexpr double small_strain = 1e-4;
-
-// farthest that a corner of the grid goes between two poses [m]
-double way(const Model& model, const RigidTransform& from, const RigidTransform& to)
-{
-  double farthest = 0;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    double squared = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-      double x = to.translation[i] - from.translation[i];
-      for (int j = 0; j < 3; ++j)
-        if (corner >> j & 1)
-          x += (to.rotation[3 * i + j] - from.rotation[3 * i + j]) * model.size[j] * model.spacing[j];
-      squared += x * x;
-    }
-    farthest = std::max(farthest, squared);
-  }
-  return std::sqrt(farthest);
-}
-
-double ramped(const Load& load, double time) { return load.ramp > 0 ? std::min(time / load.ramp, 1.0) : 1.0; }
 
 }  // namespace
 
@@ -105,13 +85,14 @@ double EnergyBound::most(const Interval& interval) const
              (active_stretch * double(interval.activation[m]) + (model_.muscles[m].passive ? passive_stretch : 0.0));
   for (const auto& bone : bones_)
   {
-    const double moved = way(model_, interval.bone_begin[bone.index], interval.bone_end[bone.index]);
+    const double moved =
+        farthest_way(interval.bone_begin[bone.index], interval.bone_end[bone.index], far_corner(model_));
     given += 0.5 * bone.stiffness * moved * moved;
   }
   for (const auto& nodes : prescribed_)
   {
     const Load& load = model_.loads[nodes.index];
-    const double part = ramped(load, interval.end) - ramped(load, interval.begin);
+    const double part = physics::ramped(interval.end, load.ramp) - physics::ramped(interval.begin, load.ramp);
     const auto& d = load.value;
     // nodes whose motion begins at full value jump in the first step
     const double share = interval.begin == 0 && load.ramp == 0 ? 1 : part;

@@ -71,6 +71,7 @@ std::vector<Allocation> SteppingSolver::allocations() const
   if (skin_values_)
     skin_values_->list_allocations(list);
   discretisation_.list_allocations(list);
+  list.add(Effect::elasticity, "mode of the highest frequency", assembled_mode_);
   list_allocations(list);
   return list.take();
 }

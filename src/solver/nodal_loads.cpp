@@ -2,6 +2,7 @@
 
 #include "bound_points.hpp"
 
+#include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/trilinear.hpp"
 
 #include <algorithm>
@@ -140,7 +141,7 @@ void NodalLoads::update(double time, const Real* const u[3])
         for (int axis = 0; axis < 3; ++axis)
           surface.vertices[vertex][axis] = load.mesh.vertices[vertex][axis] + moved[axis];
       }
-    vertex_forces(load, load.ramp > 0 ? std::min(time / load.ramp, 1.0) : 1.0, surface.vertices, surface.vertex_force);
+    vertex_forces(load, physics::ramped(time, load.ramp), surface.vertices, surface.vertex_force);
     for (std::size_t rank = 0; rank < nodes_.size(); ++rank)
       for (auto c = surface.begin[rank]; c < surface.begin[rank + 1]; ++c)
         for (int axis = 0; axis < 3; ++axis)

@@ -64,6 +64,8 @@ void ReferenceSolver::list_allocations(AllocationList& list) const
   list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
   restricted_.list_allocations(list);
   loads_.list_allocations(list);
+  if (account_)
+    account_->list_allocations(list);
 }
 
 void ReferenceSolver::skin(SkinState& out) { skin_state(*model_, u_pointers().data(), out); }

@@ -1,6 +1,7 @@
 #include "restricted_nodes.hpp"
 
 #include "built_effects.hpp"
+#include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -197,7 +198,7 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
   for (auto p = prescriptions.first; p != prescriptions.second; ++p)
   {
     const Load& load = model_.loads[p->load];
-    const double now = load.ramp > 0 ? std::min(drive.time / load.ramp, 1.0) : 1.0;
+    const double now = physics::ramped(drive.time, load.ramp);
     for (int axis = 0; axis < 3; ++axis)
       if (load.fixed[axis])
       {

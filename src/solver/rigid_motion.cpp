@@ -1,5 +1,6 @@
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -112,6 +113,25 @@ RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::ar
   motion.rotation = { { c + d * x * x, d * x * y - s * z, d * x * z + s * y, d * x * y + s * z, c + d * y * y,
                         d * y * z - s * x, d * x * z - s * y, d * y * z + s * x, c + d * z * z } };
   return motion;
+}
+
+double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner)
+{
+  double farthest = 0;
+  for (std::size_t c = 0; c < 8; ++c)
+  {
+    double squared = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      double change = to.translation[i] - from.translation[i];
+      for (std::size_t j = 0; j < 3; ++j)
+        if ((c >> j & 1) != 0)
+          change += (to.rotation[3 * i + j] - from.rotation[3 * i + j]) * corner[j];
+      squared += change * change;
+    }
+    farthest = std::max(farthest, std::sqrt(squared));
+  }
+  return farthest;
 }
 
 }  // namespace frontalis

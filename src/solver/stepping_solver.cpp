@@ -211,19 +211,7 @@ double SteppingSolver::steady_step(const std::vector<RigidTransform>& from, cons
   const auto& h = model_->spacing;
   double farthest = 0;
   for (std::size_t b = 0; b < from.size(); ++b)
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      double way = 0;
-      for (std::size_t i = 0; i < 3; ++i)
-      {
-        double change = to[b].translation[i] - from[b].translation[i];
-        for (std::size_t j = 0; j < 3; ++j)
-          if ((corner & (1 << j)) != 0)
-            change += (to[b].rotation[3 * i + j] - from[b].rotation[3 * i + j]) * model_->size[j] * h[j];
-        way += change * change;
-      }
-      farthest = std::max(farthest, std::sqrt(way));
-    }
+    farthest = std::max(farthest, farthest_way(from[b], to[b], far_corner(*model_)));
   return farthest > 0 ? bone_way_a_step * std::min({ h[0], h[1], h[2] }) * seconds / farthest
                       : std::numeric_limits<double>::infinity();
 }

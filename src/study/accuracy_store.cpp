@@ -1,4 +1,4 @@
-// finished variants on disk: lines of numbers by name, then arrays, then the hash of all
+// finished variants on disk: signature, hash of the rest, the rest as bytes
 
 #include "accuracy_run.hpp"
 

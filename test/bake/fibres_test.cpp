@@ -1,6 +1,7 @@
 // fibre fields beside the analytic ones of simple shapes, and what is said where none can be found
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,8 @@ double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1
 /// Writes the surface of the unit cube as mapped into space, in millimetres; n facets an edge.
 std::string block_file(const std::string& name, int n, const Map& map)
 {
-  std::string path = testing::TempDir() + "/" + name + ".obj";
+  static const TemporaryFolder folder;
+  std::string path = folder / name + ".obj";
   std::ofstream file(path);
   file.precision(12);
   int count = 0;

@@ -76,7 +76,7 @@ private:
   const std::string name_;
   diagnostic_updater::Updater updater_;
 
-  mutable std::mutex runner_mutex_;  ///< guards runner_, demo_, load_fault_, stage_, settings_
+  mutable std::mutex runner_mutex_;  ///< guards runner_, demo_, load_fault_, stage_, parameters_
   std::shared_ptr<Runner> runner_;
   std::shared_ptr<const DemoPlayer> demo_;
   std::string load_fault_;

@@ -18,4 +18,7 @@ RigidTransform inverse(const RigidTransform& pose);
 /// Rotation by a rotation vector (axis times angle [rad]) about the origin, then a translation [m].
 RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation);
 
+/// Farthest that a corner of the box between the origin and `corner` [m] gets between two poses, as the crow flies [m].
+double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
+
 }  // namespace frontalis

@@ -43,7 +43,7 @@ struct StabilitySettings
 {
   Backend backend = Backend::cpu;
   bool long_runs = false;  ///< in full length, where a case has a shorter form
-  /// Model of a scene of this name (those under test/stability, and real_head); throws Skipped where there is none.
+  /// Model of a scene of this name (those in config, real_head among them); throws Skipped where there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;
   /// Told how far a motion is, 0..1; may throw to end it all.
   std::function<void(double done)> watch = [](double) {};
