@@ -44,8 +44,8 @@ protected:
   void save_fields(std::unique_ptr<Fields>& to) const override;
   void restore_fields(const Fields& from) override;
   int steps_a_plan() const override;
-  /// The host takes as long to look at a million nodes as the device for two hundred of their steps.
-  int steps_a_look() const override { return 512; }
+  /// The host's look at millions of nodes takes as long as some hundred of their steps.
+  int steps_a_look() const override { return model_->nodes.size() > 1000000 ? 2048 : 512; }
   void rest() override;
   void effect_switched(Effect effect) override;
   void list_allocations(AllocationList& list) const override;
