@@ -1,6 +1,7 @@
 #include "device_viscosity.hpp"
 
 #include "device_archive.hpp"
+#include "frontalis/physics/viscosity.hpp"
 
 namespace frontalis
 {
@@ -43,8 +44,7 @@ DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discr
   }
   words_ = DeviceArray<std::uint32_t>(words);
   makes_ = DeviceArray<float4>(makes);
-  // of two terms their sum too, which is what a step reads
-  relaxed_ = DeviceArray<float>(static_cast<std::size_t>(terms_ == 2 ? 3 : 1) * 6 * voxel_.size());
+  relaxed_ = DeviceArray<float>(static_cast<std::size_t>(physics::relaxed_tensors(terms_)) * 6 * voxel_.size());
 }
 
 void DeviceViscosity::set_palette(const std::vector<std::uint32_t>& entry_of_voxel)

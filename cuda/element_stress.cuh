@@ -254,8 +254,7 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
   {
     if (relaxes > 0)
       relax_apart<With>(g, place, relaxes, k);
-    // of two terms the sum lies behind them
-    physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, g.viscous_terms == 2 ? 2 : 0), P);
+    physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, physics::relaxed_tensors(g.viscous_terms) - 1), P);
   }
   if (look && place.palette != 0 && !reduced)
     look_at<With>(g, place.palette, entry, k, frequency_bits);

@@ -1,6 +1,7 @@
 #include "voxel_patches.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -15,17 +16,6 @@ namespace
 constexpr float fibre_cost = 0.25f, viscous_cost = 0.35f, node_cost = 0.3f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
-
-bool is_viscous(const Model& model, std::size_t e)
-{
-  return std::any_of(model.mixture_material.begin() + model.mixture_begin[e],
-                     model.mixture_material.begin() + model.mixture_begin[e + 1],
-                     [&](auto material)
-                     {
-                       const auto& share = model.materials[material].viscous_share;
-                       return share[0] > 0 || share[1] > 0;
-                     });
-}
 
 float voxel_cost(const Model& model, std::size_t e)
 {

@@ -116,14 +116,20 @@ inline Effect effect_from_name(const std::string& name)
   throw Error("there is no effect '" + name + "'; the effects are " + names_of(EffectSet::all()));
 }
 
+/// Throws Error, saying why, where an effect of the set needs another that is not in it.
+inline void check_needs(EffectSet set)
+{
+  if (set.has(Effect::friction) && !set.has(Effect::sliding))
+    throw Error("friction needs sliding: switch friction off too, or sliding on");
+}
+
 /// Throws Error, saying why, where a scene with the effects `present` cannot be without those in `off`.
 inline void check_switched_off(EffectSet off, EffectSet present)
 {
   for (const Effect effect : every_effect())
     if (off.has(effect) && traits_of(effect).not_off[0] != '\0')
       throw Error(name_of(effect) + " cannot be switched off: " + traits_of(effect).not_off);
-  if (off.has(Effect::sliding) && present.has(Effect::friction) && !off.has(Effect::friction))
-    throw Error("sliding cannot be switched off: friction needs it; switch friction off too");
+  check_needs(present.without(off));
 }
 
 }  // namespace frontalis

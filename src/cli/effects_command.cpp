@@ -24,6 +24,7 @@ struct EffectsOptions
   int threads = 0;
   double seconds = 2;
   bool json = false;
+  bool arrays = false;
   std::string plot;
 };
 
@@ -87,6 +88,17 @@ void draw(const EffectCosts& costs, const std::string& path)
   write_plot(plot, path);
 }
 
+// what a solver's arrays hold
+void show_arrays(const EffectsOptions& options)
+{
+  const auto solver = make_solver(std::make_shared<const Model>(obtain_model(options.source)),
+                                  { backend_from_name(options.backend), options.threads, 0 });
+  Table table({ "effect", "array", "bytes" });
+  for (const Allocation& allocation : solver->allocations())
+    table.add({ name_of(allocation.effect), allocation.what, static_cast<double>(allocation.bytes) });
+  std::printf("%s", (options.json ? table.json() : table.text()).c_str());
+}
+
 // what write_plot wants of FILE.png
 std::string without_extension(const std::string& path)
 {
@@ -109,6 +121,8 @@ void print(const Model& model, const EffectCosts& costs)
 void show_effects(const EffectsOptions& options)
 {
   const std::string plot = options.plot.empty() ? "" : without_extension(options.plot);
+  if (options.arrays)
+    return show_arrays(options);
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))
     throw WrongUsage("--seconds: must be a number greater than 0");
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
@@ -138,7 +152,9 @@ void add_effects_command(CLI::App& app, Action& action)
   command->add_option("--seconds", options->seconds, "wall seconds to time each effect (2)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "JSON instead of a table");
-  command->add_option("--plot", options->plot, "draws the costs as bars: FILE.png, and FILE.svg beside it");
+  command->add_flag("--arrays", options->arrays, "instead of timing, the bytes of each of the solver's arrays")
+      ->excludes(
+          command->add_option("--plot", options->plot, "draws the costs as bars: FILE.png, and FILE.svg beside it"));
   command->callback([options, &action] { action = [options] { show_effects(*options); }; });
 }
 

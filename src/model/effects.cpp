@@ -37,12 +37,7 @@ std::size_t viscous_voxels(const Model& model)
 {
   std::size_t count = 0;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    bool viscous = false;
-    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-      viscous = viscous || (model.mixture_proportion[m] > 0 && is_viscous(model.materials[model.mixture_material[m]]));
-    count += viscous ? 1 : 0;
-  }
+    count += is_viscous(model, e) ? 1 : 0;
   return count;
 }
 
@@ -212,6 +207,14 @@ void remove(Model& model, Effect effect, EffectSet off)
 }
 
 }  // namespace
+
+bool is_viscous(const Model& model, std::size_t voxel)
+{
+  bool viscous = false;
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
+    viscous = viscous || (model.mixture_proportion[m] > 0 && is_viscous(model.materials[model.mixture_material[m]]));
+  return viscous;
+}
 
 EffectPresence presence_of(const Model& model, Effect effect)
 {

@@ -184,10 +184,10 @@ struct CpuElement
     return work;
   }
 
-  static float* relaxed_of(const Arguments& g, const Place& at, int term)
+  static float* relaxed_of(const Arguments& g, const Place& at, int tensor)
   {
-    return g.relaxed + (static_cast<std::size_t>(at.tile->viscous) * g.viscous_terms + term) * 6 * Tile::width +
-           at.offset;
+    const auto slot = static_cast<std::size_t>(at.tile->viscous) * physics::relaxed_tensors(g.viscous_terms);
+    return g.relaxed + (slot + tensor) * 6 * Tile::width + at.offset;
   }
 
   static FRONTALIS_LAW physics::Symmetric3<Batch> load_relaxed(const float* relaxed)
@@ -200,8 +200,7 @@ struct CpuElement
 
   static void add_viscosity(const Arguments& g, const Place& at, const Kinematics& k, Stress& P, double&)
   {
-    for (int term = 0; term < g.viscous_terms; ++term)
-      take_relaxed(k, load_relaxed(relaxed_of(g, at, term)), P);
+    take_relaxed(k, load_relaxed(relaxed_of(g, at, physics::relaxed_tensors(g.viscous_terms) - 1)), P);
   }
 
   /// Relaxes the viscous stresses of a tile towards those at the present displacements.
@@ -213,6 +212,9 @@ struct CpuElement
     material.kappa = N::of(0);
     const auto S = physics::second_piola(k, elastic(g, at, material, k));
     const ViscousSlot& slot = g.viscous[at.tile->viscous];
+    physics::Symmetric3<Batch> sum;
+    for (Batch& component : sum.a)
+      component = N::of(0);
     for (int term = 0; term < g.viscous_terms; ++term)
     {
       float* const relaxed = relaxed_of(g, at, term);
@@ -221,7 +223,10 @@ struct CpuElement
       const Batch rate = Lane::load(slot.rate[term] + at.offset);
       physics::relax(Lane::load(slot.share[term] + at.offset), N::exp(-rate * Batch(g.viscous_elapsed)), S, H);
       for (int n = 0; n < 6; ++n)
+      {
         Lane::store(H.a[n], relaxed + n * Tile::width);
+        sum.a[n] = sum.a[n] + H.a[n];
+      }
       if (work == nullptr)
         continue;
       const Batch after = along_strain(k, H);
@@ -234,6 +239,9 @@ struct CpuElement
         work[1] += double(second[lane]);
       }
     }
+    if (g.viscous_terms == 2)
+      for (int n = 0; n < 6; ++n)
+        Lane::store(sum.a[n], relaxed_of(g, at, 2) + n * Tile::width);
   }
 
   // the largest frequency bound squared now, NaN for good where motion is not finite

@@ -1,6 +1,7 @@
 #include "cpu_solver.hpp"
 
 #include "bound_points.hpp"
+#include "frontalis/physics/viscosity.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -123,7 +124,7 @@ void CpuSolver<Real>::rest()
   if (std::is_same<Real, float>::value && model_->precision == Precision::compensated)
     for (auto& component : rounding_)
       component.assign(model_->nodes.size(), 0);
-  relaxed_.assign(rows_.viscous.size() * discretisation_.viscous_terms * 6 * Tile::width, 0);
+  relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
   viscous_elapsed_ = 0;
   restricted_.reset();
 }

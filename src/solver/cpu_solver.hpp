@@ -58,7 +58,7 @@ private:
   void forces(const Components& at, Vectors& out);
   void relax(double elapsed);
   void choose_passive();
-  bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
+  bool relaxes() const { return built_with(Effect::viscosity) && !relaxed_.empty() && runs(Effect::viscosity); }
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
 

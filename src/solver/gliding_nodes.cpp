@@ -1,5 +1,6 @@
 #include "gliding_nodes.hpp"
 
+#include "built_effects.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
       taken -= dot(node->plane.normal, w);
     }
     taken += physics::slide(node->plane.normal, node->plane.height, p, w);
-    if (rubs_ && node->friction > 0)
+    if (built_with(Effect::friction) && rubs_ && node->friction > 0)
     {
       node->pressing += physics::friction_response(drive.dt) * (taken / drive.dt - node->pressing);
       const Point lost = physics::friction_loss(node->friction, drive.dt * node->pressing, norm(w)) * w;
@@ -111,7 +112,7 @@ double GlidingNodes<Real>::friction_loss(std::int32_t first, std::int32_t last, 
   const auto nodes = range(first, last);
   for (const Node* node = nodes.first; node != nodes.second; ++node)
   {
-    if (!rubs_ || !(node->friction > 0))
+    if (!built_with(Effect::friction) || !rubs_ || !(node->friction > 0))
       continue;
     const auto n = node->node;
     const Point change = at(after, n) - at(without, n);

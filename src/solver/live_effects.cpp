@@ -32,13 +32,11 @@ void SteppingSolver::switch_effect(Effect effect, bool on)
     throw Error(name + " cannot be switched while running: " + traits_of(effect).not_live);
   if (const EffectPresence presence = presence_of(*model_, effect); !presence.present)
     throw Error("the model has no " + name + " (" + presence.why + "); it has " + names_of(effects_of(*model_)));
-  if (effect == Effect::sliding && !on && runs(Effect::friction))
-    throw Error("sliding cannot be switched off: friction needs it; switch friction off first");
-  if (effect == Effect::friction && on && !runs(Effect::sliding))
-    throw Error("friction cannot be switched on: it needs sliding; switch sliding on first");
   if (runs(effect) == on)
     return;
-  effects_ = effects_.with(effect, on);
+  const EffectSet running = effects_.with(effect, on);
+  check_needs(running);
+  effects_ = running;
   set_gravity();
   const bool of_fibres = effect == Effect::contraction || effect == Effect::fibre_stiffness;
   if (of_fibres)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "built_effects.hpp"
 #include "discretisation.hpp"
 
 #include <array>
@@ -24,7 +25,11 @@ public:
   /// Loads, and what gravity is less, count only where their effects run.
   void run(EffectSet running);
   void list_allocations(AllocationList& list) const;
-  bool idle() const { return !(runs_ && !surfaces_.empty()) && !(relieves_ && !relief_.empty()); }
+  bool idle() const
+  {
+    const bool loaded = built_with(Effect::surface_loads) && runs_ && !surfaces_.empty();
+    return !loaded && !(built_with(Effect::gravity) && relieves_ && !relief_.empty());
+  }
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
   const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one a loaded node
 

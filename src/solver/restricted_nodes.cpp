@@ -194,8 +194,18 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
     contacts_.gliding.apply(first, last, u, v, drive);
   }
 
-  const auto prescriptions = range(prescribed_, first, last);
-  for (auto p = prescriptions.first; p != prescriptions.second; ++p)
+  if (built_with(Effect::prescribed_displacement) && !prescribed_.empty())
+    follow_paths(first, last, u, v, before, drive);
+  if (built_with(Effect::rigid_nodes) && !rigid_.empty())
+    follow_bones(first, last, u, v, before, drive);
+}
+
+template <class Real>
+void RestrictedNodes<Real>::follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                         const Real* const before[3], const Drive& drive)
+{
+  const auto nodes = range(prescribed_, first, last);
+  for (auto p = nodes.first; p != nodes.second; ++p)
   {
     const Load& load = model_.loads[p->load];
     const double now = physics::ramped(drive.time, load.ramp);
@@ -206,9 +216,14 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
         v[axis][p->node] = (u[axis][p->node] - before[axis][p->node]) / static_cast<Real>(drive.dt);
       }
   }
+}
 
-  const auto rigids = range(rigid_, first, last);
-  for (auto r = rigids.first; r != rigids.second; ++r)
+template <class Real>
+void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                         const Real* const before[3], const Drive& drive)
+{
+  const auto nodes = range(rigid_, first, last);
+  for (auto r = nodes.first; r != nodes.second; ++r)
   {
     if (r->bone < 0)
     {

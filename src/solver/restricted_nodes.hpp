@@ -70,6 +70,10 @@ public:
 
 private:
   void make_blocks(const std::vector<SlidingNode>& nodes);
+  void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                    const Real* const before[3], const Drive& drive);
+  void follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                    const Real* const before[3], const Drive& drive);
   static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
 
   const Model& model_;

@@ -1,46 +1,70 @@
 #!/usr/bin/python3
-"""Whether an effect costs a scene without it nothing: the solver's library is linked again with those sources compiled
-without the effect that know of it, and the instructions of the same steps are counted by valgrind with both libraries."""
+"""Whether an effect costs a scene without it nothing. The solver's library is linked again with those sources compiled
+without the effect that know of it: the instructions of the same steps are counted by valgrind with both libraries, and
+the bytes that both hold, array by array, are compared. Where nvcc is, the GPU's step kernels are compiled both ways too,
+and the machine code of those that a scene without the effect can be given is compared byte for byte."""
 
+import concurrent.futures
 import json
 import os
 import re
 import shlex
+import struct
 import subprocess
 import sys
 import tempfile
 
-# an effect goes with those that need it
-EFFECTS = (("viscosity",), ("contraction", "fibre_stiffness"), ("gravity",), ("surface_loads",), ("sliding", "friction"))
-# all that includes built_effects.hpp; valgrind knows no AVX-512
-SOURCES = ("cpu_kernel_avx2.cpp", "restricted_nodes.cpp", "stepping_solver.cpp")
+# an effect goes with those that need it, and passive with active fibres, which share what is stored
+EFFECTS = (("viscosity",), ("contraction", "fibre_stiffness"), ("gravity",), ("surface_loads",),
+           ("prescribed_displacement",), ("rigid_nodes",), ("sliding", "friction"), ("friction",))
 STEPS = "frontalis::SteppingSolver::advance*"
+KERNELS = ("patch_kernel.cu", "step_kernel.cu")
+# bits of Effects (cuda/step_kernel.hpp)
+KERNEL_BITS = {"contraction": 1, "fibre_stiffness": 1, "viscosity": 2, "sliding": 8}
 
 
-def library_without(effects, build, folder):
-    """Path of a solver's library without the effects."""
+def commands_of(build):
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
-        commands = json.load(file)
-    objects = os.path.join(build, "CMakeFiles", "frontalis_solver.dir")
-    replaced = {}
-    for entry in commands:
-        name = os.path.basename(entry["file"])
-        if name in SOURCES and "/src/solver/" in entry["file"]:
-            words = shlex.split(entry["command"])
-            old = words[words.index("-o") + 1]
-            new = os.path.join(folder, name + ".o")
-            words[words.index("-o") + 1] = new
-            words += ["-DFRONTALIS_WITHOUT_" + effect.upper() for effect in effects]
-            subprocess.run(words, cwd=entry["directory"], check=True)
-            replaced[os.path.normpath(os.path.join(entry["directory"], old))] = new
+        return json.load(file)
+
+
+def definitions(effects):
+    return ["-DFRONTALIS_WITHOUT_" + effect.upper() for effect in effects]
+
+
+def knows_of_effects(entry):
+    """Whether built_effects.hpp is among what a source includes; valgrind knows no AVX-512."""
+    if "frontalis_solver.dir" not in entry["command"] or not entry["file"].endswith(".cpp"):
+        return False
+    if re.search(r"_(avx512|baseline)\.cpp$", entry["file"]):
+        return False
+    words = shlex.split(entry["command"])
+    words = words[:words.index("-o")] + ["-MM", entry["file"]]
+    done = subprocess.run(words, cwd=entry["directory"], capture_output=True, text=True, check=True)
+    return "built_effects.hpp" in done.stdout
+
+
+def library_without(effects, entries, build, folder):
+    """Path of a solver's library without the effects."""
+    def compiled(entry):
+        words = shlex.split(entry["command"])
+        at = words.index("-o") + 1
+        old, words[at] = words[at], os.path.join(folder, os.path.basename(entry["file"]) + ".o")
+        subprocess.run(words + definitions(effects), cwd=entry["directory"], check=True)
+        return os.path.normpath(os.path.join(entry["directory"], old)), words[at]
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        replaced = dict(pool.map(compiled, entries))
     files = []
-    for place, _, names in os.walk(objects):
+    for place, _, names in os.walk(os.path.join(build, "CMakeFiles", "frontalis_solver.dir")):
         for name in names:
             if name.endswith(".o"):
                 path = os.path.normpath(os.path.join(place, name))
                 files.append(replaced.get(path, path))
     library = os.path.join(folder, "libfrontalis_solver.so")
-    subprocess.run(["c++", "-shared", "-o", library, "-Wl,-soname,libfrontalis_solver.so"] + sorted(files), check=True)
+    cudart = [path for path in ("/usr/local/cuda/lib64/libcudart_static.a",) if os.path.exists(path)]
+    subprocess.run(["c++", "-shared", "-o", library, "-Wl,-soname,libfrontalis_solver.so"] + sorted(files) + cudart +
+                   ["-ldl", "-lrt", "-lpthread"], check=True)
     return library
 
 
@@ -58,11 +82,19 @@ def instructions(program, model, library, folder):
     return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
 
 
-def main():
-    if len(sys.argv) != 4:
-        sys.exit("usage: effect_absence.py BUILD PROGRAM SCENE")
-    build, program, scene = sys.argv[1:]
-    print("%-28s %16s %16s %10s" % ("absent", "instructions", "without it", "more [%]"))
+def allocations(program, model, library):
+    """Bytes of each array of a solver."""
+    environment = dict(os.environ, **({"LD_PRELOAD": library} if library else {}))
+    command = [program, "effects", model, "--backend", "cpu", "--threads", "1", "--arrays"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    return done.stdout
+
+
+def compare_on_cpu(build, program, scene):
+    print("%-28s %16s %16s %10s  %s" % ("absent", "instructions", "without it", "more [%]", "arrays"))
+    entries = [entry for entry in commands_of(build) if knows_of_effects(entry)]
     with open(scene, encoding="utf-8") as file:
         text = file.read()
     for effects in EFFECTS:
@@ -71,9 +103,84 @@ def main():
             with open(changed, "w", encoding="utf-8") as file:
                 file.write(text + "effects: {%s}\n" % ", ".join(effect + ": off" for effect in effects))
             subprocess.run([program, "bake", changed, "-o", model], capture_output=True, check=True)
-            library = library_without(effects, build, folder)
+            library = library_without(effects, entries, build, folder)
             here, there = (instructions(program, model, which, folder) for which in (None, library))
-            print("%-28s %16d %16d %10.4f" % (", ".join(effects), here, there, 100 * (here - there) / there), flush=True)
+            same = allocations(program, model, None) == allocations(program, model, library)
+            print("%-28s %16d %16d %10.4f  %s" % (", ".join(effects), here, there, 100 * (here - there) / there,
+                                                  "the same bytes" if same else "differ"), flush=True)
+
+
+def machine_code(cubin):
+    """Of each kernel and of each function that it calls: its name, its code. A kernel's own code lies before that of the
+    functions."""
+    with open(cubin, "rb") as file:
+        data = file.read()
+    header, = struct.unpack_from("<Q", data, 40)
+    size, count = struct.unpack_from("<HH", data, 58)
+    sections = [struct.unpack_from("<IIQQQQIIQQ", data, header + i * size) for i in range(count)]
+    table = next(section for section in sections if section[1] == 2)
+    strings = sections[table[6]][4]
+    functions = []
+    for at in range(table[4], table[4] + table[5], 24):
+        name, info, _, section, value, length = struct.unpack_from("<IBBHQQ", data, at)
+        if info & 15 == 2 and 0 < section < count:
+            text = data[strings + name:data.index(b"\0", strings + name)].decode()
+            functions.append((text, section, value, length))
+    code = {}
+    for name, section, value, length in functions:
+        if name.startswith("$"):
+            continue
+        inner = [f[2] for f in functions if f[1] == section and f[0].startswith("$")]
+        start = sections[section][4] + value
+        code[name] = data[start:start + min([length] + inner)]
+    return code
+
+
+def cubins(entries, effects, folder):
+    """Machine code of all step kernels, compiled without the effects."""
+    def compiled(entry):
+        words = [word for word in shlex.split(entry["command"]) if not word.startswith("--generate-code")]
+        # not through a cache of compilations: what it stores is another kind of file
+        words = words[next(i for i, word in enumerate(words) if os.path.basename(word) == "nvcc"):]
+        words[words.index("-o") + 1] = os.path.join(folder, os.path.basename(entry["file"]) + ".cubin")
+        words[words.index("-c")] = "-cubin"
+        words = [word for word in words if word != "-MD"]
+        for flag in ("-MT", "-MF"):
+            if flag in words:
+                del words[words.index(flag):words.index(flag) + 2]
+        subprocess.run(words + ["-arch=sm_90"] + definitions(effects), cwd=entry["directory"], check=True)
+        return machine_code(words[words.index("-o") + 1])
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return {name: code for codes in pool.map(compiled, entries) for name, code in codes.items()}
+
+
+def compare_on_gpu(build):
+    entries = [entry for entry in commands_of(build) if os.path.basename(entry["file"]) in KERNELS]
+    if not entries:
+        print("no nvcc: kernels of the GPU are not compared")
+        return
+    print("%-28s %16s %16s %10s" % ("absent", "kernels for it", "the same code", "bytes"))
+    with tempfile.TemporaryDirectory() as folder:
+        whole = cubins(entries, (), folder)
+    for effects in EFFECTS:
+        bits = 0
+        for effect in effects:
+            bits |= KERNEL_BITS.get(effect, 0)
+        with tempfile.TemporaryDirectory() as folder:
+            without = cubins(entries, effects, folder)
+        # the last number in a kernel's name is its set of effects
+        chosen = [name for name in whole if not int(re.findall(r"Li(\d+)E", name)[-1]) & bits]
+        same = [name for name in chosen if whole[name] == without[name]]
+        print("%-28s %16d %16d %10d" % (", ".join(effects), len(chosen), len(same),
+                                        sum(len(whole[name]) for name in same)), flush=True)
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit("usage: effect_absence.py BUILD PROGRAM SCENE")
+    compare_on_cpu(*sys.argv[1:])
+    compare_on_gpu(sys.argv[1])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 #include "../../cuda/voxel_patches.hpp"
 #include "../../src/study/gpu/shell_model.hpp"
-#include "block_model.hpp"
+#include "frontalis/model/effects.hpp"
+#include "solver/effect_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,11 @@ void check_patches(const Model& model, const PatchSettings& settings)
       for (int b = 0; b < 8; ++b)
         ASSERT_EQ(node_of[device_node_at(patches.corner[patch.voxel_begin + v][b])],
                   static_cast<std::uint32_t>(model.voxel_nodes[patches.voxel[patch.voxel_begin + v]][b]));
+    for (std::uint32_t v = 0; v < patch.voxels; ++v)
+    {
+      const std::uint32_t e = patches.voxel[patch.voxel_begin + v];
+      ASSERT_EQ(v < patch.special, model.fibre_begin[e] < model.fibre_begin[e + 1] || is_viscous(model, e));
+    }
     for (std::uint32_t n = patch.first_node; n < patch.first_node + patch.nodes; ++n)
       for (int b = 0; b < 8; ++b)
       {
@@ -78,6 +84,13 @@ TEST(VoxelPatches, GiveEveryNodeOneOwnerWithAllItsVoxels)
   for (const int turns : { 1, 2, 3 })
     for (const int blocks : { 1, 7, 132 })
       check_patches(shell, { blocks, turns });
+}
+
+TEST(VoxelPatches, TakeVoxelsThatCostMoreFirst)
+{
+  for (const unsigned effects : { test::viscosity, test::contraction, test::everything })
+    for (const int blocks : { 1, 3 })
+      check_patches(test::scene_of(effects), { blocks, 2 });
 }
 
 TEST(VoxelPatches, MayBeMoreThanNodes)

@@ -31,7 +31,7 @@ EffectSet only(Effect effect) { return EffectSet().with(effect); }
 TEST(ModelEffects, are_those_that_something_has_cause_for)
 {
   EXPECT_EQ(names_of(effects_of(scene_of(0))), "elasticity, rigid_nodes");
-  const Model whole = scene_of(all_effects - 1 + friction);
+  const Model whole = scene_of(everything);
   EXPECT_EQ(effects_of(whole), EffectSet::all().with(Effect::output_fields, false));
   EXPECT_EQ(presence_of(whole, Effect::contraction).voxels, whole.voxels.size());
   EXPECT_EQ(presence_of(whole, Effect::friction).nodes, whole.sliding.size());
@@ -53,7 +53,7 @@ TEST(ModelEffects, one_switched_off_leaves_nothing_and_is_named)
 {
   for (const Effect effect : every_effect())
   {
-    Model model = scene_of(all_effects - 1);
+    Model model = scene_of(but_friction);
     if (traits_of(effect).not_off[0] != '\0')
       continue;
     const EffectSet before = effects_of(model);
@@ -84,7 +84,7 @@ TEST(ModelEffects, what_others_need_stays_and_unknown_names_are_told_what_there_
   EXPECT_EQ(refusal(scene_of(0), only(Effect::elasticity)),
             "elasticity cannot be switched off: nothing else holds a voxel together");
   EXPECT_EQ(refusal(scene_of(sliding | friction), only(Effect::sliding)),
-            "sliding cannot be switched off: friction needs it; switch friction off too");
+            "friction needs sliding: switch friction off too, or sliding on");
   EXPECT_EQ(refusal(scene_of(sliding | friction), only(Effect::sliding).with(Effect::friction)), "");
   try
   {

@@ -2,12 +2,15 @@
 
 #include "block_model.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace frontalis
 {
 namespace test
 {
 
-/// Bits of what a scene has; rigid nodes and elasticity it always has.
+/// Bits of what a scene has; elasticity it always has.
 enum SceneEffect : unsigned
 {
   viscosity = 1,
@@ -18,9 +21,21 @@ enum SceneEffect : unsigned
   pressure = 32,
   prescribed = 64,
   sliding = 128,
-  all_effects = 256,
-  friction = 256  ///< beside sliding
+  friction = 256,  ///< beside sliding
+  loose = 512,     ///< no rigid nodes
+  but_friction = 255,
+  everything = 511
 };
+
+/// Every combination that scenes can make.
+inline std::vector<unsigned> every_combination()
+{
+  std::vector<unsigned> combinations;
+  for (unsigned effects = 0; effects <= everything + loose; ++effects)
+    if ((effects & sliding) != 0 || (effects & friction) == 0)
+      combinations.push_back(effects);
+  return combinations;
+}
 
 /// Strips of several lengths, so that tiles are full, half full and empty in places; each effect has its own part of it
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
@@ -34,7 +49,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
   model.hourglass = hourglass;
   model.integration = integration;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
+    if (model.nodes[n][0] == 0 && !(effects & loose))
       model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
   if (effects & other_law)
   {
@@ -108,6 +123,21 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
         model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
   }
   return model;
+}
+
+using Vectors = std::vector<std::array<double, 3>>;
+
+/// Largest difference of a component over the largest component of b, which counts as 1 um at least.
+inline double difference(const Vectors& a, const Vectors& b)
+{
+  double worst = 0, largest = 1e-6;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      worst = std::max(worst, std::abs(a[n][axis] - b[n][axis]));
+      largest = std::max(largest, std::abs(b[n][axis]));
+    }
+  return worst / largest;
 }
 
 }  // namespace test

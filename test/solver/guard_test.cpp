@@ -72,7 +72,7 @@ TEST_P(Guarded, sound_motion_is_left_alone)
 {
   for (const bool ledger : { false, true })
   {
-    const auto model = std::make_shared<const Model>(test::scene_of(test::all_effects - 1));
+    const auto model = std::make_shared<const Model>(test::scene_of(test::but_friction));
     const auto solver = make_solver(model, { GetParam(), 2, 0, ledger });
     GuardSettings settings = close();
     settings.ledger = ledger;

@@ -32,7 +32,7 @@ TEST_P(Monitors, agree_with_the_reference)
     for (const auto integration : { Integration::one_point, Integration::selective_reduced })
       for (const double size : { 1e-7, 2e-4 })
       {
-        const Model model = test::scene_of(test::all_effects - 1, hourglass, integration);
+        const Model model = test::scene_of(test::but_friction, hourglass, integration);
         Monitor seen[2];
         for (const bool own : { false, true })
         {
@@ -81,7 +81,7 @@ TEST_P(Monitors, find_voxels_inside_out_and_numbers_that_are_none)
 
 TEST(CpuMonitor, same_input_same_bits_on_any_number_of_threads)
 {
-  const Model model = test::scene_of(test::all_effects - 1);
+  const Model model = test::scene_of(test::but_friction);
   Monitor seen[2];
   for (const int threads : { 1, 4 })
   {

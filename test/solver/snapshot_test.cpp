@@ -62,7 +62,7 @@ class Snapshots : public test::EveryBackend
 protected:
   std::unique_ptr<Solver> solver_of(const Variant& variant) const
   {
-    Model model = test::scene_of(test::all_effects - 1);
+    Model model = test::scene_of(test::but_friction);
     variant.change(model);
     return make_solver(std::make_shared<const Model>(model), { GetParam(), 2, 0, variant.ledger });
   }

@@ -36,7 +36,7 @@ TEST(EffectCosts, AreThoseOfTheModelsEffects)
 
 TEST(EffectCosts, APlainModelHasElasticityAlone)
 {
-  const Model plain = plain_model(test::scene_of(test::all_effects - 1 + test::friction));
+  const Model plain = plain_model(test::scene_of(test::everything));
   EXPECT_EQ(names_of(effects_of(plain)), "elasticity");
   for (const Material& material : plain.materials)
     EXPECT_EQ(material.law, Law::neo_hookean);

@@ -23,6 +23,9 @@ struct EffectPresence
 EffectPresence presence_of(const Model& model, Effect effect);
 EffectSet effects_of(const Model& model);
 
+/// Whether one of its materials is viscous.
+bool is_viscous(const Model& model, std::size_t voxel);
+
 /// Takes effects out of a model, so that nothing is stored for them, and notes their names in Model::switched_off.
 /// Throws Error as check_switched_off.
 void switch_off(Model& model, EffectSet off);

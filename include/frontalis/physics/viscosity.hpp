@@ -45,6 +45,9 @@ FRONTALIS_LAW void relax(const T& share, const T& decay, const Symmetric3<T>& S,
     H.a[n] = decay * H.a[n] + gain * S.a[n];
 }
 
+/// Tensors that are kept of a voxel: one a term, and of two terms their sum after them, which is what a step needs.
+FRONTALIS_LAW constexpr int relaxed_tensors(int terms) { return terms == 2 ? 3 : terms; }
+
 /// P -= F H.
 template <class T>
 FRONTALIS_LAW void take_relaxed(const Kinematics<T>& k, const Symmetric3<T>& H, Matrix3<T>& P)
