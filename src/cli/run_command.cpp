@@ -102,7 +102,7 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
 }
 
 // relaxes to equilibrium, the activations at once where they end
-void settle(Solver& solver, const Model& model, const RunOptions& options, const Controls& target,
+void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& options, const Controls& target,
             std::optional<FrameFolder>& folder, RunSummary& summary)
 {
   const auto begin = std::chrono::steady_clock::now();
@@ -110,12 +110,13 @@ void settle(Solver& solver, const Model& model, const RunOptions& options, const
   summary.rest = summary.end;
   Progress progress;
   const double seconds = options.seconds / model.time_scaling;
-  const Equilibrium found = solver.settle(target, options.tolerance, seconds,
-                                          [&](const Equilibrium& now)
-                                          {
-                                            progress.update("relaxing", now.seconds / seconds);
-                                            return !interrupt_requested();
-                                          });
+  const auto go_on = [&](const Equilibrium& now)
+  {
+    progress.update("relaxing", now.seconds / seconds);
+    return !interrupt_requested();
+  };
+  const Equilibrium found = guard != nullptr ? guard->settle(target, options.tolerance, seconds, go_on)
+                                             : solver.settle(target, options.tolerance, seconds, go_on);
   const double time = found.seconds * model.time_scaling;
   look(solver, model, time, summary);
   summary.frames = 1;
@@ -183,19 +184,19 @@ void run(const RunOptions& options)
   summary.time_step = solver->time_step();
   print_set_up(*model, summary);
 
+  std::optional<Guard> guard;
+  if (options.guard_interval != 0)
+  {
+    GuardSettings watch;
+    watch.interval = std::max(options.guard_interval, 0);
+    watch.ledger = options.ledger;
+    guard.emplace(*solver, model, watch);
+  }
+  Guard* const watched = guard ? &*guard : nullptr;
   if (options.to_equilibrium)
-    settle(*solver, *model, options, { curve.activation.back(), bones }, folder, summary);
+    settle(*solver, watched, *model, options, { curve.activation.back(), bones }, folder, summary);
   else
   {
-    std::optional<Guard> guard;
-    if (options.guard_interval != 0)
-    {
-      GuardSettings watch;
-      watch.interval = std::max(options.guard_interval, 0);
-      watch.ledger = options.ledger;
-      guard.emplace(*solver, model, watch);
-    }
-    Guard* const watched = guard ? &*guard : nullptr;
     Motion motion(*solver, watched, *model, curve, bones, ramp, [] { return !interrupt_requested(); });
     try
     {

@@ -4,11 +4,13 @@
 #include "stability_scenes.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
 #include "frontalis/study/stability.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 namespace frontalis
@@ -20,7 +22,7 @@ struct StabilityOptions
 {
   std::vector<std::string> only;
   std::string backend = "cpu";
-  std::string json, markdown;
+  std::string json, table, markdown, models;
   StabilityScenes scenes;
   bool all = false;
 };
@@ -40,6 +42,16 @@ void run_stability(const StabilityOptions& options)
     if (interrupt_requested())
       throw Interrupted();
   };
+  int motion = 0;
+  if (!options.models.empty())
+  {
+    std::error_code failed;
+    std::filesystem::create_directories(options.models, failed);
+    if (failed)
+      throw Error(options.models + ": " + failed.message());
+    settings.model = [&](const Model& model)
+    { write_model(model, options.models + "/" + name + "_" + std::to_string(++motion) + ".vtkhdf"); };
+  }
   Trials trials;
   int failed = 0, skipped = 0;
   double seconds = 0;
@@ -48,6 +60,7 @@ void run_stability(const StabilityOptions& options)
   for (const auto& c : cases)
   {
     name = c.name;
+    motion = 0;
     const Trial trial = run_case(c, settings);
     progress.clear();
     std::printf("%s\n", trial_line(c, trial).c_str());
@@ -59,6 +72,8 @@ void run_stability(const StabilityOptions& options)
   }
   if (!options.json.empty())
     write_text(options.json, trials_json(trials));
+  if (!options.table.empty())
+    write_text(options.table, trials_markdown(trials));
   if (!options.markdown.empty())
     write_stability(trials, options.markdown);
   const int ran = static_cast<int>(cases.size()) - skipped;
@@ -82,7 +97,9 @@ void add_stability_command(CLI::App& app, Action& action)
   command->add_option(
       "--scenes", options->scenes.folder,
       "folder of the cases' scenes, or of models baked from them (where the program finds them itself)");
+  command->add_option("--models", options->models, "write the models of the cases' motions to this folder");
   command->add_option("--json", options->json, "write the figures to this file");
+  command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--markdown", options->markdown,
                       "write stability.md to this folder, its plots to a folder stability in it");
   command->callback([options, &action] { action = [options] { run_stability(*options); }; });

@@ -45,6 +45,7 @@ struct Guard::Implementation
   std::int64_t checked_at = 0;    // steps
   int good_checks = 0;            // since the latest rollback
   int tries = 0;
+  bool settling = false;
   GuardCounts counts;
 
   double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass; }
@@ -94,13 +95,13 @@ Instability Guard::Implementation::check()
   checked_at = steps();
   const Monitor monitor = solver.monitor();
   EnergyLedger ledger;
-  if (settings.ledger && monitor.finite)
+  if (settings.ledger && monitor.finite && !settling)
     ledger = solver.ledger();
-  const Instability finding =
-      mutation::blind_guard ? Instability::none : judged(monitor, ledger.imbalance(), ledger.largest);
+  const double imbalance = settling ? good.imbalance : ledger.imbalance();
+  const Instability finding = mutation::blind_guard ? Instability::none : judged(monitor, imbalance, ledger.largest);
   if (finding == Instability::none)
   {
-    keep(monitor, ledger.imbalance());
+    keep(monitor, imbalance);
     ++good_checks;
   }
   counts.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -181,7 +182,8 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)
 {
   const Model& watched = *model;
-  self_.reset(new Implementation{ solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, 0, 0, 0, {} });
+  self_.reset(
+      new Implementation{ solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, 0, 0, 0, false, {} });
   const auto refuse = [](const char* what, double value, const char* allowed)
   { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
   if (settings.interval < 0)
@@ -258,6 +260,51 @@ void Guard::advance(double seconds, const Controls& target)
       g.solver.slow_down(1);
     }
   }
+}
+
+Equilibrium Guard::settle(const Controls& target, double tolerance, double seconds,
+                          const std::function<bool(const Equilibrium&)>& go_on)
+{
+  Implementation& g = *self_;
+  g.solver.check(seconds, target);
+  const double end = g.solver.time() + seconds;
+  Equilibrium result;
+  for (Instability finding = Instability::time_step; finding != Instability::none;)
+  {
+    finding = Instability::none;
+    // activations jump where they are to be
+    for (std::size_t m = 0; m < target.activation.size(); ++m)
+      g.activation[m] = std::max(g.activation[m], target.activation[m]);
+    struct Settling
+    {
+      explicit Settling(bool& it) : on(it) { on = true; }
+      ~Settling() { on = false; }
+      bool& on;
+    };
+    try
+    {
+      const Settling settling(g.settling);
+      result = g.solver.settle(target, tolerance, end - g.solver.time(),
+                               [&](const Equilibrium& now)
+                               {
+                                 if (g.steps() - g.checked_at >= g.settings.interval)
+                                   finding = g.check();
+                                 return finding == Instability::none && (!go_on || go_on(now));
+                               });
+      if (finding == Instability::none)
+        finding = g.check();
+    }
+    catch (const Diverged&)
+    {
+      if (mutation::blind_guard)
+        throw;
+      finding = Instability::not_finite;
+    }
+    if (finding != Instability::none)
+      g.go_back(finding, target, end);
+  }
+  restart();
+  return result;
 }
 
 const GuardCounts& Guard::counts() const { return self_->counts; }

@@ -1,6 +1,7 @@
 #include "frontalis/study/equilibrium.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/guard.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,14 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   RestState result;
   // few voxels are not worth a second thread's waiting
   const int threads = model.voxels.size() < 2000 ? 1 : 0;
-  result.solver = make_solver(std::make_shared<const Model>(std::move(model)), { settings.backend, threads, 0 });
+  const auto shared = std::make_shared<const Model>(std::move(model));
+  result.solver = make_solver(shared, { settings.backend, threads, 0 });
   Controls target = result.solver->controls();
   std::fill(target.activation.begin(), target.activation.end(), settings.activation);
   std::fill(target.bone.begin(), target.bone.end(), settings.bone_pose);
-  result.solver->advance(settings.ramp * settings.period, target);
-  const Equilibrium end = result.solver->settle(target, settings.tolerance, settings.longest * settings.period);
+  Guard guard(*result.solver, shared);
+  guard.advance(settings.ramp * settings.period, target);
+  const Equilibrium end = guard.settle(target, settings.tolerance, settings.longest * settings.period);
   if (!end.reached)
     throw Error("no equilibrium within " + std::to_string(settings.longest) + " periods of " +
                 std::to_string(settings.period) + " s: " + std::to_string(end.residual) + " of the motion is left");

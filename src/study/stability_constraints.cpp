@@ -109,10 +109,10 @@ void off_the_edge(const StabilitySettings& settings, Trial& trial)
 {
   Model model = soft_block({ { 8, 3, 2 } });
   model.damping = 50;
-  slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 9e-3, -0.3e-3 } }), underside);
+  slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 12.5e-3, -0.3e-3 } }), underside);
   model.gravity = { { 100, 0, -9.81 } };
   drag(settings, trial, model, "off_the_edge", "A block is dragged off the edge of the surface that it slides on",
-       2e-3);
+       5e-3);
 }
 
 void two_surfaces(const StabilitySettings& settings, Trial& trial)
@@ -209,7 +209,8 @@ std::vector<StabilityCase> hard_constraints()
 {
   return { { "sharp_ridge", true, "sliding over a ridge of 53 degrees",
              "A soft block is dragged over a ridge of 53°: at the ridge the tangent plane jumps. Kept distances err by "
-             "at most 20 µm, and projection adds no energy: explained to 5 %.",
+             "at most 20 µm, and projection adds no energy: explained to 5 %. Put back to their planes at once and not "
+             "in halves, the nodes of an undamped shell on a ball gained 43 % of its energy in 40 ms.",
              sharp_ridge },
            { "off_the_edge", true, "sliding off the edge of a surface",
              "A block is dragged off the edge of the surface that it slides on. Nodes that come to the rim go round it "

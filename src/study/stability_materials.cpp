@@ -63,13 +63,11 @@ void stiffness_contrast(const StabilitySettings& settings, Trial& trial)
   hold_face(model, 0, false);
   hold_face(model, 0, true, "grip");
   WatchedMotion motion(settings, trial, model);
-  motion.advance(5e-3, motion.controls(0, shifted(2e-3, 0, 0.5e-3)), 10);
-  motion.advance(5e-3, motion.controls(), 10);
-  motion.advance(10e-3, motion.controls(), 10);
-  motion.expect_balance("drawn by a quarter and back", 0.01);
-  motion.plot("stiffness_contrast", "Tendon, fat and mixed voxels drawn by a quarter and back");
-  motion.advance(0.2, motion.controls(), 20);
-  trial.checks.push_back(absolute_check("left of 2 mm", "mm", 0, 1e3 * farthest(motion.displacements()), 0.02));
+  motion.come_and_go({ { 5e-3, motion.controls(0, shifted(2e-3, 0, 0.5e-3)), 10 },
+                       { 5e-3, motion.controls(), 10 },
+                       { 10e-3, motion.controls(), 10 } },
+                     "drawn by a quarter and back", 0.01, 0.02e-3, "stiffness_contrast",
+                     "Tendon, fat and mixed voxels drawn by a quarter and back");
 }
 
 void thin_layer(const StabilitySettings& settings, Trial& trial)
@@ -89,14 +87,10 @@ void thin_layer(const StabilitySettings& settings, Trial& trial)
   hold_face(model, 0, false);
   hold_face(model, 0, true, "grip");
   WatchedMotion motion(settings, trial, model);
-  motion.advance(20e-3, motion.controls(0, shifted(-5e-3, 0, 0.2e-3)), 10);
-  motion.advance(20e-3, motion.controls(0, shifted(-5e-3, 0, 0.2e-3)), 10);
-  motion.advance(20e-3, motion.controls(), 10);
-  motion.advance(20e-3, motion.controls(), 10);
-  motion.expect_balance("shortened by a fifth and back", 0.01);
-  motion.plot("thin_layer", "Skin with 0.02 mm of stratum corneum, shortened by a fifth and back");
-  motion.advance(0.2, motion.controls(), 20);
-  trial.checks.push_back(absolute_check("left of 5 mm", "mm", 0, 1e3 * farthest(motion.displacements()), 0.05));
+  const Controls drawn = motion.controls(0, shifted(-5e-3, 0, 0.2e-3)), back = motion.controls();
+  motion.come_and_go({ { 20e-3, drawn, 10 }, { 20e-3, drawn, 10 }, { 20e-3, back, 10 }, { 20e-3, back, 10 } },
+                     "shortened by a fifth and back", 0.01, 0.05e-3, "thin_layer",
+                     "Skin with 0.02 mm of stratum corneum, shortened by a fifth and back");
 }
 
 void stiffening(const StabilitySettings& settings, Trial& trial)
@@ -115,16 +109,14 @@ void stiffening(const StabilitySettings& settings, Trial& trial)
   hold_face(model, 0, true, "grip");
   WatchedMotion motion(settings, trial, model);
   const RigidTransform drawn = shifted(5e-3, 0, 0);
-  motion.advance(2e-3, motion.controls(0, drawn), 10);
-  motion.advance(1e-4, motion.controls(1, drawn), 1);
-  motion.advance(5e-3, motion.controls(1, drawn), 10);
-  motion.advance(1e-4, motion.controls(0, drawn), 1);
-  motion.advance(2e-3, motion.controls(), 10);
-  motion.advance(20e-3, motion.controls(), 10);
-  motion.expect_balance("drawn by 60 % while its muscle is switched on", 0.01);
-  motion.plot("stiffening", "A stiffening bar drawn by 60 % in 2 ms, its muscle switched on and off");
-  motion.advance(0.2, motion.controls(), 20);
-  trial.checks.push_back(absolute_check("left of 5 mm", "mm", 0, 1e3 * farthest(motion.displacements()), 0.05));
+  motion.come_and_go({ { 2e-3, motion.controls(0, drawn), 10 },
+                       { 1e-4, motion.controls(1, drawn), 1 },
+                       { 5e-3, motion.controls(1, drawn), 10 },
+                       { 1e-4, motion.controls(0, drawn), 1 },
+                       { 2e-3, motion.controls(), 10 },
+                       { 20e-3, motion.controls(), 10 } },
+                     "drawn by 60 % while its muscle is switched on", 0.01, 0.05e-3, "stiffening",
+                     "A stiffening bar drawn by 60 % in 2 ms, its muscle switched on and off");
 }
 
 void mass_scaling(const StabilitySettings& settings, Trial& trial)

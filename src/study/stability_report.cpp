@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace frontalis
 {
@@ -26,6 +28,23 @@ std::string trials_json(const Trials& trials)
   return table.json();
 }
 
+std::string trials_markdown(const Trials& trials)
+{
+  Table overview(
+      { "case", "what is hard", "voxels", "steps", "worst J", "energy [%]", "hourglass [%]", "seconds", "verdict" });
+  for (const auto& [hard_case, trial] : trials)
+  {
+    const bool ran = trial.skipped.empty();
+    overview.add({ "[" + hard_case.name + "](#" + hard_case.name + ")", hard_case.hard,
+                   ran ? Table::Cell(static_cast<double>(trial.voxels)) : Table::Cell(std::string()),
+                   ran ? Table::Cell(std::to_string(trial.steps)) : Table::Cell(std::string()),
+                   readable(finite_or_none(trial.worst_jacobian), 3), percent(trial.energy_error),
+                   percent(trial.hourglass_share), readable(trial.seconds, 2),
+                   trial.stopped.empty() ? verdict_of(trial) : "stopped with a report" });
+  }
+  return overview.markdown();
+}
+
 void write_stability(const Trials& trials, const std::string& folder)
 {
   const std::filesystem::path pictures = std::filesystem::path(folder) / "stability";
@@ -43,19 +62,11 @@ void write_stability(const Trials& trials, const std::string& folder)
       "every energy, volume ratio and displacement stayed finite. What is said to fail without a measure was tried "
       "where a "
       "figure stands with it.\n";
-  Table overview(
-      { "case", "what is hard", "voxels", "steps", "worst J", "energy [%]", "hourglass [%]", "seconds", "verdict" });
-  for (const auto& [hard_case, trial] : trials)
-  {
-    const bool ran = trial.skipped.empty();
-    overview.add({ "[" + hard_case.name + "](#" + hard_case.name + ")", hard_case.hard,
-                   ran ? Table::Cell(static_cast<double>(trial.voxels)) : Table::Cell(std::string()),
-                   ran ? Table::Cell(std::to_string(trial.steps)) : Table::Cell(std::string()),
-                   readable(finite_or_none(trial.worst_jacobian), 3), percent(trial.energy_error),
-                   percent(trial.hourglass_share), readable(trial.seconds, 2),
-                   trial.stopped.empty() ? verdict_of(trial) : "stopped with a report" });
-  }
-  out += "\n" + overview.markdown();
+  out += "\n" + trials_markdown(trials);
+  // of a run elsewhere
+  std::ifstream elsewhere(pictures / "cuda.md");
+  if (elsewhere)
+    out += "\n## On a GPU\n\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
   for (const auto& [hard_case, trial] : trials)
   {
     out += "\n## " + hard_case.name + "\n\n" + hard_case.text + "\n";

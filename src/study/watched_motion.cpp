@@ -13,6 +13,7 @@ WatchedMotion::WatchedMotion(const StabilitySettings& settings, Trial& trial, st
                              bool ledger, const GuardSettings& guard)
     : settings_(settings), trial_(trial), model_(std::move(model)), wants_ledger_(ledger)
 {
+  settings.model(*model_);
   // few voxels are not worth a second thread's waiting
   const int threads = model_->voxels.size() < 2000 ? 1 : 0;
   SolverSettings own{ settings.backend, threads, 0 };
@@ -52,18 +53,31 @@ void WatchedMotion::advance(double seconds, const Controls& target, int looks)
   }
 }
 
+void WatchedMotion::come_and_go(const std::vector<Phase>& phases, const std::string& of, double share, double left,
+                                const std::string& file, const std::string& title)
+{
+  for (const Phase& phase : phases)
+    advance(phase.seconds, phase.target, phase.looks);
+  plot(file, title);
+  advance(0.2, controls(), 20);
+  expect_balance(of, share);
+  double farthest = 0;
+  for (const auto& u : displacements())
+    farthest = std::max(farthest, std::hypot(u[0], u[1], u[2]));
+  trial_.checks.push_back(absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest, 1e3 * left));
+}
+
 void WatchedMotion::settle(const Controls& target, double tolerance, double seconds)
 {
-  const Equilibrium end = solver_->settle(target, tolerance, seconds,
-                                          [&](const Equilibrium& now)
-                                          {
-                                            settings_.watch(now.seconds / seconds);
-                                            return true;
-                                          });
+  const Equilibrium end = guard_->settle(target, tolerance, seconds,
+                                         [&](const Equilibrium& now)
+                                         {
+                                           settings_.watch(now.seconds / seconds);
+                                           return true;
+                                         });
   if (!end.reached)
     throw Error("no equilibrium within " + readable(seconds) + " s: " + readable(end.residual, 3) +
                 " of the displacement is still to go");
-  guard_->restart();
   look();
 }
 

@@ -34,6 +34,16 @@ public:
 
   /// Advances in equal parts and looks after each.
   void advance(double seconds, const Controls& target, int looks = 1);
+  struct Phase
+  {
+    double seconds;
+    Controls target;
+    int looks;
+  };
+  /// Plays phases, plots them and leaves the model alone for a while: energy must be explained to a share
+  /// throughout, and no node be farther than `left` [m] from where it rests in the end.
+  void come_and_go(const std::vector<Phase>& phases, const std::string& of, double share, double left,
+                   const std::string& file, const std::string& title);
   /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.
   void settle(const Controls& target, double tolerance, double seconds);
   /// Plays a motion that may be too much: where the guard stops it, the trial has its report, and that the state is a

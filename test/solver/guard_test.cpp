@@ -123,6 +123,28 @@ TEST_P(Guarded, motion_goes_on_where_it_was_disturbed)
   }
 }
 
+TEST_P(Guarded, settling_goes_on_where_it_was_disturbed)
+{
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  const auto undisturbed = make_solver(model, { GetParam(), 2 });
+  ASSERT_TRUE(undisturbed->settle(full(*undisturbed, 0.7f), 1e-4, 5).reached);
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  Guard guard(*solver, model, close());
+  int windows = 0;
+  const Equilibrium found =
+      guard.settle(full(*solver, 0.7f), 1e-4, 5,
+                   [&](const Equilibrium&)
+                   {
+                     if (++windows == 5)
+                       solver->set_velocities(Vectors(model->nodes.size(), { { std::nan(""), 0, 0 } }));
+                     return true;
+                   });
+  EXPECT_TRUE(found.reached);
+  EXPECT_EQ(guard.counts().rollbacks, 1);
+  EXPECT_EQ(guard.counts().latest, Instability::not_finite);
+  EXPECT_LT(farthest(displacements(*solver), displacements(*undisturbed)), 2e-6);
+}
+
 TEST_P(Guarded, a_motion_that_no_time_step_helps_is_stopped_and_explained)
 {
   const auto model = std::make_shared<const Model>(crushed());

@@ -7,15 +7,23 @@ namespace frontalis
 namespace physics
 {
 
-/// Node that glides on a plane normal . u = offset (normal of length 1): takes from its displacement and velocity what
-/// leaves the plane (after Lapeer et al. 2019). Returns the normal velocity taken; times the mass it is the impulse of
-/// the constraint in that step: its reaction m dp/dt^2, without the jumps of dp where the plane itself is renewed.
+/// Half of a gliding node's error, up to this [m], is left for the next step. Errors come all at once where a plane is
+/// renewed; put back all at once too, they were blows that set the tissue vibrating, each with half its stiffness times
+/// the error squared: a shell that spins on a ball gained 43 % in 40 ms. In halves it loses 13 %.
+constexpr double error_left = 4.5e-6;
+
+/// Node that glides on a plane normal . u = offset (normal of length 1): takes from its velocity what leaves the plane
+/// (after Lapeer et al. 2019), and from its displacement most of it. Returns the normal velocity taken; times the mass
+/// it is the impulse of the constraint in that step: its reaction m dp/dt^2, without the jumps of dp where the plane
+/// itself is renewed.
 template <class T>
 FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T>& v)
 {
+  using N = Number<T>;
   const T error = dot(normal, u) - offset;
   const T speed = dot(normal, v);
-  u = u - error * normal;
+  const T left = N::max(N::min(N::of(0.5) * error, N::of(error_left)), N::of(-error_left));
+  u = u - (error - left) * normal;
   v = v - speed * normal;
   return speed;
 }

@@ -3,6 +3,7 @@
 #include "frontalis/solver/solver.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -92,7 +93,10 @@ public:
   void advance(double seconds, const Controls& target);
   /// Checks now, whatever was checked when; goes back to a good state where something is found, or throws Unstable.
   void check();
-  /// The present state is good: to be called after reset(), settle(), or displacements were set.
+  /// As Solver::settle, watched like advance(), but not by the ledger, which begins anew after it. Throws as both do.
+  Equilibrium settle(const Controls& target, double tolerance, double seconds,
+                     const std::function<bool(const Equilibrium&)>& go_on = {});
+  /// The present state is good: to be called after reset(), or displacements were set.
   void restart();
 
   const GuardCounts& counts() const;

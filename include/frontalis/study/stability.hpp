@@ -45,6 +45,8 @@ struct StabilitySettings
   bool long_runs = false;  ///< in full length, where a case has a shorter form
   /// Model of a scene of this name (those in config, real_head among them); throws Skipped where there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;
+  /// Told of each motion's model before it begins.
+  std::function<void(const Model&)> model = [](const Model&) {};
   /// Told how far a motion is, 0..1; may throw to end it all.
   std::function<void(double done)> watch = [](double) {};
 };
@@ -69,10 +71,12 @@ Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings
 std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
-/// Trials with their cases, as JSON and as FOLDER/stability.md with its plots in FOLDER/stability/. Throws Error where
-/// a file cannot be written or gnuplot is missing.
+/// Trials with their cases, as JSON, as a table in markdown, and as FOLDER/stability.md with its plots in
+/// FOLDER/stability/, where the table of a run on a GPU is taken from (cuda.md). Throws Error where a file cannot be
+/// written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;
 std::string trials_json(const Trials& trials);
+std::string trials_markdown(const Trials& trials);
 void write_stability(const Trials& trials, const std::string& folder);
 
 }  // namespace frontalis
