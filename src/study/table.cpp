@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -14,11 +15,11 @@ namespace frontalis
 namespace
 {
 
+// the fewest digits that give the same number again
 std::string whole(double value)
 {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return { text, std::to_chars(text, text + sizeof text, value).ptr };
 }
 
 std::string shown(const Table::Cell& cell)

@@ -26,9 +26,9 @@ TEST(Table, TextIsAligned) { EXPECT_EQ(small_table().text(), "name    λ [m]\na,
 TEST(Table, MarkdownCsvAndJson)
 {
   EXPECT_EQ(small_table().markdown(), "| name | λ [m] |\n|---|---|\n| a, \"b\" | 0.1 |\n| c |  |\n");
-  EXPECT_EQ(small_table().csv(), "name,λ [m]\r\n\"a, \"\"b\"\"\",0.10000000000000001\r\nc,\r\n");
+  EXPECT_EQ(small_table().csv(), "name,λ [m]\r\n\"a, \"\"b\"\"\",0.1\r\nc,\r\n");
   EXPECT_EQ(small_table().json(),
-            "[\n {\"name\": \"a, \\\"b\\\"\", \"λ [m]\": 0.10000000000000001},\n"
+            "[\n {\"name\": \"a, \\\"b\\\"\", \"λ [m]\": 0.1},\n"
             " {\"name\": \"c\", \"λ [m]\": null}\n]\n");
 }
 
