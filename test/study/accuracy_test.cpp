@@ -146,6 +146,15 @@ double true_error(const AccuracySetting& setting)
   return std::sqrt(sum);
 }
 
+// a simulated second, of the motion that the study plays
+double true_steps(const AccuracySetting& setting)
+{
+  const auto solver = make_solver(std::make_shared<const Model>(bar(setting)), { Backend::cpu, 1 });
+  solver->advance(0.1, { { 0.5F }, {} });
+  solver->advance(0.1, { { 0.5F }, {} });
+  return static_cast<double>(solver->profile().steps) / 0.2;
+}
+
 TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
 {
   const AccuracyFindings findings = study();
@@ -165,6 +174,15 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
   const AccuracyRow& best = most_accurate_within(findings, 1e9);
   EXPECT_LE(best.error.rms, fine);
+  EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
+  // seconds are the machine's, but not how many steps they are for
+  const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
+  EXPECT_EQ(quick.name, findings.rows[findings.front.front()].name);
+  for (const AccuracyRow* row : { &chosen, &best, &quick })
+  {
+    EXPECT_NEAR(true_steps(row->setting) / row->steps, 1, 0.2);
+    EXPECT_GT(row->cost, row->steps * row->step);
+  }
 
   EXPECT_THROW(cheapest_within(findings, 0.5 * findings.reference_error), Error) << "nothing is claimed below it";
   EXPECT_THROW(most_accurate_within(findings, 1e-9), Error);
