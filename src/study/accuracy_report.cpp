@@ -147,11 +147,19 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   {
     const AccuracyRow& row = findings.rows[findings.front[p]];
     const std::string number = std::to_string(p + 1);
-    plot.curves.push_back(
-        { number + ": " + row.name, { row.cost }, { mm(row.error.rms) }, Plot::Style::strong, { number }, true });
+    plot.curves.push_back({ number + ": " + row.name,
+                            { row.cost },
+                            { mm(row.error.rms) },
+                            Plot::Style::strong,
+                            { number },
+                            "right offset -0.6,-0.8" });
   }
-  plot.curves.push_back(
-      { "", { plot.x_from, plot.x_to }, { own, own }, Plot::Style::guide, { "", "error of the reference" }, true });
+  plot.curves.push_back({ "",
+                          { plot.x_from, plot.x_to },
+                          { own, own },
+                          Plot::Style::guide,
+                          { "error of the reference" },
+                          "left offset 0.7,-0.7" });
   plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
   return plot;
 }

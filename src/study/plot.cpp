@@ -83,16 +83,17 @@ std::string script(const Plot& plot, const std::string& path)
     out << "EOD\n";
     for (std::size_t i = 0; i < curve.labels.size(); ++i)
       if (!curve.labels[i].empty())
-        out << "set label " << quoted(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i]
-            << (curve.labels_below ? " right offset -0.6,-0.8" : " left offset 0.7,0.7") << " font ',13' tc rgb '"
-            << (curve.coloured_labels ? colour_of(c) : "#222222") << "' front\n";
+        out << "set label " << quoted(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i] << ' '
+            << curve.label_place << " font ',13' tc rgb '" << (curve.coloured_labels ? colour_of(c) : "#222222")
+            << "' front\n";
   }
   if (plot.shaded_below > 0)
     out << "set object rectangle from graph 0, graph 0 to graph 1, first " << plot.shaded_below
         << " fc rgb '#f0f0f0' fs solid noborder behind\n";
+  const bool below = plot.key.rfind("below", 0) == 0;
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
-      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key
-      << (plot.key.rfind("below", 0) == 0 ? "" : " opaque") << " samplen 2 spacing 1.2\n"
+      << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (below ? "" : " opaque")
+      << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
       << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
       << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, from, to] :

@@ -25,9 +25,9 @@ struct Plot
     std::string name;  ///< in the legend; empty: not in it
     std::vector<double> x, y;
     Style style = Style::line_and_points;
-    std::vector<std::string> labels{};  ///< beside the points, to the upper right; empty: none
-    bool labels_below = false;          ///< to the lower left
-    bool coloured_labels = false;       ///< as the curve
+    std::vector<std::string> labels{};                ///< beside the points; empty: none
+    std::string label_place = "left offset 0.7,0.7";  ///< of the labels beside their points, in gnuplot's words
+    bool coloured_labels = false;                     ///< as the curve
   };
 
   std::string title;             ///< lines end with \n
