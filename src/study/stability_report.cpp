@@ -53,15 +53,13 @@ void write_stability(const Trials& trials, const std::string& folder)
   if (failed)
     throw Error(pictures.string() + ": cannot be made: " + failed.message());
   std::string out =
-      "# Hard cases\n\nWritten by `./dev cli stability --markdown doc`; every figure is of one run of it. What "
-      "explicit "
-      "codes fail at, as motions that must hold, or stop with a report and the last good state. *Worst J* is the "
-      "smallest volume ratio of a voxel that was seen, *energy* what the energy ledger left unexplained and "
-      "*hourglass* "
-      "the energy of hourglass modes, both over the ledger's largest term. A case passes when all its checks do, and "
-      "every energy, volume ratio and displacement stayed finite. What is said to fail without a measure was tried "
-      "where a "
-      "figure stands with it.\n";
+      "# Hard cases\n\nWritten by `./dev cli stability --all --mesh-dir DIR --markdown doc`; every figure is of one "
+      "run "
+      "of it. What explicit codes fail at, as motions that must hold, or stop with a report and the last good state. "
+      "*Worst J* is the smallest volume ratio of a voxel that was seen, *energy* what the energy ledger left "
+      "unexplained and *hourglass* the energy of hourglass modes, both over the ledger's largest term. A case passes "
+      "when all its checks do, and every energy, volume ratio and displacement stayed finite. What is said to fail "
+      "without a measure was tried where a figure stands with it. `--models DIR` writes the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
   // of a run elsewhere
   std::ifstream elsewhere(pictures / "cuda.md");
