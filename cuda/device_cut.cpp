@@ -60,6 +60,9 @@ void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
                       StripSlot{ 0, 0 });
   strips_ = DeviceArray<Strip>(strips.strips);
   slots_ = DeviceArray<StripSlot>(strips.slots);
+  // words are fetched a row ahead
+  if (!strips.fibre_words.empty())
+    strips.fibre_words.resize(strips.fibre_words.size() + 32, 0);
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
   launch_.threads = step_block;
 }

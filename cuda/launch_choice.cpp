@@ -45,7 +45,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
   const int processors = attribute(cudaDevAttrMultiProcessorCount);
   CutChoice cut;
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
-  const double warps = 3.1 * 4 * processors;
+  const double warps = 1.03 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   cut.strips.planes =
       static_cast<int>(std::clamp(static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps, 1.0, 32.0));

@@ -138,7 +138,8 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 
 /// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
 /// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
-/// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements a row ahead.
+/// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements and words of
+/// fibres a row ahead.
 /// `slot`, `fibre_word`, `viscous_word`: the strip's, at this lane; null where it has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot,
@@ -172,6 +173,7 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
   for (int r = 0; r < Rows; ++r)
     carried[r] = no_forces();
   ElementPlace place{};
+  std::uint32_t next_word = has<With, Effects::fibres> && fibre_word != nullptr ? *fibre_word : 0;
   Displacement raw_a = displacement(u, above_slot[0]), raw_b = displacement(u, above_slot[1]);
   for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
   {
@@ -195,8 +197,9 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
       }
       if (has<With, Effects::fibres> && fibre_word != nullptr)
       {
-        fetch_fibre(g, *fibre_word, place);
+        fetch_fibre(g, next_word, place);
         fibre_word += 32;
+        next_word = *fibre_word;
       }
       if (has<With, Effects::viscosity> && viscous_word != nullptr)
         place.viscous = viscous_word[(plane * nodes + r) * 32];

@@ -209,7 +209,8 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
   for (int i = 0; i < 3; ++i)
     if (motion.fixed[i])
     {
-      n.u[i] = static_cast<float>(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
+      n.u[i] =
+          static_cast<float>(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
       n.v[i] = (n.u[i] - old[i]) / g.dt;
     }
 }

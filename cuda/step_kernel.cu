@@ -7,10 +7,11 @@ namespace frontalis
 namespace cuda
 {
 
-// a warp a strip
-// an int: nvcc does not name the sets of an enumeration
-template <int Rows, int Set>
-__global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_constant__ StepArguments g)
+// A warp a strip. Looking at the time step is a kernel of its own, so that steps that do not hold no registers for it.
+// `Set`: an int, because nvcc does not name the sets of an enumeration.
+template <int Rows, bool Look, int Set>
+__global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
+    step_kernel(const __grid_constant__ StepArguments g)
 {
   constexpr Effects With = static_cast<Effects>(Set);
   __shared__ float activation[has<With, Effects::fibres> ? most_muscles : 1];
@@ -19,7 +20,6 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
   const std::int32_t step = g.step_begin;
   const float4* const u = g.u[g.first];
   float4* const next = g.u[1 - g.first];
-  const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
   if (has<With, Effects::fibres>)
   {
     set_activations(g, step, activation);
@@ -29,10 +29,6 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
     return;
   const Strip strip = g.strips[s];
   const bool tasks = strip.task_begin < strip.task_end && !g.forces_only;
-  const std::uint32_t first_task = strip.task_begin + lane;
-  NodeTask task{};
-  if (tasks && first_task < strip.task_end)
-    task = g.tasks[first_task];
   const std::uint32_t* words = nullptr;
   const std::uint32_t* viscous = nullptr;
   if (has<With, Effects::fibres> && strip.fibre_begin != Strip::none)
@@ -40,17 +36,15 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
   if (has<With, Effects::viscosity> && g.viscous_words != nullptr)
     viscous = g.viscous_words + strip.slot_begin + lane;
   std::uint32_t frequency_bits = 0;
-  march<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next, activation, look,
+  march<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next, activation, Look,
                     frequency_bits);
   if (tasks)
   {
     __syncwarp();
-    if (first_task < strip.task_end)
-      run_task(g, task, u, next, step);
-    for (std::uint32_t t = first_task + 32; t < strip.task_end; t += 32)
+    for (std::uint32_t t = strip.task_begin + lane; t < strip.task_end; t += 32)
       run_task(g, g.tasks[t], u, next, step);
   }
-  if (look)
+  if (Look)
   {
     const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
     if (lane == 0)
@@ -58,22 +52,30 @@ __global__ void __launch_bounds__(step_block, 3) step_kernel(const __grid_consta
   }
 }
 
-using StepKernel = void (*)(StepArguments);
-
-template <int... Sets>
-StepKernel kernel(Effects effects, std::integer_sequence<int, Sets...>)
+namespace
 {
-  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Sets)), Sets>... };
+
+using StepKernel = void (*)(StepArguments);
+// strips have no kernels for sliding nodes
+using Sets = std::make_integer_sequence<int, int(Effects::sliding)>;
+
+template <bool Look, int... Set>
+StepKernel kernel(Effects effects, std::integer_sequence<int, Set...>)
+{
+  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Set)), Look, Set>... };
   return kernels[static_cast<int>(effects)];
 }
 
+}  // namespace
 }  // namespace cuda
 
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
 {
   if (launch.patches)
     return launch_patches(arguments, launch, stream);
-  const auto kernel = cuda::kernel(launch.effects, std::make_integer_sequence<int, int(Effects::sliding)>());
+  const bool look = arguments.look != nullptr && (arguments.look_always || arguments.step_begin + 1 == arguments.steps);
+  const auto kernel =
+      look ? cuda::kernel<true>(launch.effects, cuda::Sets()) : cuda::kernel<false>(launch.effects, cuda::Sets());
   kernel<<<launch.blocks, launch.threads, 0, stream>>>(arguments);
   return cudaGetLastError();
 }

@@ -221,8 +221,13 @@ struct StepLaunch
   std::size_t shared_bytes;                          ///< of a block
 };
 
-/// Rows of a strip that the strip kernel takes.
-constexpr int strip_rows(Effects effects) { return effects == Effects::none ? 4 : 2; }
+/// Rows of a strip that the strip kernel takes, and blocks of it that a multiprocessor holds. Three rows leave room for
+/// 16 warps a multiprocessor where four would for 12; with fibres it is two.
+constexpr int strip_rows(Effects effects) { return effects == Effects::none ? 3 : 2; }
+constexpr int strip_blocks(Effects effects)
+{
+  return (effects & (Effects::viscosity | Effects::forms)) == Effects::none ? 4 : 3;
+}
 
 /// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)

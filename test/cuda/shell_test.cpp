@@ -125,6 +125,21 @@ TEST_F(Shell, StartsAgainAfterReset)
   EXPECT_EQ(first.vertices, second.vertices);
 }
 
+// few enough voxels and steps for a tool that follows each access to shared memory
+TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
+{
+  ShellSettings settings;
+  settings.voxel = 5e-3;
+  settings.tendon = false;
+  model_ = std::make_shared<const Model>(shell_model(settings));
+  const double seconds = 20 * make_solver(model_, { Backend::cuda, 0, 0 })->time_step();
+  const SkinState reference = after(Backend::reference, seconds, 1), cuda = after(Backend::cuda, seconds, 1);
+  SkinState rest;
+  make_solver(model_, { Backend::cuda, 0, 0 })->skin(rest);
+  EXPECT_GT(difference(rest, reference), 1e-9);
+  EXPECT_LT(difference(cuda, reference), 1e-3 * difference(rest, reference));
+}
+
 // at equilibrium under gravity and 30 % activation
 TEST_F(Shell, StaysWhereItIsForAMillionSteps)
 {

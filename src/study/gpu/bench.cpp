@@ -72,34 +72,55 @@ Controls ramped(const Controls& wanted, double time)
   return now;
 }
 
-// median seconds a step over five runs of at least `steps` steps; with_skin: the skin is fetched 60 times a wall second
-double seconds_a_step(Solver& solver, const Controls& controls, int steps, double frame_wall_time)
+// seconds a step over a run of at least `steps` steps; frame_wall_time > 0: the skin is fetched that often
+double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& controls, int steps, double frame_wall_time)
 {
-  std::vector<double> times;
-  const Timer timer;
-  for (int run = 0; run < 5; ++run)
-  {
-    const std::int64_t before = solver.profile().steps;
-    const double time = timer(
-        [&]
+  const std::int64_t before = solver.profile().steps;
+  const double time = timer(
+      [&]
+      {
+        auto frame = std::chrono::steady_clock::now();
+        SkinState skin;
+        while (solver.profile().steps - before < steps)
         {
-          auto frame = std::chrono::steady_clock::now();
-          SkinState skin;
-          while (solver.profile().steps - before < steps)
+          const double slice = 128 * solver.time_step();
+          solver.advance(slice, ramped(controls, solver.time() + slice));
+          const auto now = std::chrono::steady_clock::now();
+          if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
           {
-            const double slice = 128 * solver.time_step();
-            solver.advance(slice, ramped(controls, solver.time() + slice));
-            const auto now = std::chrono::steady_clock::now();
-            if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
-            {
-              solver.skin(skin);
-              frame = now;
-            }
+            solver.skin(skin);
+            frame = now;
           }
-        });
-    times.push_back(time / static_cast<double>(solver.profile().steps - before));
-  }
+        }
+      });
+  return time / static_cast<double>(solver.profile().steps - before);
+}
+
+// median of five runs
+double seconds_a_step(Solver& solver, const Controls& controls, int steps)
+{
+  const Timer timer;
+  std::vector<double> times;
+  for (int run = 0; run < 5; ++run)
+    times.push_back(seconds_of_a_run(timer, solver, controls, steps, 0));
   return median(times);
+}
+
+// What fetching the skin 60 times a wall second adds, as a share: median of nine runs, each beside the mean of the two
+// without it before and after, because the motion goes on meanwhile.
+double share_of_skin(Solver& solver, const Controls& controls, int steps)
+{
+  const Timer timer;
+  std::vector<double> shares;
+  double before = seconds_of_a_run(timer, solver, controls, steps, 0);
+  for (int run = 0; run < 9; ++run)
+  {
+    const double with = seconds_of_a_run(timer, solver, controls, steps, 1.0 / 60);
+    const double after = seconds_of_a_run(timer, solver, controls, steps, 0);
+    shares.push_back(2 * with / (before + after) - 1);
+    before = after;
+  }
+  return median(shares);
 }
 
 void bench(const Scene& scene)
@@ -115,12 +136,12 @@ void bench(const Scene& scene)
   controls.activation.assign(model->muscles.size(), 0);
   // at rest no contact is renewed: the difference is what sliding far costs
   solver->advance(256 * solver->time_step(), controls);
-  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps, 0);
+  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps);
   solver->reset();
   controls.activation.assign(model->muscles.size(), 0.75f);
   const double warm_up = 256 * solver->time_step();
   solver->advance(warm_up, ramped(controls, warm_up));
-  const double step = seconds_a_step(*solver, controls, scene.steps, 0);
+  const double step = seconds_a_step(*solver, controls, scene.steps);
   const auto voxels = static_cast<double>(model->voxels.size());
   std::printf(
       "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
@@ -129,12 +150,10 @@ void bench(const Scene& scene)
   if (!model->skin.vertices.empty())
   {
     std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
-    const double with_skin = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 1.0 / 60);
-    const double alone = seconds_a_step(*solver, controls, std::max(scene.steps, int(0.1 / step)), 0);
+    const double share = share_of_skin(*solver, controls, static_cast<int>(0.1 / step));
     std::printf(
         "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
-        model->skin.vertices.size(), 100 * (with_skin / alone - 1), 1e6 * solver->time_step(),
-        step / solver->time_step());
+        model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
   }
   const Monitor monitor = solver->monitor();
   if (!monitor.finite)
