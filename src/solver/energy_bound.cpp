@@ -85,8 +85,7 @@ double EnergyBound::most(const Interval& interval) const
              (active_stretch * double(interval.activation[m]) + (model_.muscles[m].passive ? passive_stretch : 0.0));
   for (const auto& bone : bones_)
   {
-    const double moved =
-        farthest_way(interval.bone_begin[bone.index], interval.bone_end[bone.index], far_corner(model_));
+    const double moved = interval.bone_way[bone.index];
     given += 0.5 * bone.stiffness * moved * moved;
   }
   for (const auto& nodes : prescribed_)

@@ -20,7 +20,7 @@ public:
     double energy = 0;              ///< at its begin [J]
     double begin = 0, end = 0;      ///< [s]
     std::vector<float> activation;  ///< largest of each muscle
-    std::vector<RigidTransform> bone_begin, bone_end;
+    std::vector<double> bone_way;   ///< gone by each [m]
     double largest_internal = 0;  ///< up to its begin [J]
   };
   double most(const Interval& interval) const;  ///< [J]

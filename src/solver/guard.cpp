@@ -1,7 +1,9 @@
 #include "frontalis/solver/guard.hpp"
 
+#include "discretisation.hpp"
 #include "energy_bound.hpp"
 #include "frontalis/physics/mutation.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "instability_report.hpp"
 
 #include <algorithm>
@@ -42,6 +44,7 @@ struct Guard::Implementation
   EnergyBound bound;
   Good good, before;              // the latest, and the one before
   std::vector<float> activation;  // largest of each muscle since `good`
+  std::vector<double> bone_way;   // gone by each bone since `good`, and back [m]
   std::int64_t checked_at = 0;    // steps
   int good_checks = 0;            // since the latest rollback
   int tries = 0;
@@ -69,6 +72,7 @@ void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
   good.largest_internal = std::max(before.largest_internal, monitor.internal);
   good.there = true;
   activation = solver.activation();
+  bone_way.assign(good.bone.size(), 0);
 }
 
 Instability Guard::Implementation::judged(const Monitor& m, double imbalance, double largest) const
@@ -79,8 +83,8 @@ Instability Guard::Implementation::judged(const Monitor& m, double imbalance, do
   const double inverted = std::max(settings.inverted_share * voxels, static_cast<double>(good.monitor.inverted));
   if (static_cast<double>(m.inverted) > inverted)
     return Instability::inverted;
-  const double most = bound.most({ energy(good.monitor), good.time, solver.time(), activation, good.bone,
-                                   solver.controls().bone, good.largest_internal });
+  const double most =
+      bound.most({ energy(good.monitor), good.time, solver.time(), activation, bone_way, good.largest_internal });
   if (m.hourglass > most)
     return Instability::hourglass;
   if (energy(m) > most || std::abs(imbalance - good.imbalance) > imbalance_allowed * largest + bound.floor())
@@ -134,6 +138,7 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target,
   before.there = false;
   checked_at = steps();
   good_checks = 0;
+  bone_way.assign(good.bone.size(), 0);
 }
 
 // where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
@@ -182,8 +187,8 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)
 {
   const Model& watched = *model;
-  self_.reset(
-      new Implementation{ solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, 0, 0, 0, false, {} });
+  self_.reset(new Implementation{
+      solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, {}, 0, 0, 0, false, {} });
   const auto refuse = [](const char* what, double value, const char* allowed)
   { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
   if (settings.interval < 0)
@@ -237,9 +242,12 @@ void Guard::advance(double seconds, const Controls& target)
     try
     {
       const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
+      const std::vector<RigidTransform> from = g.solver.controls().bone;
       g.solver.advance(done ? left : part, to);
       for (std::size_t m = 0; m < to.activation.size(); ++m)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
+      for (std::size_t b = 0; b < to.bone.size(); ++b)
+        g.bone_way[b] += farthest_way(from[b], to.bone[b], far_corner(*g.model));
       if (g.steps() - g.checked_at >= g.settings.interval)
         finding = g.check();
     }
@@ -272,9 +280,11 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
     finding = Instability::none;
-    // activations jump where they are to be
+    // muscles are at once where they are to be
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
+    for (std::size_t b = 0; b < target.bone.size(); ++b)
+      g.bone_way[b] += farthest_way(g.solver.controls().bone[b], target.bone[b], far_corner(*g.model));
     struct Settling
     {
       explicit Settling(bool& it) : on(it) { on = true; }

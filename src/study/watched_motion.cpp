@@ -123,7 +123,7 @@ void WatchedMotion::look()
     return;
   ledger_ = solver_->ledger();
   worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
-  largest_ = ledger_.largest;
+  largest_ = std::max(largest_, ledger_.largest);
   most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
   moments_.push_back({ solver_->time(), ledger_.kinetic, ledger_.internal + ledger_.hourglass, ledger_.imbalance(),
                        monitor_.worst_jacobian });

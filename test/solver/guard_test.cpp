@@ -123,6 +123,26 @@ TEST_P(Guarded, motion_goes_on_where_it_was_disturbed)
   }
 }
 
+TEST_P(Guarded, a_bone_that_has_come_back_when_it_is_checked_has_brought_energy_too)
+{
+  Model still = test::block_model({});
+  still.bones = { "grip" };
+  for (std::size_t n = 0; n < still.nodes.size(); ++n)
+    if (still.nodes[n][0] == 0)
+      still.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  const auto model = std::make_shared<const Model>(still);
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  Guard guard(*solver, model, { 1000 });
+  Controls there = solver->controls();
+  there.bone[0].translation = { { 0.5 * model->spacing[0], 0, 0.5 * model->spacing[2] } };
+  const double part = 60 * solver->time_step();
+  guard.advance(part, there);
+  guard.advance(part, Controls{ {}, { RigidTransform() } });
+  guard.advance(20 * part, Controls{ {}, { RigidTransform() } });
+  EXPECT_GT(guard.counts().checks, 0);
+  EXPECT_EQ(guard.counts().rollbacks, 0) << words_for(guard.counts().latest);
+}
+
 TEST_P(Guarded, settling_goes_on_where_it_was_disturbed)
 {
   const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
