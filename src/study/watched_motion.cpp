@@ -122,6 +122,8 @@ void WatchedMotion::look()
   if (!wants_ledger_)
     return;
   ledger_ = solver_->ledger();
+  if (!std::isfinite(ledger_.imbalance()))
+    throw Error("the ledger of energies is no longer finite at " + readable(solver_->time()) + " s");
   worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
   largest_ = std::max(largest_, ledger_.largest);
   most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
