@@ -109,8 +109,8 @@ void off_the_edge(const StabilitySettings& settings, Trial& trial)
 {
   Model model = soft_block({ { 8, 3, 2 } });
   model.damping = 50;
-  slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 12.5e-3, -0.3e-3 } }), underside);
-  model.gravity = { { 100, 0, -9.81 } };
+  slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 12.7e-3, -0.3e-3 } }), underside);
+  model.gravity = { { 30, 0, -9.81 } };
   drag(settings, trial, model, "off_the_edge", "A block is dragged off the edge of the surface that it slides on",
        5e-3);
 }

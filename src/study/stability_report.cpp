@@ -55,16 +55,17 @@ void write_stability(const Trials& trials, const std::string& folder)
   std::string out =
       "# Hard cases\n\nWritten by `./dev cli stability --all --mesh-dir DIR --markdown doc`; every figure is of one "
       "run "
-      "of it. What explicit codes fail at, as motions that must hold, or stop with a report and the last good state. "
-      "*Worst J* is the smallest volume ratio of a voxel that was seen, *energy* what the energy ledger left "
-      "unexplained and *hourglass* the energy of hourglass modes, both over the ledger's largest term. A case passes "
-      "when all its checks do, and every energy, volume ratio and displacement stayed finite. What is said to fail "
-      "without a measure was tried where a figure stands with it. `--models DIR` writes the model of each motion.\n";
+      "of it, but for what is said of a GPU. What explicit codes fail at, as motions that must hold, or stop with a "
+      "report and the last good state. *Worst J* is the smallest volume ratio of a voxel that was seen, *energy* what "
+      "the energy ledger left unexplained and *hourglass* the energy of hourglass modes, both over the ledger's "
+      "largest term. A case passes when all its checks do, and every energy, volume ratio and displacement stayed "
+      "finite. What is said to fail without a measure was tried where a figure stands with it. `--models DIR` writes "
+      "the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
-  // of a run elsewhere
-  std::ifstream elsewhere(pictures / "cuda.md");
+  // of runs elsewhere and in full length
+  std::ifstream elsewhere(pictures / "elsewhere.md");
   if (elsewhere)
-    out += "\n## On a GPU\n\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
+    out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
   for (const auto& [hard_case, trial] : trials)
   {
     out += "\n## " + hard_case.name + "\n\n" + hard_case.text + "\n";

@@ -72,8 +72,8 @@ std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
 /// Trials with their cases, as JSON, as a table in markdown, and as FOLDER/stability.md with its plots in
-/// FOLDER/stability/, where the table of a run on a GPU is taken from (cuda.md). Throws Error where a file cannot be
-/// written or gnuplot is missing.
+/// FOLDER/stability/, where what is said of runs elsewhere is taken from (elsewhere.md). Throws Error where a file
+/// cannot be written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;
 std::string trials_json(const Trials& trials);
 std::string trials_markdown(const Trials& trials);
