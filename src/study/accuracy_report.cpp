@@ -94,7 +94,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   plot.x_label = "wall seconds a simulated second";
   plot.y_label = "error of the skin, RMS [mm]";
   plot.x_log = plot.y_log = true;
-  plot.key = "below Left reverse maxcols 3";
+  plot.key = "below Left reverse maxrows 10 width -8 font ',12'";
   plot.width = 900;
   plot.height = 680;
   double least = 1e300, most = 0, low = 1e300, high = 0;

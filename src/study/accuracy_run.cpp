@@ -249,10 +249,12 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
+  // what others take from one thread can be told, from several not
+  const bool alone = is_alone(settings);
   const double used = processor_seconds(), begin = now();
-  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds);
-  cost.processors =
-      setting.backend == Backend::cpu ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
+  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone);
+  const bool shared = setting.backend == Backend::cpu && !alone;
+  cost.processors = shared ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;
   std::vector<double> steps, skins;
   for (const auto& turn : turns)
