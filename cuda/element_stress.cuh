@@ -25,15 +25,29 @@ struct ElementPlace
   std::uint32_t viscous;
 };
 
-/// Activations at the end of a step of the plan, by all threads of a block.
-__device__ __forceinline__ void set_activations(const StepArguments& g, std::int32_t step, float* activation)
+/// Activations in a step of a plan. They change evenly from its begin to its end.
+struct Activations
 {
-  const auto fraction = static_cast<float>((step + 1.0) / g.steps);
-  for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
+  const float2* of;  ///< one a muscle, in shared memory: at the begin, and the change until the end
+  float fraction;    ///< of the plan at the end of the step
+
+  __device__ __forceinline__ float operator[](std::uint32_t muscle) const
   {
-    const float begin = g.activation_begin[m];
-    activation[m] = begin + fraction * (g.activation_end[m] - begin);
+    const float2 activation = of[muscle];
+    return activation.x + fraction * activation.y;
   }
+};
+
+/// By all threads of a block, once a launch: steps have nothing to wait for.
+__device__ __forceinline__ void load_activations(const StepArguments& g, float2* to)
+{
+  for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
+    to[m] = make_float2(g.activation_begin[m], g.activation_end[m] - g.activation_begin[m]);
+}
+
+__device__ __forceinline__ Activations activations_at(const StepArguments& g, std::int32_t step, const float2* of)
+{
+  return { of, __fdiv_rn(static_cast<float>(step + 1), static_cast<float>(g.steps)) };
 }
 
 /// Without a condition on the voxel: places without fibres fetch the first entry.
@@ -45,7 +59,7 @@ __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_
 }
 
 /// Stress of the fibres of a voxel times its tissue volume: P += S (F a0) (x) a0.
-__device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace place, const float* activation,
+__device__ __forceinline__ void add_fibres(const StepArguments& g, ElementPlace place, const Activations& activation,
                                            const physics::Kinematics<float>& k, physics::Matrix3<float>& P)
 {
   for (std::uint32_t left = place.fibre_word & 15u; left > 0; --left)
@@ -225,13 +239,13 @@ __device__ __forceinline__ void relax_apart(const StepArguments& g, const Elemen
   relax_copy<part<With, Effects::forms>>(g, place.viscous - 1, place.palette, elapsed, copy);
 }
 
-/// `activation`: one a muscle, in shared memory; `relaxes`: seconds by which viscous stresses relax first. Replaces the
+/// `relaxes`: seconds by which viscous stresses relax first. Replaces the
 /// transformed displacements of a voxel by the forces conjugate to them; the one place where the GPU computes stress.
 /// Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
-                                               const float* activation, float relaxes, float (&mode)[3][8], bool look,
-                                               std::uint32_t& frequency_bits)
+                                               const Activations& activation, float relaxes, float (&mode)[3][8],
+                                               bool look, std::uint32_t& frequency_bits)
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);

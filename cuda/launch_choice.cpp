@@ -33,7 +33,7 @@ int turns(const Model& model, int processors)
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
-                    static_cast<std::size_t>(nodes)) < bytes - sizeof(float) * most_muscles)
+                    static_cast<std::size_t>(nodes)) < bytes - 2 * sizeof(float) * most_muscles)
       return turns;
   return 0;
 }

@@ -66,10 +66,11 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
 /// y and z steps of the transform, the stress, and their transposes: voxel between rows a, b of the planes below,
 /// above.
 template <Effects With>
-__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place, const float* activation,
-                                             const RowValues& below_a, const RowValues& below_b,
-                                             const RowValues& above_a, const RowValues& above_b, bool look,
-                                             std::uint32_t& frequency_bits, RowForces force[2][2])
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+                                             const Activations& activation, const RowValues& below_a,
+                                             const RowValues& below_b, const RowValues& above_a,
+                                             const RowValues& above_b, bool look, std::uint32_t& frequency_bits,
+                                             RowForces force[2][2])
 {
   float mode[3][8];
 #pragma unroll
@@ -144,7 +145,7 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 template <int Rows, Effects With>
 __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip, const uint2* slot,
                                       const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
-                                      const float4* u, float4* next, const float* activation, bool look,
+                                      const float4* u, float4* next, const Activations& activation, bool look,
                                       std::uint32_t& frequency_bits)
 {
   constexpr int nodes = Rows + 2;

@@ -98,9 +98,10 @@ __device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::u
 }
 
 template <Effects With>
-__device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel, const float* activation,
-                                           float relaxes, bool look, std::uint32_t& frequency_bits,
-                                           const PatchMemory& memory, std::uint32_t column)
+__device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel,
+                                           const Activations& activation, float relaxes, bool look,
+                                           std::uint32_t& frequency_bits, const PatchMemory& memory,
+                                           std::uint32_t column)
 {
   std::uint32_t corner[8];
   split(voxel.corner, corner);
@@ -196,7 +197,7 @@ __global__ void __launch_bounds__(512, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
 {
   constexpr Effects With = static_cast<Effects>(Set);
-  __shared__ float activation[has<With, Effects::fibres> ? most_muscles : 1];
+  __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   constexpr Effects plain = plain_part<With>;
   const PatchMemory memory = patch_memory(launch);
   std::uint32_t filled = 0;
@@ -213,6 +214,8 @@ __global__ void __launch_bounds__(512, 1)
     }
     filled += patch.nodes;
   }
+  if (has<With, Effects::fibres>)
+    load_activations(g, activations);
   if (threadIdx.x < 24)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
@@ -222,8 +225,7 @@ __global__ void __launch_bounds__(512, 1)
     const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
     filled = 0;
-    if (has<With, Effects::fibres>)
-      set_activations(g, step, activation);
+    const Activations activation = activations_at(g, step, activations);
     const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
     for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
     {

@@ -14,7 +14,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
     step_kernel(const __grid_constant__ StepArguments g)
 {
   constexpr Effects With = static_cast<Effects>(Set);
-  __shared__ float activation[has<With, Effects::fibres> ? most_muscles : 1];
+  __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   const std::uint32_t lane = threadIdx.x & 31;
   const std::uint32_t s = blockIdx.x * (step_block / 32) + threadIdx.x / 32;
   const std::int32_t step = g.step_begin;
@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   float4* const next = g.u[1 - g.first];
   if (has<With, Effects::fibres>)
   {
-    set_activations(g, step, activation);
+    load_activations(g, activations);
     __syncthreads();
   }
   if (s >= g.strip_count)
@@ -36,8 +36,8 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   if (has<With, Effects::viscosity> && g.viscous_words != nullptr)
     viscous = g.viscous_words + strip.slot_begin + lane;
   std::uint32_t frequency_bits = 0;
-  march<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next, activation, Look,
-                    frequency_bits);
+  march<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next,
+                    activations_at(g, step, activations), Look, frequency_bits);
   if (tasks)
   {
     __syncwarp();

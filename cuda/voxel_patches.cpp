@@ -12,8 +12,8 @@ namespace frontalis
 namespace
 {
 
-// what computing costs, in plain voxels
-constexpr float fibre_cost = 0.25f, viscous_cost = 0.35f, node_cost = 0.3f;
+// what computing costs, in plain voxels; from what blocks took of which all voxels had the effect or none
+constexpr float fibre_cost = 0.45f, viscous_cost = 0.65f, node_cost = 0.3f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
 
