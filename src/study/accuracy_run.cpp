@@ -252,7 +252,8 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   // what others take from one thread can be told, from several not
   const bool alone = is_alone(settings);
   const double used = processor_seconds(), begin = now();
-  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone);
+  // the search for an assembled time step is dear while muscles begin to pull, and would pass for the steps' cost
+  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == Backend::cpu && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;

@@ -34,10 +34,10 @@ double time_steps(Solver& solver, const Controls& controls, double steps, bool p
   return spent / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
-// controls are reached over a tenth of a second, and what they set in motion has as long to calm down, unless that
-// takes longer than so many wall seconds
-void bring_to(Solver& solver, const Controls& controls, double seconds)
+// to where it has come of the way to its controls after so many wall seconds
+void bring(TimedSolver& timed, double seconds)
 {
+  Solver& solver = *timed.solver;
   constexpr double ramp = 0.1;
   const Controls from = solver.controls();
   const auto start = Clock::now();
@@ -45,20 +45,22 @@ void bring_to(Solver& solver, const Controls& controls, double seconds)
   {
     const double slice = 64 * solver.time_step();
     time += slice;
-    solver.advance(slice, interpolate(from, controls, std::min(1.0, time / ramp)));
+    solver.advance(slice, interpolate(from, timed.controls, std::min(1.0, time / ramp)));
   }
+  timed.controls = solver.controls();
 }
 
 }  // namespace
 
-std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& solvers, double seconds,
-                                              bool processor_time)
+std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wanted, double seconds,
+                                              bool processor_time, double patience)
 {
   constexpr double burst = 0.02;  // [s] of each solver in a turn
+  std::vector<TimedSolver> solvers = wanted;
   std::vector<double> steps;
-  for (const TimedSolver& timed : solvers)
+  for (TimedSolver& timed : solvers)
   {
-    bring_to(*timed.solver, timed.controls, seconds);
+    bring(timed, patience > 0 ? patience : seconds);
     steps.push_back(std::max(32.0, burst / time_steps(*timed.solver, timed.controls, 64, processor_time)));
   }
   std::vector<std::vector<double>> turns;

@@ -15,10 +15,12 @@ struct TimedSolver
 
 /// Seconds that one step of each solver takes, measured in turn (first, second, ..., first, second, ...) for about so
 /// many wall seconds in all, so that what disturbs the machine disturbs them alike. Controls are reached before that,
-/// over a tenth of a simulated second or as many wall seconds. One row a turn, at least five. `processor_time`: what
-/// the process had of a processor, and not the wall's clock; right for one thread alone (see is_alone).
+/// over a tenth of a simulated second, and what they set in motion has as long to calm down; where that would take each
+/// solver more than `patience` wall seconds (0: `seconds`), it stays at the controls that it has reached. One row a
+/// turn, at least five. `processor_time`: what the process had of a processor, and not the wall's clock; right for one
+/// thread alone (see is_alone).
 std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& solvers, double seconds,
-                                              bool processor_time = false);
+                                              bool processor_time = false, double patience = 0);
 
 /// Whether a solver of these settings works in the calling thread alone, so that time that others take from it can be
 /// told.
