@@ -146,7 +146,7 @@ double CudaSolver::run(const StepPlan& plan)
   const auto relax_after = [&](int step)
   {
     if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
-      device_.viscosity().relax(g, u_[present_].data(), elapsed[step], stream_);
+      device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
   require(launch_renewals(g, stream_), "renewing contacts");
   require(cudaEventRecord(asked_, stream_), "recording an event");
@@ -270,7 +270,7 @@ Work CudaSolver::work()
   g.activation_begin = g.activation_end = activation.data();
   g.steps = 1;
   account_->look(g, u_[present_].data(), 0, stream_);
-  device_.viscosity().relax(arguments(0), u_[present_].data(), 0, stream_);
+  device_.viscosity().relax(arguments(0), u_[present_].data(), u_[1 - present_].data(), 0, stream_);
   synchronise();
   Work work = account_->work();
   work.viscous = device_.viscosity().work();

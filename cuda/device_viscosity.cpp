@@ -116,10 +116,12 @@ void DeviceViscosity::keep_account()
   reset_account();
 }
 
-void DeviceViscosity::relax(const StepArguments& g, const float4* u, double elapsed, cudaStream_t stream)
+void DeviceViscosity::relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed,
+                            cudaStream_t stream)
 {
   if (!idle())
-    require(launch_relaxation(g, view(), u, static_cast<float>(elapsed), stream), "relaxing viscous stresses");
+    require(launch_relaxation(g, view(), u, u_before, static_cast<float>(elapsed), stream),
+            "relaxing viscous stresses");
 }
 
 // what H : E has changed by while H relaxed, less what it is now

@@ -34,8 +34,8 @@ public:
   /// Relaxed stresses to zero, and the account of their work.
   void reset();
   void reset_account();
-  /// Stresses relax by `elapsed` [s] towards those at displacements u.
-  void relax(const StepArguments& g, const float4* u, double elapsed, cudaStream_t stream);
+  /// Stresses relax by `elapsed` [s] towards those at displacements u; u_before: a step earlier, for the account alone.
+  void relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed, cudaStream_t stream);
   /// Keeps an account of their work from now on.
   void keep_account();
   /// Work that viscous stresses have taken up since the account was opened [J].

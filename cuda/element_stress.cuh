@@ -186,10 +186,11 @@ __device__ __forceinline__ physics::Symmetric3<float> load_relaxed(const StepArg
 }
 
 /// Viscous stresses of a voxel relax by `elapsed` [s] towards those at k (physics/viscosity.hpp). `account`: two
-/// numbers a voxel, or null: see ViscousVoxels.
+/// numbers a voxel, or null: see ViscousVoxels; k_before: where the step began, read for the account alone.
 template <Effects With>
 __device__ __forceinline__ void relax_voxel(const StepArguments& g, std::uint32_t voxel, std::uint32_t palette,
-                                            float elapsed, const physics::Kinematics<float>& k, double* account)
+                                            float elapsed, const physics::Kinematics<float>& k,
+                                            const physics::Kinematics<float>& k_before, double* account)
 {
   const physics::NeoHookean<float> material{ __ldg(&g.palette[palette].x), 0.0f };
   const auto S = physics::second_piola(k, elastic_stress<With>(g, palette, material, k));
@@ -204,14 +205,15 @@ __device__ __forceinline__ void relax_voxel(const StepArguments& g, std::uint32_
   for (std::int32_t term = 0; term < g.viscous_terms; ++term)
   {
     auto H = load_relaxed(g, voxel, term);
-    const float before = along_strain(k, H);
+    const auto before = H;
     physics::relax(term == 0 ? make.x : make.y, expf(-(term == 0 ? make.z : make.w) * elapsed), S, H);
     store(term, H);
     for (int n = 0; n < 6; ++n)
       sum.a[n] += H.a[n];
-    const float after = along_strain(k, H);
-    change += static_cast<double>(after - before);
-    now += static_cast<double>(after);
+    if (account == nullptr)
+      continue;
+    change += static_cast<double>(physics::relaxation_work(k_before, k, before, H));
+    now += static_cast<double>(along_strain(k, H));
   }
   if (g.viscous_terms == 2)
     store(2, sum);
@@ -228,7 +230,7 @@ template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t voxel, std::uint32_t palette,
                                                float elapsed, const physics::Kinematics<float>& k)
 {
-  relax_voxel<With>(g, voxel, palette, elapsed, k, nullptr);
+  relax_voxel<With>(g, voxel, palette, elapsed, k, k, nullptr);
 }
 
 template <Effects With>

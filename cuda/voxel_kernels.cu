@@ -25,15 +25,18 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
   return physics::kinematics(mode[0], mode[1], mode[2], g.scale);
 }
 
-__global__ void __launch_bounds__(block)
-    relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous, const float4* u, float elapsed)
+__global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous,
+                                               const float4* u, const float4* u_before, float elapsed)
 {
   const std::uint32_t v = blockIdx.x * block + threadIdx.x;
   if (v >= viscous.count)
     return;
   const ViscousVoxel voxel = viscous.voxels[v];
   const auto k = kinematics_of(g, u, voxel.node);
-  relax_voxel<Effects::forms>(g, v, voxel.palette, elapsed, k, viscous.account);
+  if (viscous.account == nullptr)
+    return relax_voxel<Effects::forms>(g, v, voxel.palette, elapsed, k, k, nullptr);
+  const auto k_before = kinematics_of(g, u_before, voxel.node);
+  relax_voxel<Effects::forms>(g, v, voxel.palette, elapsed, k, k_before, viscous.account);
 }
 
 __global__ void __launch_bounds__(block)
@@ -155,10 +158,10 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 }  // namespace cuda
 
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
-                              float elapsed, cudaStream_t stream)
+                              const float4* u_before, float elapsed, cudaStream_t stream)
 {
   if (viscous.count > 0)
-    cuda::relax<<<cuda::blocks(viscous.count), cuda::block, 0, stream>>>(arguments, viscous, u, elapsed);
+    cuda::relax<<<cuda::blocks(viscous.count), cuda::block, 0, stream>>>(arguments, viscous, u, u_before, elapsed);
   return cudaGetLastError();
 }
 

@@ -46,9 +46,10 @@ struct NodeAccount
   double* load;                 ///< done by surface loads, one a loaded node [J]
 };
 
-/// Viscous stresses relax by `elapsed` [s] towards those at displacements u (physics/viscosity.hpp).
+/// Viscous stresses relax by `elapsed` [s] towards those at displacements u (physics/viscosity.hpp); u_before: a step
+/// earlier, for the account of energies alone.
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
-                              float elapsed, cudaStream_t stream);
+                              const float4* u_before, float elapsed, cudaStream_t stream);
 /// Work that fibres did since the latest look, with the activations of a step: minus the mean of stress over the change
 /// of half the squared stretch. `open`: looks for the first time.
 cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels& fibres, const float4* u, int step,

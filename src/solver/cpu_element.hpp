@@ -219,7 +219,7 @@ struct CpuElement
     {
       float* const relaxed = relaxed_of(g, at, term);
       auto H = load_relaxed(relaxed);
-      const Batch before = along_strain(k, H);
+      const auto before = H;
       const Batch rate = Lane::load(slot.rate[term] + at.offset);
       physics::relax(Lane::load(slot.share[term] + at.offset), N::exp(-rate * Batch(g.viscous_elapsed)), S, H);
       for (int n = 0; n < 6; ++n)
@@ -229,10 +229,12 @@ struct CpuElement
       }
       if (work == nullptr)
         continue;
-      const Batch after = along_strain(k, H);
+      Arguments earlier = g;
+      for (int axis = 0; axis < 3; ++axis)
+        earlier.u[axis] = g.next[axis];
       alignas(64) Real first[lanes], second[lanes];
-      (after - before).store_aligned(first);
-      after.store_aligned(second);
+      physics::relaxation_work(load_modes(earlier, at, mode), k, before, H).store_aligned(first);
+      along_strain(k, H).store_aligned(second);
       for (int lane = 0; lane < lanes; ++lane)
       {
         work[0] += double(first[lane]);

@@ -34,7 +34,7 @@ struct CpuKernelArguments
   const FibreSlot* fibres;
   const LawSlot* laws;
   const ViscousSlot* viscous;
-  float* relaxed;              ///< relaxed_tensors(viscous_terms) * 6 * Tile::width a ViscousSlot: relaxed stress times volume [N m]
+  float* relaxed;              ///< relaxed stress times volume [N m], a ViscousSlot relaxed_tensors() * 6 * Tile::width
   std::int32_t viscous_terms;  ///< 0: none
   std::int32_t passes;         ///< bits of TilePass that run
   bool gravity;                ///< impulse is not 0

@@ -21,7 +21,7 @@ public:
     double begin = 0, end = 0;      ///< [s]
     std::vector<float> activation;  ///< largest of each muscle
     std::vector<double> bone_way;   ///< gone by each [m]
-    double largest_internal = 0;  ///< up to its begin [J]
+    double largest_internal = 0;    ///< up to its begin [J]
   };
   double most(const Interval& interval) const;  ///< [J]
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]

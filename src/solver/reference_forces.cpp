@@ -150,23 +150,25 @@ void ReferenceSolver::forces(const Components& u, const std::vector<float>& acti
     add_element(e, u, activation);
 }
 
-void ReferenceSolver::relax(double elapsed)
+void ReferenceSolver::relax(double elapsed, const Components& u_before)
 {
   for (std::size_t e = 0; e < relaxed_.size(); ++e)
   {
     const Kinematics k = kinematics(e, centre_, u_);
     const auto S = second_piola(k, elastic(e, 0, k));
+    const auto before = relaxed_[e];
+    for (std::size_t term = 0; term < 2; ++term)
+      physics::relax(voxels_[e].viscous_share[term], std::exp(-elapsed * voxels_[e].viscous_rate[term]), S,
+                     relaxed_[e][term]);
+    if (!account_)
+      continue;
+    const Kinematics k_before = kinematics(e, centre_, u_before);
     double change = 0, now = 0;
     for (std::size_t term = 0; term < 2; ++term)
     {
-      auto& H = relaxed_[e][term];
-      const double before = along_strain(k, H);
-      physics::relax(voxels_[e].viscous_share[term], std::exp(-elapsed * voxels_[e].viscous_rate[term]), S, H);
-      now += along_strain(k, H);
-      change += along_strain(k, H) - before;
+      now += along_strain(k, relaxed_[e][term]);
+      change += physics::relaxation_work(k_before, k, before[term], relaxed_[e][term]);
     }
-    if (!account_)
-      continue;
     const auto plane = static_cast<std::size_t>(model_->voxels[e][2]);
     if (e == 0 || model_->voxels[e - 1][2] != model_->voxels[e][2])
       account_->viscous[2 * plane + 1] = 0;

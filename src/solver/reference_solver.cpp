@@ -190,7 +190,7 @@ Work ReferenceSolver::work()
   accounting_ = true;
   forces(u_, felt_activation());
   if (relaxes())
-    relax(0);
+    relax(0, u_);
   return account_->work();
 }
 
@@ -239,7 +239,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     viscous_elapsed_ += plan.dt;
     if (relaxes() && (step + 1 == plan.steps || viscous_elapsed_ >= viscous_interval()))
     {
-      relax(settling_ ? 1e9 : viscous_elapsed_);
+      relax(settling_ ? 1e9 : viscous_elapsed_, before);
       viscous_elapsed_ = 0;
     }
   }

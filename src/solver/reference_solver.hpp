@@ -54,7 +54,7 @@ private:
   void look(std::size_t e, const Kinematics& k);
   void mix_voxels();
   bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
-  void relax(double elapsed);
+  void relax(double elapsed, const Components& u_before);  // u_before: a step earlier
 
   struct Kept;
 

@@ -77,5 +77,18 @@ FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
   return sum;
 }
 
+/// What the body's work against relaxed stresses, the sum of H : dE, leaves of the change of H : E where these change
+/// from `before` to `after` at the end of a step: a stress works along the mean of the motions before and after it, so
+/// that the change counts at the mean of the strains at the step's begin and end.
+template <class T>
+FRONTALIS_LAW T relaxation_work(const Kinematics<T>& begin, const Kinematics<T>& end, const Symmetric3<T>& before,
+                                const Symmetric3<T>& after)
+{
+  Symmetric3<T> change;
+  for (int n = 0; n < 6; ++n)
+    change.a[n] = after.a[n] - before.a[n];
+  return Number<T>::of(0.5) * (along_strain(begin, change) + along_strain(end, change));
+}
+
 }  // namespace physics
 }  // namespace frontalis

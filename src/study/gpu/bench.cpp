@@ -101,6 +101,7 @@ double seconds_a_step(Solver& solver, const Controls& controls, int steps)
 {
   const Timer timer;
   std::vector<double> times;
+  times.reserve(5);
   for (int run = 0; run < 5; ++run)
     times.push_back(seconds_of_a_run(timer, solver, controls, steps, 0));
   return median(times);
