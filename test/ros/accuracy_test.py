@@ -5,9 +5,9 @@ too slow which profile would do."""
 import os
 import subprocess
 import tempfile
+import threading
 import unittest
 
-import rosgraph_msgs.msg
 import roslib.packages
 import rospkg
 import rospy
@@ -25,16 +25,23 @@ def program(name):
 class Accuracy(unittest.TestCase):
     def setUp(self):
         self.said = []
-        rospy.Subscriber("/rosout", rosgraph_msgs.msg.Log, lambda log: self.said.append((log.name, log.msg)))
         self.folder = tempfile.TemporaryDirectory()
 
     def tearDown(self):
         self.folder.cleanup()
 
     def start(self, name, profile):
+        # what it says as soon as it is there would be gone before /rosout is connected
         node = subprocess.Popen(
-            [program("face_node"), "__name:=" + name, "_scene:=" + SCENE, "_accuracy:=" + profile, "_threads:=1"]
+            [program("face_node"), "__name:=" + name, "_scene:=" + SCENE, "_accuracy:=" + profile, "_threads:=1"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            universal_newlines=True,
+            env=dict(os.environ, ROSCONSOLE_STDOUT_LINE_BUFFERED="1"),
         )
+        listening = threading.Thread(target=lambda: self.said.extend((name, line) for line in node.stdout))
+        listening.start()
+        self.addCleanup(listening.join)
         self.addCleanup(node.wait)
         self.addCleanup(node.terminate)
         face = Face("/" + name)
@@ -45,7 +52,7 @@ class Accuracy(unittest.TestCase):
         """The first that the face logs with these words."""
 
         def lines():
-            return [text for who, text in self.said if who == "/" + name and words in text]
+            return [text for who, text in self.said if who == name and words in text]
 
         wait(lines, "a line of %s with '%s'" % (name, words), 60)
         return lines()[0]
