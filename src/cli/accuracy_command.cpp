@@ -94,6 +94,15 @@ std::vector<float> activation_of(const Model& model, const AccuracyOptions& opti
   return std::vector<float>(model.muscles.size(), 0.75F);
 }
 
+void check_numbers(const AccuracyOptions& options)
+{
+  std::vector<double> numbers = options.voxels;
+  numbers.insert(numbers.end(), { options.budget, options.ramp, options.hold, options.tolerance, options.time });
+  for (const double number : numbers)
+    if (!(number >= 0) || !std::isfinite(number))
+      throw WrongUsage("--voxels, --budget, --ramp, --hold, --tolerance, --time: must be numbers greater than 0");
+}
+
 AccuracyPlan plan_of(const Scene& scene, const AccuracyOptions& options)
 {
   AccuracyPlan plan;
@@ -175,6 +184,7 @@ void choose(const AccuracyFindings& findings, const AccuracyOptions& options)
 
 void study(AccuracyOptions options)
 {
+  check_numbers(options);
   if (is_model_file(options.source.path) && std::filesystem::exists(options.source.path))
     throw Error(options.source.path + ": is a baked model; a study of accuracy needs the scene (YAML)");
   if (options.tolerance > 0 && options.time > 0)

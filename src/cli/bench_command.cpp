@@ -1,6 +1,7 @@
 #include "command.hpp"
 #include "model_source.hpp"
 
+#include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/dense_block.hpp"
 #include "frontalis/study/effect_presence.hpp"
@@ -174,6 +175,12 @@ void bench_effects(const BenchOptions& options)
 {
   const SolverSettings settings{ backend_from_name(options.backend), options.threads, 0 };
   const double seconds = options.quick ? 1.0 : 4.0;
+  // before minutes are spent
+  std::shared_ptr<const Model> model;
+  if (!options.source.path.empty())
+    model = std::make_shared<const Model>(obtain_model(options.source));
+  if (model && model->muscles.empty())
+    throw Error(options.source.path + ": has no muscles, so that one is not to be compared with all");
   const auto costs = measure_presence(settings, seconds);
   Table table(
       { "effect", "share [%]", "more a step [us]", "spread [us]", "of the step without [%]", "of its whole [%]" });
@@ -190,10 +197,9 @@ void bench_effects(const BenchOptions& options)
   std::printf("%s", table.text().c_str());
   if (!options.plot.empty())
     draw(costs, options.backend, options.plot);
-  if (options.source.path.empty())
+  if (!model)
     return;
-  const ActivationCost cost =
-      measure_activation(std::make_shared<const Model>(obtain_model(options.source)), settings, seconds);
+  const ActivationCost cost = measure_activation(model, settings, seconds);
   std::printf("one muscle active: %.2f us a step; all: %.2f us; spread of the difference %.2f us\n", 1e6 * cost.one,
               1e6 * cost.all, 1e6 * cost.spread);
 }

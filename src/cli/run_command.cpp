@@ -193,24 +193,24 @@ void run(const RunOptions& options)
     guard.emplace(*solver, model, watch);
   }
   Guard* const watched = guard ? &*guard : nullptr;
-  if (options.to_equilibrium)
-    settle(*solver, watched, *model, options, { curve.activation.back(), bones }, folder, summary);
-  else
+  try
   {
-    Motion motion(*solver, watched, *model, curve, bones, ramp, [] { return !interrupt_requested(); });
-    try
+    if (options.to_equilibrium)
+      settle(*solver, watched, *model, options, { curve.activation.back(), bones }, folder, summary);
+    else
     {
+      Motion motion(*solver, watched, *model, curve, bones, ramp, [] { return !interrupt_requested(); });
       play(*solver, watched, *model, options, motion, folder, summary);
     }
-    catch (const Error& error)
-    {
-      // what was reached is kept
-      summary.complete = false;
-      summary.failure = error.what();
-      if (folder)
-        folder->finish(json_of(*model, summary));
-      throw;
-    }
+  }
+  catch (const Error& error)
+  {
+    // what was reached is kept
+    summary.complete = false;
+    summary.failure = error.what();
+    if (folder)
+      folder->finish(json_of(*model, summary));
+    throw;
   }
   if (folder)
     folder->finish(json_of(*model, summary));

@@ -61,14 +61,22 @@ struct CpuElement
 
   static FRONTALIS_LAW Kinematics load_modes(const Arguments& g, const Place& at, Batch (&mode)[3][8])
   {
+    return load_modes(g, at, g.u, mode);
+  }
+
+  /// Of displacements u.
+  template <class Number>
+  static FRONTALIS_LAW Kinematics load_modes(const Arguments& g, const Place& at, Number* const (&u)[3],
+                                             Batch (&mode)[3][8])
+  {
     const Tile& tile = *at.tile;
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
     for (int c = 0; c < 3; ++c)
     {
       for (int r = 0; r < 4; ++r)
       {
-        const Real* first = g.u[c] + tile.node[strip][r] + within;
-        const Real* second = g.u[c] + tile.node[Tile::strips - 1][r];
+        const Real* first = u[c] + tile.node[strip][r] + within;
+        const Real* second = u[c] + tile.node[Tile::strips - 1][r];
         mode[c][2 * r] = Lane::load(first, second);
         mode[c][2 * r + 1] = Lane::load(first + 1, second + 1);
       }
@@ -211,6 +219,8 @@ struct CpuElement
     auto material = material_of(g, at);
     material.kappa = N::of(0);
     const auto S = physics::second_piola(k, elastic(g, at, material, k));
+    // the other buffer holds where the step began
+    const Kinematics k_before = work == nullptr ? k : load_modes(g, at, g.next, mode);
     const ViscousSlot& slot = g.viscous[at.tile->viscous];
     physics::Symmetric3<Batch> sum;
     for (Batch& component : sum.a)
@@ -229,11 +239,8 @@ struct CpuElement
       }
       if (work == nullptr)
         continue;
-      Arguments earlier = g;
-      for (int axis = 0; axis < 3; ++axis)
-        earlier.u[axis] = g.next[axis];
       alignas(64) Real first[lanes], second[lanes];
-      physics::relaxation_work(load_modes(earlier, at, mode), k, before, H).store_aligned(first);
+      physics::relaxation_work(k_before, k, before, H).store_aligned(first);
       along_strain(k, H).store_aligned(second);
       for (int lane = 0; lane < lanes; ++lane)
       {

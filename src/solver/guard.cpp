@@ -112,6 +112,22 @@ Instability Guard::Implementation::check()
   return finding;
 }
 
+// what a part of a motion, which answers what it found, came to
+template <class Part>
+Instability attempted(const Part& part)
+{
+  try
+  {
+    return part();
+  }
+  catch (const Diverged&)
+  {
+    if (mutation::blind_guard)
+      throw;
+    return Instability::not_finite;
+  }
+}
+
 // the first try begins at the latest good state, later ones earlier: what was found there may have begun before
 void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
 {
@@ -238,8 +254,7 @@ void Guard::advance(double seconds, const Controls& target)
     const double left = end - g.solver.time();
     const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
     done = part >= left;
-    Instability finding = Instability::none;
-    try
+    const auto go = [&]
     {
       const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
       const std::vector<RigidTransform> from = g.solver.controls().bone;
@@ -248,15 +263,9 @@ void Guard::advance(double seconds, const Controls& target)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
       for (std::size_t b = 0; b < to.bone.size(); ++b)
         g.bone_way[b] += farthest_way(from[b], to.bone[b], far_corner(*g.model));
-      if (g.steps() - g.checked_at >= g.settings.interval)
-        finding = g.check();
-    }
-    catch (const Diverged&)
-    {
-      if (mutation::blind_guard)
-        throw;
-      finding = Instability::not_finite;
-    }
+      return g.steps() - g.checked_at >= g.settings.interval ? g.check() : Instability::none;
+    };
+    const Instability finding = attempted(go);
     if (finding != Instability::none)
     {
       g.go_back(finding, target, end);
@@ -279,7 +288,6 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   Equilibrium result;
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
-    finding = Instability::none;
     // muscles are at once where they are to be
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
@@ -291,9 +299,10 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
       ~Settling() { on = false; }
       bool& on;
     };
-    try
+    const auto go = [&]
     {
       const Settling settling(g.settling);
+      finding = Instability::none;
       result = g.solver.settle(target, tolerance, end - g.solver.time(),
                                [&](const Equilibrium& now)
                                {
@@ -301,15 +310,9 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
                                    finding = g.check();
                                  return finding == Instability::none && (!go_on || go_on(now));
                                });
-      if (finding == Instability::none)
-        finding = g.check();
-    }
-    catch (const Diverged&)
-    {
-      if (mutation::blind_guard)
-        throw;
-      finding = Instability::not_finite;
-    }
+      return finding == Instability::none ? g.check() : finding;
+    };
+    finding = attempted(go);
     if (finding != Instability::none)
       g.go_back(finding, target, end);
   }

@@ -88,11 +88,10 @@ struct ReferenceSolver::Kept : Fields
   double viscous_elapsed = 0;
   EnergyAccount<double>::Book book;
   std::vector<std::array<double, 2>> fibre_memory;
-  double frequency_squared = 0;
 
   void archive(ByteArchive& archive) override
   {
-    archive(u)(v)(relaxed)(viscous_elapsed)(fibre_memory)(frequency_squared);
+    archive(u)(v)(relaxed)(viscous_elapsed)(fibre_memory);
     contacts.archive(archive);
     book.archive(archive);
   }
@@ -109,7 +108,6 @@ void ReferenceSolver::save_fields(std::unique_ptr<Fields>& to) const
   kept.relaxed = relaxed_;
   kept.viscous_elapsed = viscous_elapsed_;
   kept.fibre_memory = fibre_memory_;
-  kept.frequency_squared = frequency_squared_;
   if (account_)
     kept.book = account_->book();
 }
@@ -123,7 +121,6 @@ void ReferenceSolver::restore_fields(const Fields& from)
   relaxed_ = kept.relaxed;
   viscous_elapsed_ = kept.viscous_elapsed;
   fibre_memory_ = kept.fibre_memory;
-  frequency_squared_ = kept.frequency_squared;
   if (account_)
     account_->restore(kept.book);
 }

@@ -57,7 +57,7 @@ SkinPhase look(Solver& solver, const Model& model)
   SkinState skin;
   solver.skin(skin);
   if (!is_finite(skin) || !solver.monitor().finite)
-    throw Error("the skin is no longer finite");
+    throw Diverged("the skin is no longer finite");
   to_face_frame(model, skin);
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
@@ -69,7 +69,7 @@ void check_size(const VariantMotion& motion, const Model& model)
   for (int axis = 0; axis < 3; ++axis)
     size = std::max(size, model.size[axis] * model.spacing[axis]);
   if (motion_size(motion) > size)
-    throw Error("the skin has left the model behind");
+    throw Diverged("the skin has left the model behind");
 }
 
 std::vector<float> vertex_areas(const Model& model)
@@ -230,7 +230,8 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     motion.phases.push_back(look(*solver, *model));
     check_size(motion, *model);
   }
-  catch (const Error& error)
+  // what else goes wrong is the machine's, and not kept with the setting
+  catch (const Diverged& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
   }

@@ -177,8 +177,7 @@ std::vector<StabilityCase> hard_materials()
       "passive part included, is switched on and off at once. It must keep its energy explained to 1 % and be at rest "
       "in the end. With a bound that counts less than the exact slope of the exponential it ended in NaN, at 0.9 of "
       "the bound too; with the bound alone it loses or gains some percent: where voxels stiffen fast, steps are at "
-      "most "
-      "0.55 of the critical one and every step is looked at.",
+      "most 0.55 of the critical one and every step is looked at.",
       stiffening },
     { "mass_scaling", true, "masses scaled by 10000",
       "A beam under gravity, a muscle switched on, with all masses times 10⁴ and without. Weight must not grow with "

@@ -1,7 +1,7 @@
 #include "watched_motion.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/solver/rigid_motion.hpp"
+#include "stability_models.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,14 +40,7 @@ void WatchedMotion::advance(double seconds, const Controls& target, int looks)
   for (int i = 0; i < looks; ++i)
   {
     // controls go on from where they are: each part gets its share of the way
-    Controls next = target;
-    const double share = 1.0 / (looks - i);
-    const Controls& now = solver_->controls();
-    for (std::size_t m = 0; m < next.activation.size(); ++m)
-      next.activation[m] = now.activation[m] + static_cast<float>(share) * (target.activation[m] - now.activation[m]);
-    for (std::size_t b = 0; b < next.bone.size(); ++b)
-      next.bone[b] = interpolate(now.bone[b], target.bone[b], share);
-    guard_->advance(seconds / looks, next);
+    guard_->advance(seconds / looks, interpolate(solver_->controls(), target, 1.0 / (looks - i)));
     look();
     settings_.watch((i + 1.0) / looks);
   }
@@ -61,10 +54,8 @@ void WatchedMotion::come_and_go(const std::vector<Phase>& phases, const std::str
   plot(file, title);
   advance(0.2, controls(), 20);
   expect_balance(of, share);
-  double farthest = 0;
-  for (const auto& u : displacements())
-    farthest = std::max(farthest, std::hypot(u[0], u[1], u[2]));
-  trial_.checks.push_back(absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest, 1e3 * left));
+  trial_.checks.push_back(
+      absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), 1e3 * left));
 }
 
 void WatchedMotion::settle(const Controls& target, double tolerance, double seconds)
