@@ -3,6 +3,7 @@
 #include "cuda_backend.hpp"
 #include "launch_choice.hpp"
 
+#include <cmath>
 #include <cstring>
 
 namespace frontalis
@@ -211,7 +212,8 @@ std::string CudaSolver::description() const
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
   return std::string("cuda (float, ") + device.name + ", " +
          (launch_.patches ? std::to_string(device_.patches()) + " patches)"
-                          : std::to_string(device_.strips()) + " strips)");
+                          : std::to_string(device_.strips()) + " strips, " +
+                                std::to_string(std::lround(100 * device_.filled())) + " % filled)");
 }
 
 }  // namespace cuda

@@ -36,6 +36,7 @@ std::vector<std::uint32_t> VoxelCut::voxel_at() const
 void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
                              const std::vector<std::uint32_t>& palette_entry)
 {
+  filled_ = strips.filled();
   std::vector<std::uint32_t> strip_of_device(device_node_.size() + 1, 0);
   std::vector<char> still(device_node_.size() + 1, 0);
   for (std::size_t n = 0; n < device_node_.size(); ++n)

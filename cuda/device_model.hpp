@@ -71,6 +71,7 @@ public:
   const StepLaunch& launch() const { return launch_; }
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
+  double filled() const { return filled_; }                      ///< VoxelStrips::filled()
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
@@ -118,6 +119,7 @@ private:
   DeviceArray<std::uint32_t> halo_;
   DeviceArray<std::int32_t> patch_tasks_;
   DeviceArray<Strip> strips_;
+  double filled_ = 1;
   DeviceArray<StripSlot> slots_;
   DeviceArray<float4> palette_, stabilisation_;
   DeviceArray<std::uint32_t> law_begin_;

@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace frontalis;
@@ -124,7 +125,10 @@ double share_of_skin(Solver& solver, const Controls& controls, int steps)
   return median(shares);
 }
 
-void bench(const Scene& scene)
+// The voxels a second of the dense blocks of this run, by name: what other models are compared with.
+using DenseRates = std::vector<std::pair<std::string, double>>;
+
+void bench(const Scene& scene, DenseRates& dense)
 {
   const auto start = std::chrono::steady_clock::now();
   const auto model = std::make_shared<const Model>(scene.make());
@@ -148,8 +152,12 @@ void bench(const Scene& scene)
       "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
       scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
-  if (!model->skin.vertices.empty())
+  if (model->skin.vertices.empty())
+    dense.emplace_back(scene.name, voxels / step);
+  else
   {
+    for (const auto& [name, rate] : dense)
+      std::printf("%-14s %.2f of the rate of %s\n", "", voxels / step / rate, name.c_str());
     std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
     const double share = share_of_skin(*solver, controls, static_cast<int>(0.1 / step));
     std::printf(
@@ -166,6 +174,7 @@ std::vector<Scene> scenes()
 {
   const auto shell = [](double voxel) { return [voxel] { return shell_model({ voxel, 11000, 5e6 }); }; };
   return { { "block_4k", [] { return dense_block(16, 16, 16); }, 20000 },
+           { "block_1m", [] { return dense_block(102, 102, 102); }, 2000 },
            { "block_2m", [] { return dense_block(126, 126, 126); }, 2000 },
            { "block_16m", [] { return dense_block(252, 252, 252); }, 1000 },
            { "shell_4k", shell(2.8e-3), 20000 },
@@ -193,13 +202,14 @@ int run(int count, char** arguments)
     }
     std::fflush(stdout);
   }
+  DenseRates dense;
   for (const Scene& scene : scenes())
     if (is_wanted(scene.name))
-      bench(scene);
+      bench(scene, dense);
   // baked models
   for (const std::string& name : wanted)
     if (name.find('.') != std::string::npos)
-      bench({ name.substr(name.rfind('/') + 1), [&] { return read_model(name); }, 10000 });
+      bench({ name.substr(name.rfind('/') + 1), [&] { return read_model(name); }, 10000 }, dense);
   return 0;
 }
 
