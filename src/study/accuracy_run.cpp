@@ -4,6 +4,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/solver/guard.hpp"
 #include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
@@ -208,19 +209,22 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     double looked = 0;
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
-    const Equilibrium found = solver->settle(controls_at(*solver, history, length), 1e-4, settling,
-                                             [&](const Equilibrium& equilibrium)
-                                             {
-                                               interrupted = !go_on(0.8 + 0.2 * equilibrium.seconds / settling);
-                                               if (equilibrium.seconds - looked < 0.1 * settling)
-                                                 return !interrupted;
-                                               looked = equilibrium.seconds;
-                                               VariantMotion present = last;
-                                               present.phases[1] = look(*solver, *model);
-                                               const double moved = skin_errors(present, last)[1].rms;
-                                               last = std::move(present);
-                                               return !interrupted && moved > 5e-4 * motion_size(last);
-                                             });
+    // the guard may go back, and what settles begins anew
+    Guard guard(*solver, model);
+    const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
+                                           [&](const Equilibrium& equilibrium)
+                                           {
+                                             interrupted = !go_on(0.8 + 0.2 * equilibrium.seconds / settling);
+                                             looked = std::min(looked, equilibrium.seconds);
+                                             if (equilibrium.seconds - looked < 0.1 * settling)
+                                               return !interrupted;
+                                             looked = equilibrium.seconds;
+                                             VariantMotion present = last;
+                                             present.phases[1] = look(*solver, *model);
+                                             const double moved = skin_errors(present, last)[1].rms;
+                                             last = std::move(present);
+                                             return !interrupted && moved > 5e-4 * motion_size(last);
+                                           });
     if (interrupted)
     {
       checkpoints.keep(played);
@@ -232,6 +236,10 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
   }
   // what else goes wrong is the machine's, and not kept with the setting
   catch (const Diverged& error)
+  {
+    motion.fault = std::string("unstable: ") + error.what();
+  }
+  catch (const Unstable& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
   }
