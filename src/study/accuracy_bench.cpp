@@ -2,20 +2,17 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
-
-#include <chrono>
+#include "frontalis/study/step_time.hpp"
 
 namespace frontalis
 {
-namespace
-{
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-}  // namespace
-
 VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
-    : plan_(plan), maker_(maker), progress_(progress), store_(plan.folder + "/variants"), begin_(now())
+    : plan_(plan),
+      maker_(maker),
+      progress_(progress),
+      store_(plan.folder + "/variants"),
+      begin_(wall_seconds()),
+      timing_(plan.quick ? 1 : 3)
 {
   look_at_standard();
 }
@@ -28,11 +25,12 @@ std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend
   return content_hash(text + " " + std::to_string(plan_.history.ramp) + " " + std::to_string(plan_.history.hold));
 }
 
-// any for what has the reference's form: a folder may come from a faster machine
+// where a folder comes from a faster machine, its motions serve too; a GPU computes in single precision whatever is
+// asked for
 std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
-  if (name_of(setting, reference_setting(plan_.standard, setting.profile.voxel[0])) == "standard")
+  if (setting.backend == plan_.standard.backend && setting.profile.precision == "single")
     backends.insert(backends.end(), { Backend::cuda, Backend::cpu });
   return backends;
 }
@@ -61,14 +59,23 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
+// the reference's time says nothing and takes long
+bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
+{
+  return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
+}
+
 double VariantBench::predicted(const AccuracySetting& setting) const
 {
-  return is_kept(setting) ? 0 : overhead_ + rate_ * relative_time(setting);
+  if (!is_kept(setting))
+    return overhead_ + rate_ * relative_time(setting);
+  return is_timed(setting, store_.cost(key_of(setting))) ? 0 : timing_;
 }
 
 bool VariantBench::fits(const AccuracySetting& setting)
 {
-  const bool fit = plan_.budget <= 0 || is_kept(setting) || now() - begin_ + predicted(setting) <= plan_.budget;
+  const bool fit =
+      plan_.budget <= 0 || wall_seconds() - begin_ + predicted(setting) <= plan_.budget || predicted(setting) == 0;
   left_out_ += fit ? 0 : 1;
   return fit;
 }
@@ -97,12 +104,10 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
 
   std::optional<VariantMotion> motion = kept_motion(setting, measured.played_by);
   std::optional<VariantCost> cost = store_.cost(key);
-  // the reference's time says nothing and takes long
-  const bool time_it = !is_reference(setting) && (!cost || cost->machine != machine_.at(setting.backend) ||
-                                                  cost->spread > 0.2 || cost->processors < 0.8);
-  if (!motion || (time_it && motion->fault.empty()))
+  const bool kept = motion.has_value();
+  if (!kept || (!is_timed(setting, cost) && motion->fault.empty()))
   {
-    const double begin = now(), before = heap_bytes();
+    const double begin = wall_seconds(), before = heap_bytes();
     std::shared_ptr<const Model> model;
     try
     {
@@ -112,7 +117,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     {
       motion.emplace().fault = std::string("no model: ") + error.what();
     }
-    const double build = now() - begin, bytes = heap_bytes() - before;
+    const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
       // a ledger says nothing of the reference, and a GPU takes twice as long with one
@@ -122,7 +127,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       if (!motion)
         throw StudyInterrupted();
       store_.keep(key, *motion);
-      const double wall = now() - begin, relative = relative_time(setting);
+      const double wall = wall_seconds() - begin, relative = relative_time(setting);
       overhead_ = overhead_ > 0 ? std::min(overhead_, wall) : wall;
       if (wall > 4 * overhead_ || rate_ == 0 || wall < rate_ * relative)
         rate_ = wall / relative;
@@ -133,6 +138,8 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       cost->memory += bytes;
       cost->build = build;
       store_.keep(key, *cost);
+      if (kept)
+        timing_ = wall_seconds() - begin;
     }
   }
   measured.motion = *std::move(motion);

@@ -19,7 +19,7 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< another than the setting's where the folder had it of a faster machine
+  Backend played_by;  ///< another than the setting's where the folder has it of another machine
   VariantMotion motion;
   VariantCost cost;
 };
@@ -45,7 +45,7 @@ public:
   /// What is still to come, for the estimate of the time left.
   void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
 
-  /// Not timed. What has the reference's form, of any edge, is taken from the folder whatever backend computed it.
+  /// Not timed.
   void set_reference(const AccuracySetting& setting) { reference_ = setting; }
   /// Time step of the standard setting by the element bound, without scaled mass [s].
   double critical_time_step() const { return critical_; }
@@ -57,6 +57,7 @@ private:
   bool is_reference(const AccuracySetting& setting) const;
   std::vector<Backend> backends_of(const AccuracySetting& setting) const;
   bool is_kept(const AccuracySetting& setting) const;
+  bool is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const;
   std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
   void look_at_standard();
 
@@ -71,7 +72,8 @@ private:
   std::vector<MeasuredVariant> done_;
   std::map<std::string, std::size_t> index_;  // by key
   std::vector<AccuracySetting> pending_;
-  double overhead_ = 0, rate_ = 0;  // wall seconds: of any variant, and for a unit of relative_time()
+  // wall seconds: of any variant, for a unit of relative_time(), of what is only timed
+  double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };
 

@@ -83,6 +83,28 @@ double motion_size(const VariantMotion& motion)
   return worst(skin_errors(motion, still)).rms;
 }
 
+VariantMotion settled_part(const VariantMotion& motion)
+{
+  VariantMotion part = motion;
+  part.phases = { motion.phases.front(), motion.phases.back() };
+  return part;
+}
+
+VariantMotion exact_motion(const VariantMotion& like,
+                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement)
+{
+  VariantMotion exact = settled_part(like);
+  exact.phases.back() = exact.phases.front();
+  for (auto* const places : { &exact.phases.back().vertices, &exact.phases.back().landmarks })
+    for (auto& place : *places)
+    {
+      const auto moved = displacement({ { place[0], place[1], place[2] } });
+      for (int axis = 0; axis < 3; ++axis)
+        place[axis] += static_cast<float>(moved[axis]);
+    }
+  return exact;
+}
+
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine)
 {
   // (h1^p - h2^p) / (h2^p - h3^p) grows with p

@@ -12,8 +12,6 @@ namespace frontalis
 namespace
 {
 
-std::string millimetres(double metres) { return readable(1e3 * metres, 3) + " mm"; }
-
 const AccuracyRow& last_of_front(const AccuracyFindings& findings)
 {
   if (findings.front.empty())

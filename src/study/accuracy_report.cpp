@@ -15,8 +15,6 @@ namespace
 
 double mm(double metres) { return 1e3 * metres; }
 
-std::string short_mm(double metres) { return readable(mm(metres), 2) + " mm"; }
-
 // a knob as a reader knows it
 std::string knob_words(const std::string& knob)
 {
@@ -54,9 +52,11 @@ Plot::Curve curve_of(const AccuracyFindings& findings, const std::vector<std::si
 
 std::string reference_words(const AccuracyFindings& f)
 {
-  std::string text = "The reference has voxels of " + short_mm(f.reference.profile.voxel[0]) +
+  if (f.closed_form)
+    return "Settled skins are compared with the closed form.";
+  std::string text = "The reference has voxels of " + millimetres(f.reference.profile.voxel[0], 2) +
                      ", assumed-strain hourglass control and no scaled mass. Its own error is about " +
-                     short_mm(f.reference_error) + ", nothing below which is claimed: ";
+                     millimetres(f.reference_error, 2) + ", nothing below which is claimed: ";
   if (f.extrapolated)
     return text + "Richardson's extrapolation with the observed order of " + readable(f.order, 2) + ".";
   text += "the difference of the two finest solutions, ";
@@ -82,7 +82,7 @@ Table accuracy_table(const AccuracyFindings& findings)
                 three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
                 three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
                 three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
-                row.fault.empty() ? (row.noisy() ? "noisy" : "") : row.fault });
+                row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault });
   }
   return table;
 }
@@ -111,7 +111,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   const double own = mm(findings.reference_error);
   plot.x_from = std::min(least / 1.6, 0.7);
   plot.x_to = std::max(most * 1.6, 1.5);
-  plot.y_from = std::min(low, own) / 1.3;
+  plot.y_from = (own > 0 ? std::min(low, own) : low) / 1.3;
   plot.y_to = high * 1.3;
   plot.shaded_below = own;
   for (double decade = 1e-6; decade < 1e6; decade *= 10)
@@ -136,7 +136,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
     {
       curve.coloured_labels = true;
       for (const std::size_t r : by_cost(findings, line.rows))
-        curve.labels.push_back(short_mm(findings.rows[r].setting.profile.voxel[0]));
+        curve.labels.push_back(millimetres(findings.rows[r].setting.profile.voxel[0], 2));
     }
     plot.curves.push_back(std::move(curve));
   }
@@ -154,29 +154,34 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
                             { number },
                             "right offset -0.6,-0.8" });
   }
-  plot.curves.push_back({ "",
-                          { plot.x_from, plot.x_to },
-                          { own, own },
-                          Plot::Style::guide,
-                          { "error of the reference" },
-                          "left offset 0.7,-0.7" });
+  if (own > 0)
+    plot.curves.push_back({ "",
+                            { plot.x_from, plot.x_to },
+                            { own, own },
+                            Plot::Style::guide,
+                            { "error of the reference" },
+                            "left offset 0.7,-0.7" });
   plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
   return plot;
 }
 
 std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
 {
+  const std::string phases =
+      f.closed_form ? "*error* is that of the skin once settled, "
+                    : "*error* is that of the skin in the worst phase of the history (half of the ramp, its end, "
+                      "the end of the history, settled), *settled* at rest alone, ";
   std::string out =
-      "# " + title + "\n\n" + reference_words(f) + " The skin moves by " + short_mm(f.motion) +
-      " RMS. *error* is that of the skin in the worst phase of the history (half of the ramp, its end, "
-      "the end of the history, settled), *settled* at rest alone, *landmark* that of the worst landmark; "
+      "# " + title + "\n\n" + reference_words(f) + " The skin moves by " + millimetres(f.motion, 2) + " RMS. " +
+      phases +
+      "*landmark* that of the worst landmark; "
       "*energy* is what the ledger of energies leaves unexplained. *cost* is wall seconds a simulated "
       "second, from the median of repeated timings; *spread* is the distance of their quartiles. Stars make "
       "the Pareto front: no other setting is both cheaper and more accurate. Machine: " +
       f.machine + ".\n";
   for (const std::string& note : f.notes)
     out += "\n- " + note;
-  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy(); });
+  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy; });
   if (noisy > 0)
     out +=
         "\n- The machine was disturbed while " + std::to_string(noisy) +

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,7 +16,6 @@
 #include <thread>
 
 #include <malloc.h>
-#include <sys/resource.h>
 
 namespace frontalis
 {
@@ -26,17 +24,8 @@ namespace
 
 constexpr int slices_a_phase = 10;
 constexpr int repetitions = 9;
-constexpr double seconds_a_checkpoint = 30;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double processor_seconds()
-{
-  rusage used{};
-  getrusage(RUSAGE_SELF, &used);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * t.tv_usec; };
-  return seconds(used.ru_utime) + seconds(used.ru_stime);
-}
+constexpr double seconds_a_checkpoint = 60;        // at least
+constexpr double share_of_checkpoints = 1 / 40.0;  // of the wall time, at most
 
 int thread_count(int threads)
 {
@@ -162,12 +151,14 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
       motion.phases.push_back(look(*solver, *model));
     const double steps_before = motion.steps;
-    double kept = now();
+    double next_checkpoint = wall_seconds() + seconds_a_checkpoint;
     const auto keep = [&]
     {
+      const double begin = wall_seconds();
       state.solver = solver->pack();
       checkpoints.keep(state);
-      kept = now();
+      const double end = wall_seconds();
+      next_checkpoint = end + std::max(seconds_a_checkpoint, (end - begin) / share_of_checkpoints);
     };
     const double length = history.ramp + history.hold;
     const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
@@ -190,7 +181,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
         check_size(motion, *model);
       }
       const bool interrupted = !go_on(0.8 * next / length);
-      if (interrupted || now() - kept > seconds_a_checkpoint)
+      if (interrupted || wall_seconds() > next_checkpoint)
         keep();
       if (interrupted)
         return std::nullopt;
@@ -260,11 +251,11 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   controls.activation = history.activation;
   // what others take from one thread can be told, from several not
   const bool alone = is_alone(settings);
-  const double used = processor_seconds(), begin = now();
+  const double used = processor_seconds(), begin = wall_seconds();
   // the search for an assembled time step is dear while muscles begin to pull, and would pass for the steps' cost
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == Backend::cpu && !alone;
-  cost.processors = shared ? (processor_seconds() - used) / (now() - begin) / thread_count(threads) : 1;
+  cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;
   std::vector<double> steps, skins;
   for (const auto& turn : turns)
@@ -272,9 +263,9 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   SkinState skin;
   for (int repetition = 0; repetition < repetitions; ++repetition)
   {
-    const double start = now();
+    const double start = wall_seconds();
     solver->skin(skin);
-    skins.push_back(now() - start);
+    skins.push_back(wall_seconds() - start);
   }
   const Spread step = spread_of(steps);
   cost.step = step.median;

@@ -43,6 +43,7 @@ struct VariantCost
   double memory = 0;
   double build = 0;  ///< [s]
 
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
   void archive(ByteArchive& archive);
 };
 
@@ -61,7 +62,7 @@ std::string machine_of(const Solver& solver, int threads);
 
 using GoOn = std::function<bool(double done)>;
 
-/// Where a motion goes on from, and what becomes of the states on its way: one each half minute of wall time and one
+/// Where a motion goes on from, and what becomes of the states on its way: one about each minute of wall time and one
 /// where it is interrupted.
 struct Checkpoints
 {
@@ -86,6 +87,10 @@ double heap_bytes();
 /// Throws Error where the skins are not the same.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
+/// Rest and settled alone of a motion; the same of a body whose settled displacements [m] are known at all places [m].
+VariantMotion settled_part(const VariantMotion& motion);
+VariantMotion exact_motion(const VariantMotion& like,
+                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
 /// Root mean square displacement [m], the largest of the phases.
 double motion_size(const VariantMotion& motion);

@@ -5,16 +5,18 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
+#include "verification_cases.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace frontalis
 {
 namespace
 {
 
-std::string millimetres(double metres) { return readable(1e3 * metres, 3) + " mm"; }
+constexpr double exactly_represented = 1e-3;  // error over motion
 
 class Study
 {
@@ -32,10 +34,17 @@ private:
   void measure_combinations();
   void check_reference();
   void estimate_reference_error();
+  void tell_orders();
   AccuracyRow row_of(const MeasuredVariant& measured) const;
 
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
+  // edges that are variants': all but the reference's
+  std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
+  bool is_too_fine(const AccuracySetting& setting) const
+  {
+    return !plan_.exact && setting.profile.voxel[0] < 1.01 * plan_.edges.back();
+  }
   bool wanted(const std::string& knob) const
   {
     return plan_.knobs.empty() || std::find(plan_.knobs.begin(), plan_.knobs.end(), knob) != plan_.knobs.end();
@@ -58,7 +67,7 @@ void Study::choose_reference()
   bench_.expect(levels);
   for (std::size_t level = 0; level < edges.size(); ++level)
   {
-    if (level + 1 == edges.size())
+    if (level == variant_levels())
       bench_.set_reference(levels[level]);
     const double takes = bench_.predicted(levels[level]);
     const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
@@ -76,6 +85,8 @@ void Study::choose_reference()
                   " s here; allow more, or begin with larger voxels");
     bench_.measure(levels[level]);
   }
+  if (plan_.exact)
+    return;
   findings_.reference = reference_at(edges.back());
   bench_.set_reference(findings_.reference);
   reference_ = bench_.measure(findings_.reference);
@@ -100,7 +111,7 @@ void Study::measure_knobs()
     for (const AccuracySetting& setting : sweep.settings)
     {
       const std::string& profile = setting.profile.name;
-      if (setting.profile.voxel[0] < 1.01 * plan_.edges.back())
+      if (is_too_fine(setting))
         findings_.notes.push_back("Profile '" + profile +
                                   "' was left out: its voxels are as small as the reference's.");
       else if (bench_.fits(setting))
@@ -117,11 +128,11 @@ void Study::measure_knobs()
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
-  for (std::size_t level = 0; level + 1 < plan_.edges.size(); ++level)
+  for (std::size_t level = 0; level < variant_levels(); ++level)
   {
     const auto settings = combinations(plan_, plan_.edges[level], bench_.critical_time_step());
     std::vector<AccuracySetting> coming;
-    for (std::size_t later = level; later + 1 < plan_.edges.size(); ++later)
+    for (std::size_t later = level; later < variant_levels(); ++later)
     {
       const auto all = combinations(plan_, plan_.edges[later], bench_.critical_time_step());
       for (std::size_t c = 0; c < all.size(); ++c)
@@ -145,6 +156,8 @@ void Study::measure_combinations()
 // at the coarsest edge: what double precision and half the time step change
 void Study::check_reference()
 {
+  if (plan_.exact)
+    return;
   AccuracySetting exact = reference_at(plan_.edges[0]), halved = exact;
   const std::size_t base = bench_.measure(exact);
   if (!motion_of(base).fault.empty())
@@ -193,6 +206,37 @@ void Study::estimate_reference_error()
   findings_.motion = motion_size(motion_of(reference_));
 }
 
+// in the voxel edge, of the standard setting's form and of the reference's
+void Study::tell_orders()
+{
+  findings_.motion = motion_size(exact_motion(bench_.done().front().motion, plan_.exact));
+  for (const bool refined : { false, true })
+  {
+    std::vector<double> edges, errors;
+    for (const double edge : plan_.edges)
+    {
+      AccuracySetting setting = refined ? reference_at(edge) : plan_.standard;
+      setting.profile.voxel.fill(edge);
+      const MeasuredVariant* const known = bench_.find(setting);
+      if (known == nullptr || !known->motion.fault.empty())
+        continue;
+      edges.push_back(edge);
+      errors.push_back(row_of(*known).error.rms);
+    }
+    if (errors.size() < 2)
+      continue;
+    const std::string form = refined ? "Assumed strain" : "The standard setting's form";
+    const double most = *std::max_element(errors.begin(), errors.end());
+    if (most < exactly_represented * findings_.motion)
+      findings_.notes.push_back(
+          form + ": at most " + readable(1e6 * most, 2) +
+          " µm at any edge, what settling and rounding leave: voxels represent this deformation exactly.");
+    else
+      findings_.notes.push_back(form + ": the error falls with the voxel edge to the power " +
+                                readable(slope(edges, errors), 3) + ".");
+  }
+}
+
 AccuracyRow Study::row_of(const MeasuredVariant& measured) const
 {
   AccuracyRow row;
@@ -204,16 +248,18 @@ AccuracyRow Study::row_of(const MeasuredVariant& measured) const
     return row;
   try
   {
-    const auto errors = skin_errors(measured.motion, motion_of(reference_));
+    const VariantMotion found = plan_.exact ? settled_part(measured.motion) : measured.motion;
+    const VariantMotion truth = plan_.exact ? exact_motion(found, plan_.exact) : motion_of(reference_);
+    const auto errors = skin_errors(found, truth);
     row.error = worst(errors);
     row.settled = errors.back();
+    row.landmark = landmark_error(found, truth);
   }
   catch (const Error& error)
   {
     row.fault = error.what();
     return row;
   }
-  row.landmark = landmark_error(measured.motion, motion_of(reference_));
   row.energy = measured.motion.energy;
   row.steps = measured.motion.steps;
   if (measured.cost.machine.empty())
@@ -221,6 +267,7 @@ AccuracyRow Study::row_of(const MeasuredVariant& measured) const
   row.step = measured.cost.step;
   row.cost = row.steps * row.step + plan_.frame_rate * measured.cost.skin;
   row.spread = measured.cost.spread;
+  row.noisy = measured.cost.is_noisy();
   row.processors = measured.cost.processors;
   row.memory = measured.cost.memory;
   row.build = measured.cost.build;
@@ -242,7 +289,11 @@ AccuracyFindings Study::run()
       std::adjacent_find(plan_.edges.begin(), plan_.edges.end()) != plan_.edges.end())
     throw Error(
         "voxel edges: at least three are needed, each smaller than the one before; the last is the reference's");
+  if (is_too_fine(plan_.standard))
+    throw Error("voxel edges: the smallest, the reference's, is " + millimetres(plan_.edges.back()) +
+                "; it must be smaller than the standard setting's, " + millimetres(plan_.standard.profile.voxel[0]));
   findings_.standard = plan_.standard;
+  findings_.closed_form = static_cast<bool>(plan_.exact);
   try
   {
     choose_reference();
@@ -259,19 +310,28 @@ AccuracyFindings Study::run()
   findings_.machine = bench_.machine();
   if (bench_.left_out() > 0)
     findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
-  estimate_reference_error();
+  if (!plan_.exact)
+    estimate_reference_error();
+  std::map<Backend, int> elsewhere;
   for (const MeasuredVariant& measured : bench_.done())
   {
     findings_.rows.push_back(row_of(measured));
     if (measured.played_by != measured.setting.backend)
-      findings_.notes.push_back("'" + measured.name + "' has its motion of backend " + name_of(measured.played_by) +
-                                ", which the folder had.");
+      ++elsewhere[measured.played_by];
   }
-  // the reference is no setting among others
-  AccuracyRow& reference = findings_.rows[reference_];
-  reference.name = "reference: " + reference.name;
-  reference.error = reference.settled = {};
-  reference.landmark = NAN;
+  for (const auto& [backend, count] : elsewhere)
+    findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + name_of(backend) +
+                              ", which the folder had.");
+  if (plan_.exact)
+    tell_orders();
+  else
+  {
+    // the reference is no setting among others
+    AccuracyRow& reference = findings_.rows[reference_];
+    reference.name = "reference: " + reference.name;
+    reference.error = reference.settled = {};
+    reference.landmark = NAN;
+  }
   findings_.front = pareto_front(findings_.rows, plan_.standard, findings_.reference_error);
   return findings_;
 }

@@ -83,7 +83,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   using Names = std::vector<std::string>;
   std::vector<Sweep> all;
   // the reference's edge is no variant's
-  all.push_back(sweep("voxel", s, Numbers(plan.edges.begin(), plan.edges.end() - 1),
+  all.push_back(sweep("voxel", s, Numbers(plan.edges.begin(), plan.edges.end() - (plan.exact ? 0 : 1)),
                       [](auto& setting, double edge) { setting.profile.voxel.fill(edge); }));
   all.push_back(sweep("samples", s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },
                       [](auto& setting, double n) { setting.profile.samples = static_cast<int>(n); }));

@@ -9,29 +9,17 @@ namespace frontalis
 namespace
 {
 
-using Clock = std::chrono::steady_clock;
-
-double processor_seconds()
-{
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 // seconds a step, over about so many steps; a GPU solver queues some, so that its skin is waited for
 double time_steps(Solver& solver, const Controls& controls, double steps, bool processor_time)
 {
   SkinState skin;
   solver.skin(skin);
   const auto before = solver.profile().steps;
-  const auto start = Clock::now();
-  const double processor = processor_seconds();
+  const auto now = [&] { return processor_time ? processor_seconds() : wall_seconds(); };
+  const double start = now();
   solver.advance(steps * solver.time_step(), controls);
   solver.skin(skin);
-  const double spent = processor_time ? processor_seconds() - processor : since(start);
-  return spent / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
+  return (now() - start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
 // to where it has come of the way to its controls after so many wall seconds
@@ -40,8 +28,8 @@ void bring(TimedSolver& timed, double seconds)
   Solver& solver = *timed.solver;
   constexpr double ramp = 0.1;
   const Controls from = solver.controls();
-  const auto start = Clock::now();
-  for (double time = 0; time < 2 * ramp && since(start) < seconds;)
+  const double start = wall_seconds();
+  for (double time = 0; time < 2 * ramp && wall_seconds() - start < seconds;)
   {
     const double slice = 64 * solver.time_step();
     time += slice;
@@ -51,6 +39,18 @@ void bring(TimedSolver& timed, double seconds)
 }
 
 }  // namespace
+
+double wall_seconds()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double processor_seconds()
+{
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wanted, double seconds,
                                               bool processor_time, double patience)
@@ -64,8 +64,8 @@ std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wa
     steps.push_back(std::max(32.0, burst / time_steps(*timed.solver, timed.controls, 64, processor_time)));
   }
   std::vector<std::vector<double>> turns;
-  const auto start = Clock::now();
-  while (turns.size() < 5 || since(start) < seconds)
+  const double start = wall_seconds();
+  while (turns.size() < 5 || wall_seconds() - start < seconds)
   {
     turns.emplace_back();
     for (std::size_t s = 0; s < solvers.size(); ++s)

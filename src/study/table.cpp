@@ -67,6 +67,8 @@ std::string readable(double value, int digits)
   return text;
 }
 
+std::string millimetres(double metres, int digits) { return readable(1e3 * metres, digits) + " mm"; }
+
 std::string json_string(const std::string& text)
 {
   std::string out = "\"";

@@ -1,10 +1,10 @@
 #include "frontalis/study/yardstick.hpp"
 
 #include "bare_loop.hpp"
+#include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -15,8 +15,6 @@ namespace frontalis
 {
 namespace
 {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void on_threads(int threads, const std::function<void(int)>& task)
 {
@@ -60,11 +58,11 @@ double copy_bandwidth(int threads)
   std::vector<double> rates;
   for (int repetition = 0; repetition < 7; ++repetition)
   {
-    const double start = now();
+    const double start = wall_seconds();
     on_threads(
         threads, [&](int t)
         { std::memcpy(to[static_cast<std::size_t>(t)].data(), from[static_cast<std::size_t>(t)].data(), bytes); });
-    rates.push_back(2.0 * static_cast<double>(bytes) * threads / (now() - start));
+    rates.push_back(2.0 * static_cast<double>(bytes) * threads / (wall_seconds() - start));
   }
   return median(rates);
 }
@@ -124,15 +122,15 @@ double bare_loop(int edge, int threads, double seconds)
                });
   };
   run(2);
-  double start = now();
+  double start = wall_seconds();
   run(4);
-  const int steps = 2 * std::max(1, static_cast<int>(seconds / 5 / ((now() - start) / 4) / 2));
+  const int steps = 2 * std::max(1, static_cast<int>(seconds / 5 / ((wall_seconds() - start) / 4) / 2));
   std::vector<double> rates;
   for (int repetition = 0; repetition < 5; ++repetition)
   {
-    start = now();
+    start = wall_seconds();
     run(steps);
-    rates.push_back(static_cast<double>(voxels) * steps / (now() - start));
+    rates.push_back(static_cast<double>(voxels) * steps / (wall_seconds() - start));
   }
   return median(rates);
 }

@@ -73,6 +73,10 @@ TEST_F(AccuracyCommand, refuses_what_cannot_be)
   const ProgramResult colour = run({ "--knobs", "colour" });
   EXPECT_EQ(colour.code, 1);
   expect_contains(colour.errors, "no knob is called 'colour'; the knobs are voxel, samples, fill_min");
+  const ProgramResult stiff = run_program({ "accuracy", "cantilever", "--knobs", "poisson", "-o", results });
+  EXPECT_EQ(stiff.code, 1);
+  expect_contains(stiff.errors, "cantilever has no knob 'poisson'; its knobs are voxel, hourglass");
+  EXPECT_EQ(run_program({ "accuracy", "cantilever", "--accuracy", "draft", "-o", results }).code, 2);
   EXPECT_EQ(run({ "--tolerance", "1", "--time", "1" }).code, 2);
   EXPECT_EQ(run({ "--save", folder / "chosen.yaml" }).code, 2);
   const ProgramResult few = run_program({ "accuracy", scene, "--voxels", "5,2.5", "-o", results });

@@ -5,6 +5,7 @@
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -39,10 +40,14 @@ struct ModelMaker
 
 struct AccuracyPlan
 {
+  /// Displacement [m] of a place of the skin [m] once settled, both in the face frame, where a closed form is known:
+  /// settled skins are compared with it, and no finer solution serves as reference.
+  std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
   AccuracySetting standard;               ///< the knobs are turned one at a time from here
   std::vector<AccuracyProfile> profiles;  ///< the scene's own, measured too
   std::vector<std::string> knobs;         ///< names of knob_names(); empty: all
-  std::vector<double> edges;              ///< voxel edges, coarse to fine [m]; the last is the reference's
+  std::vector<double>
+      edges;  ///< voxel edges, coarse to fine [m]; the last is the reference's, where there is no `exact`
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins a simulated second [1/s]
   std::string folder;      ///< where finished variants are kept, by their content
@@ -76,8 +81,8 @@ struct AccuracyRow
   double memory = NAN;      ///< of model and solver, on the host [bytes]
   double build = NAN;       ///< of the model [s]
   double voxels = NAN;
+  bool noisy = false;  ///< spread above 20 %, or others took more than a fifth of the processors
 
-  bool noisy() const { return spread > 0.2 || processors < 0.8; }
   /// Whether a profile of a scene file can say it.
   bool is_profile(const AccuracySetting& standard) const
   {
@@ -99,6 +104,7 @@ struct AccuracyFindings
   std::vector<KnobLine> knobs;
   std::vector<std::size_t> front;  ///< rows that no other beats in both error and cost, cheapest first
   AccuracySetting standard, reference;
+  bool closed_form = false;    ///< what skins are compared with; otherwise the reference's
   double motion = 0;           ///< root mean square displacement of the reference's skin, largest of the phases [m]
   double reference_error = 0;  ///< [m], estimated
   double order = NAN;          ///< observed order of convergence in the voxel edge

@@ -22,6 +22,10 @@ struct TimedSolver
 std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& solvers, double seconds,
                                               bool processor_time = false, double patience = 0);
 
+/// Of a clock that only goes on; what this process has had of all processors [s].
+double wall_seconds();
+double processor_seconds();
+
 /// Whether a solver of these settings works in the calling thread alone, so that time that others take from it can be
 /// told.
 bool is_alone(const SolverSettings& settings);

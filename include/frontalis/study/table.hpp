@@ -36,6 +36,9 @@ private:
 /// A number for readers: six significant digits; empty where it is NaN.
 std::string readable(double value, int digits = 6);
 
+/// A length [m] with its unit: "0.2 mm".
+std::string millimetres(double metres, int digits = 3);
+
 /// Text as a JSON string with its quotes.
 std::string json_string(const std::string& text);
 

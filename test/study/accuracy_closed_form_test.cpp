@@ -1,0 +1,101 @@
+#include "frontalis/error.hpp"
+#include "frontalis/study/closed_form.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+namespace frontalis
+{
+namespace
+{
+
+class ClosedForms : public testing::TestWithParam<std::string>
+{
+protected:
+  void SetUp() override
+  {
+    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_closed_form_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  ClosedForm form(const std::string& name) const
+  {
+    for (ClosedForm& form : closed_forms())
+      if (form.name == name)
+      {
+        form.plan.folder = folder;
+        form.plan.edges.resize(3);
+        form.plan.knobs = { "voxel" };
+        form.plan.quick = true;
+        form.plan.threads = 1;
+        return form;
+      }
+    throw Error("no closed form is called " + name);
+  }
+
+  std::string folder;
+};
+
+AccuracyFindings study(const ClosedForm& form)
+{
+  return study_accuracy(form.plan, form.maker, [](const std::string&, double, double) { return true; });
+}
+
+double error_of(const AccuracyFindings& findings, const std::string& name)
+{
+  for (const AccuracyRow& row : findings.rows)
+    if (row.name == name)
+      return row.error.rms;
+  throw Error("no row is called " + name);
+}
+
+// each halving of the edge divides the error by about four: by 3 to 6, since at the finest the terms that small
+// deflections neglect begin to count
+TEST_F(ClosedForms, bending_converges_with_the_second_order)
+{
+  const AccuracyFindings findings = study(form("cantilever"));
+  for (const char* const strain : { "", ", assumed strain, assembled" })
+  {
+    const std::string at_standard = *strain == 0 ? "standard" : "assumed strain, assembled";
+    const double coarse = error_of(findings, std::string("4 mm") + strain), middle = error_of(findings, at_standard),
+                 fine = error_of(findings, std::string("1 mm") + strain);
+    EXPECT_NEAR(std::log2(coarse / middle), 2, 0.25) << strain;
+    EXPECT_NEAR(std::log2(middle / fine), 2, 0.4) << strain;
+    EXPECT_LT(coarse, 0.05 * findings.motion) << strain;
+  }
+  EXPECT_EQ(findings.reference_error, 0);
+  const std::string report = accuracy_report(findings, "bending");
+  EXPECT_NE(report.find("compared with the closed form"), std::string::npos) << report;
+  EXPECT_NE(report.find("falls with the voxel edge to the power 2"), std::string::npos) << report;
+}
+
+TEST_P(ClosedForms, voxels_represent_a_uniform_stretch_exactly)
+{
+  const AccuracyFindings findings = study(form(GetParam()));
+  EXPECT_GT(findings.motion, 1e-3);
+  for (const AccuracyRow& row : findings.rows)
+    EXPECT_LT(row.error.rms, 1e-5 * findings.motion) << row.name;
+  const auto told = [&](const std::string& note) { return note.find("exactly") != std::string::npos; };
+  EXPECT_TRUE(std::all_of(findings.notes.begin(), findings.notes.end(), told) && !findings.notes.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Uniform, ClosedForms, testing::Values("stretched_block", "active_bar"));
+
+TEST_F(ClosedForms, voxels_that_do_not_fit_have_no_model)
+{
+  ClosedForm cantilever = form("cantilever");
+  cantilever.plan.edges = { 4e-3, 3e-3, 2e-3 };
+  const AccuracyFindings findings = study(cantilever);
+  const auto unfit = [](const AccuracyRow& row)
+  { return row.fault == "no model: voxels of 3 mm do not fit an edge of 16 mm"; };
+  EXPECT_TRUE(std::any_of(findings.rows.begin(), findings.rows.end(), unfit));
+}
+
+}  // namespace
+}  // namespace frontalis
