@@ -1,11 +1,11 @@
 // the reference, the knobs and their combinations, and what they tell
 
 #include "accuracy_bench.hpp"
+#include "accuracy_comparison.hpp"
 #include "accuracy_front.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
-#include "verification_cases.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,6 @@ namespace frontalis
 {
 namespace
 {
-
-constexpr double exactly_represented = 1e-3;  // error over motion
 
 class Study
 {
@@ -33,10 +31,8 @@ private:
   void measure_knobs();
   void measure_combinations();
   void check_reference();
-  void estimate_reference_error();
-  void tell_orders();
-  AccuracyRow row_of(const MeasuredVariant& measured) const;
 
+  AccuracyRow row(const MeasuredVariant& measured) const { return row_of(measured, plan_, motion_of(reference_)); }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
   // edges that are variants': all but the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
@@ -143,7 +139,7 @@ void Study::measure_combinations()
     std::vector<std::pair<std::size_t, AccuracyRow>> rows;
     for (std::size_t c = 0; c < settings.size(); ++c)
       if (promising[c] && bench_.fits(settings[c]))
-        rows.emplace_back(c, row_of(bench_.done()[bench_.measure(settings[c])]));
+        rows.emplace_back(c, row(bench_.done()[bench_.measure(settings[c])]));
     for (const auto& [c, row] : rows)
       promising[c] = row.fault.empty() && std::none_of(rows.begin(), rows.end(),
                                                        [&row = row](const auto& other) {
@@ -179,99 +175,6 @@ void Study::check_reference()
                                 " moves the skin by " +
                                 readable(1e6 * worst(skin_errors(motion_of(base), other)).rms, 3) + " µm.");
   }
-}
-
-void Study::estimate_reference_error()
-{
-  // the finest three levels that were measured
-  std::vector<const MeasuredVariant*> levels;
-  for (const double edge : plan_.edges)
-    if (const MeasuredVariant* known = bench_.find(reference_at(edge)); known != nullptr && known->motion.fault.empty())
-      levels.push_back(known);
-  if (levels.size() < 2)
-    throw Error("no voxels but the reference's, " + millimetres(plan_.edges.back()) +
-                ", gave a motion to compare it with");
-  const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
-  const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
-  const auto apart = [&](std::size_t back)
-  { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
-  findings_.reference_error = apart(1);
-  if (levels.size() > 2)
-  {
-    findings_.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
-    findings_.extrapolated = findings_.order >= 0.5 && findings_.order <= 2.5;
-    if (findings_.extrapolated)
-      findings_.reference_error = richardson(edge(2), edge(1), apart(1), findings_.order);
-  }
-  findings_.motion = motion_size(motion_of(reference_));
-}
-
-// in the voxel edge, of the standard setting's form and of the reference's
-void Study::tell_orders()
-{
-  findings_.motion = motion_size(exact_motion(bench_.done().front().motion, plan_.exact));
-  for (const bool refined : { false, true })
-  {
-    std::vector<double> edges, errors;
-    for (const double edge : plan_.edges)
-    {
-      AccuracySetting setting = refined ? reference_at(edge) : plan_.standard;
-      setting.profile.voxel.fill(edge);
-      const MeasuredVariant* const known = bench_.find(setting);
-      if (known == nullptr || !known->motion.fault.empty())
-        continue;
-      edges.push_back(edge);
-      errors.push_back(row_of(*known).error.rms);
-    }
-    if (errors.size() < 2)
-      continue;
-    const std::string form = refined ? "Assumed strain" : "The standard setting's form";
-    const double most = *std::max_element(errors.begin(), errors.end());
-    if (most < exactly_represented * findings_.motion)
-      findings_.notes.push_back(
-          form + ": at most " + readable(1e6 * most, 2) +
-          " µm at any edge, what settling and rounding leave: voxels represent this deformation exactly.");
-    else
-      findings_.notes.push_back(form + ": the error falls with the voxel edge to the power " +
-                                readable(slope(edges, errors), 3) + ".");
-  }
-}
-
-AccuracyRow Study::row_of(const MeasuredVariant& measured) const
-{
-  AccuracyRow row;
-  row.name = measured.name;
-  row.setting = measured.setting;
-  row.fault = measured.motion.fault;
-  row.voxels = measured.motion.voxels > 0 ? measured.motion.voxels : NAN;
-  if (!row.fault.empty())
-    return row;
-  try
-  {
-    const VariantMotion found = plan_.exact ? settled_part(measured.motion) : measured.motion;
-    const VariantMotion truth = plan_.exact ? exact_motion(found, plan_.exact) : motion_of(reference_);
-    const auto errors = skin_errors(found, truth);
-    row.error = worst(errors);
-    row.settled = errors.back();
-    row.landmark = landmark_error(found, truth);
-  }
-  catch (const Error& error)
-  {
-    row.fault = error.what();
-    return row;
-  }
-  row.energy = measured.motion.energy;
-  row.steps = measured.motion.steps;
-  if (measured.cost.machine.empty())
-    return row;
-  row.step = measured.cost.step;
-  row.cost = row.steps * row.step + plan_.frame_rate * measured.cost.skin;
-  row.spread = measured.cost.spread;
-  row.noisy = measured.cost.is_noisy();
-  row.processors = measured.cost.processors;
-  row.memory = measured.cost.memory;
-  row.build = measured.cost.build;
-  return row;
 }
 
 AccuracyFindings Study::run()
@@ -310,21 +213,21 @@ AccuracyFindings Study::run()
   findings_.machine = bench_.machine();
   if (bench_.left_out() > 0)
     findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
-  if (!plan_.exact)
-    estimate_reference_error();
+  if (plan_.exact)
+    tell_orders(plan_, bench_, findings_);
+  else
+    estimate_reference_error(plan_, bench_, findings_);
   std::map<Backend, int> elsewhere;
   for (const MeasuredVariant& measured : bench_.done())
   {
-    findings_.rows.push_back(row_of(measured));
+    findings_.rows.push_back(row(measured));
     if (measured.played_by != measured.setting.backend)
       ++elsewhere[measured.played_by];
   }
   for (const auto& [backend, count] : elsewhere)
     findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + name_of(backend) +
                               ", which the folder had.");
-  if (plan_.exact)
-    tell_orders();
-  else
+  if (!plan_.exact)
   {
     // the reference is no setting among others
     AccuracyRow& reference = findings_.rows[reference_];
