@@ -6,6 +6,13 @@
 
 namespace frontalis
 {
+namespace
+{
+
+constexpr double with_settling = 1.5;  // times the wall time of the history
+
+}  // namespace
+
 VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
     : plan_(plan),
       maker_(maker),
@@ -63,6 +70,15 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
+}
+
+// what a variant takes to be played, for those to come
+void VariantBench::learn(const AccuracySetting& setting, double wall)
+{
+  const double relative = relative_time(setting);
+  overhead_ = overhead_ > 0 ? std::min(overhead_, wall) : wall;
+  if (wall > 4 * overhead_ || rate_ == 0 || wall < rate_ * relative)
+    rate_ = wall / relative;
 }
 
 double VariantBench::predicted(const AccuracySetting& setting) const
@@ -127,10 +143,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       if (!motion)
         throw StudyInterrupted();
       store_.keep(key, *motion);
-      const double wall = wall_seconds() - begin, relative = relative_time(setting);
-      overhead_ = overhead_ > 0 ? std::min(overhead_, wall) : wall;
-      if (wall > 4 * overhead_ || rate_ == 0 || wall < rate_ * relative)
-        rate_ = wall / relative;
+      learn(setting, wall_seconds() - begin);
     }
     if (motion->fault.empty() && !is_reference(setting))
     {
@@ -139,7 +152,10 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       cost->build = build;
       store_.keep(key, *cost);
       if (kept)
+      {
         timing_ = wall_seconds() - begin;
+        learn(setting, build + with_settling * motion->steps * cost->step * (plan_.history.ramp + plan_.history.hold));
+      }
     }
   }
   measured.motion = *std::move(motion);

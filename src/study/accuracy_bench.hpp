@@ -59,6 +59,7 @@ private:
   bool is_kept(const AccuracySetting& setting) const;
   bool is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const;
   std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
+  void learn(const AccuracySetting& setting, double wall);
   void look_at_standard();
 
   const AccuracyPlan& plan_;
