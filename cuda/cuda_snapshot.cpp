@@ -21,7 +21,6 @@ struct CudaSolver::Kept : SteppingSolver::Fields
   double mode_largest = 0, mode_length = 0;
   std::int64_t plans = 0;
   bool still_moved = false;
-  double viscous_elapsed = 0;
 
   void archive(ByteArchive& archive) override
   {
@@ -35,7 +34,7 @@ struct CudaSolver::Kept : SteppingSolver::Fields
     to_host(seen, archive);
     archive(has_mode);
     to_host(mode, archive);
-    archive(mode_largest)(mode_length)(plans)(still_moved)(viscous_elapsed);
+    archive(mode_largest)(mode_length)(plans)(still_moved);
   }
 };
 
@@ -65,7 +64,6 @@ void CudaSolver::save_fields(std::unique_ptr<Fields>& to) const
   }
   kept.plans = plans_;
   kept.still_moved = still_moved_;
-  kept.viscous_elapsed = viscous_elapsed_;
 }
 
 void CudaSolver::restore_fields(const Fields& from)
@@ -90,7 +88,6 @@ void CudaSolver::restore_fields(const Fields& from)
   }
   plans_ = kept.plans;
   still_moved_ = kept.still_moved;
-  viscous_elapsed_ = kept.viscous_elapsed;
   synchronise();
   if (plans_ > 0)
     require(cudaMemcpy(slots_[(plans_ - 1) % plan_slots].seen.data(), kept.seen.data(), sizeof(std::uint32_t),

@@ -94,7 +94,6 @@ void CudaSolver::rest()
     require(cudaMemset(component.data(), 0, component.bytes()), "clearing velocities");
   device_.reset_contacts();
   device_.viscosity().reset();
-  viscous_elapsed_ = 0;
   mode_.reset();
   require(cudaDeviceSynchronize(), "coming to rest");
 }
@@ -107,10 +106,7 @@ void CudaSolver::effect_switched(Effect effect)
   if (loads_)
     loads_->run(effects());
   if (effect == Effect::viscosity)
-  {
     device_.viscosity().reset();
-    viscous_elapsed_ = 0;
-  }
   if (effect == Effect::sliding || effect == Effect::friction)
     device_.reset_contacts();
   // what the plans under way saw is of no use any more

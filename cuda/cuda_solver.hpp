@@ -65,7 +65,6 @@ private:
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(StepArguments& g, int begin, int end);
-  std::vector<double> renewals(const StepPlan& plan);
   void forces(float4* at, Vectors& out);
   void queue_forces(float4* at, const float* activation, float4* out);
   void download(const DeviceArray<float4>& field, Vectors& out) const;
@@ -99,7 +98,6 @@ private:
   std::unique_ptr<DeviceMonitor> monitor_;   // made when it is asked for
   std::unique_ptr<NodalLoads> loads_;        // on the host, where somebody asks for them
   std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
-  double viscous_elapsed_ = 0;               // since viscous stresses were renewed [s]
 };
 
 }  // namespace cuda

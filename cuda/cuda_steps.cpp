@@ -105,21 +105,6 @@ void CudaSolver::do_steps(StepArguments& g, int begin, int end)
   }
 }
 
-// seconds by which viscous stresses relax after each step: after the last, and when the interval is over
-std::vector<double> CudaSolver::renewals(const StepPlan& plan)
-{
-  std::vector<double> elapsed(plan.steps, 0);
-  for (int step = 0; step < plan.steps && !device_.viscosity().idle(); ++step)
-  {
-    viscous_elapsed_ += plan.dt;
-    if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
-      continue;
-    elapsed[step] = settling_ ? 1e9 : viscous_elapsed_;
-    viscous_elapsed_ = 0;
-  }
-  return elapsed;
-}
-
 // long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
 // enough. Contacts that are found ahead want plans just as long as it takes to find them.
 int CudaSolver::steps_a_plan() const
@@ -134,10 +119,11 @@ double CudaSolver::run(const StepPlan& plan)
   g.time = plan.time;
   g.steps = plan.steps;
   g.look_always = plan.closely;
-  const std::vector<double> elapsed = renewals(plan);
+  const bool relaxes = !device_.viscosity().idle();
+  const std::vector<double> elapsed = relaxes ? relaxations(plan) : std::vector<double>(plan.steps, 0);
   // patches relax their viscous stresses themselves, where nobody asks for their work
   std::vector<float> relaxation;
-  if (launch_.patches && !account_ && !device_.viscosity().idle())
+  if (launch_.patches && !account_ && relaxes)
   {
     relaxation.push_back(0);
     relaxation.insert(relaxation.end(), elapsed.begin(), elapsed.end() - 1);

@@ -66,10 +66,7 @@ void CpuSolver<Real>::effect_switched(Effect effect)
     rows_.renew_bounds(discretisation_);
   }
   if (effect == Effect::viscosity)
-  {
     std::fill(relaxed_.begin(), relaxed_.end(), 0.0f);
-    viscous_elapsed_ = 0;
-  }
   if (effect == Effect::sliding || effect == Effect::friction)
     restricted_.run(effects());
   loads_.run(effects());
@@ -125,7 +122,6 @@ void CpuSolver<Real>::rest()
     for (auto& component : rounding_)
       component.assign(model_->nodes.size(), 0);
   relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
-  viscous_elapsed_ = 0;
   restricted_.reset();
 }
 
@@ -135,13 +131,12 @@ struct CpuSolver<Real>::Kept : SteppingSolver::Fields
   Components u, v, rounding;
   typename RestrictedNodes<Real>::Contacts contacts;
   std::vector<float> relaxed;
-  double viscous_elapsed = 0;
   typename EnergyAccount<Real>::Book book;
   std::vector<FibreMemory> fibre_memory;
 
   void archive(ByteArchive& archive) override
   {
-    archive(u)(v)(rounding)(relaxed)(viscous_elapsed)(fibre_memory);
+    archive(u)(v)(rounding)(relaxed)(fibre_memory);
     contacts.archive(archive);
     book.archive(archive);
   }
@@ -158,7 +153,6 @@ void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
   kept.rounding = rounding_;
   kept.contacts = restricted_.contacts();
   kept.relaxed = relaxed_;
-  kept.viscous_elapsed = viscous_elapsed_;
   kept.fibre_memory = fibre_memory_;
   if (account_)
     kept.book = account_->book();
@@ -173,7 +167,6 @@ void CpuSolver<Real>::restore_fields(const Fields& from)
   rounding_ = kept.rounding;
   restricted_.restore(kept.contacts);
   relaxed_ = kept.relaxed;
-  viscous_elapsed_ = kept.viscous_elapsed;
   fibre_memory_ = kept.fibre_memory;
   if (account_)
     account_->restore(kept.book);

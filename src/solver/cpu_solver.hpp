@@ -69,7 +69,6 @@ private:
   Components u_, next_, v_, rounding_;
   std::vector<FibreMemory> fibre_memory_;
   std::unique_ptr<EnergyAccount<Real>> account_;
-  double viscous_elapsed_ = 0;
   std::int32_t buffer_stride_ = 0;
   CpuKernelChoice choice_;
   CpuKernel<Real> kernel_;

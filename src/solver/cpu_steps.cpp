@@ -169,16 +169,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
       plan.activation(step, activation.data() + step * muscles);
     drives.push_back(plan.drive(step));
   }
-  // steps after which viscous stresses are renewed: the last, and when the interval is over
-  std::vector<double> elapsed(plan.steps, 0);
-  for (int step = 0; step < plan.steps && relaxes(); ++step)
-  {
-    viscous_elapsed_ += plan.dt;
-    if (step + 1 < plan.steps && viscous_elapsed_ < viscous_interval())
-      continue;
-    elapsed[step] = settling_ ? 1e9 : viscous_elapsed_;
-    viscous_elapsed_ = 0;
-  }
+  const std::vector<double> elapsed = relaxes() ? relaxations(plan) : std::vector<double>(plan.steps, 0);
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);

@@ -45,10 +45,7 @@ void ReferenceSolver::effect_switched(Effect effect)
 {
   mix_voxels();
   if (effect == Effect::viscosity)
-  {
     std::fill(relaxed_.begin(), relaxed_.end(), std::array<physics::Symmetric3<double>, 2>{});
-    viscous_elapsed_ = 0;
-  }
   if (effect == Effect::sliding || effect == Effect::friction)
     restricted_.run(effects());
   loads_.run(effects());
@@ -76,7 +73,6 @@ void ReferenceSolver::rest()
     for (auto& component : *field)
       component.assign(model_->nodes.size(), 0);
   relaxed_.assign(discretisation_.viscous_terms > 0 ? model_->voxels.size() : 0, {});
-  viscous_elapsed_ = 0;
   restricted_.reset();
 }
 
@@ -85,13 +81,12 @@ struct ReferenceSolver::Kept : Fields
   Components u, v;
   RestrictedNodes<double>::Contacts contacts;
   std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed;
-  double viscous_elapsed = 0;
   EnergyAccount<double>::Book book;
   std::vector<std::array<double, 2>> fibre_memory;
 
   void archive(ByteArchive& archive) override
   {
-    archive(u)(v)(relaxed)(viscous_elapsed)(fibre_memory);
+    archive(u)(v)(relaxed)(fibre_memory);
     contacts.archive(archive);
     book.archive(archive);
   }
@@ -106,7 +101,6 @@ void ReferenceSolver::save_fields(std::unique_ptr<Fields>& to) const
   kept.v = v_;
   kept.contacts = restricted_.contacts();
   kept.relaxed = relaxed_;
-  kept.viscous_elapsed = viscous_elapsed_;
   kept.fibre_memory = fibre_memory_;
   if (account_)
     kept.book = account_->book();
@@ -119,7 +113,6 @@ void ReferenceSolver::restore_fields(const Fields& from)
   v_ = kept.v;
   restricted_.restore(kept.contacts);
   relaxed_ = kept.relaxed;
-  viscous_elapsed_ = kept.viscous_elapsed;
   fibre_memory_ = kept.fibre_memory;
   if (account_)
     account_->restore(kept.book);
@@ -197,6 +190,7 @@ double ReferenceSolver::run(const StepPlan& plan)
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
   const auto count = static_cast<std::int32_t>(model_->nodes.size());
+  const std::vector<double> elapsed = relaxations(plan);
   double worst = 0;
   for (int step = 0; step < plan.steps; ++step)
   {
@@ -233,12 +227,8 @@ double ReferenceSolver::run(const StepPlan& plan)
       for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
         account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, kick);
     }
-    viscous_elapsed_ += plan.dt;
-    if (relaxes() && (step + 1 == plan.steps || viscous_elapsed_ >= viscous_interval()))
-    {
-      relax(settling_ ? 1e9 : viscous_elapsed_, before);
-      viscous_elapsed_ = 0;
-    }
+    if (relaxes() && elapsed[step] > 0)
+      relax(elapsed[step], before);
   }
   return worst;
 }

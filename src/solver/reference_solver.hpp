@@ -66,7 +66,6 @@ private:
   RestrictedNodes<double> restricted_;
   NodalLoads loads_;
   std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed_;  // viscous stresses [Pa], one a voxel
-  double viscous_elapsed_ = 0;
   std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // fibres note their work
   std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last

@@ -134,4 +134,19 @@ double farthest_way(const RigidTransform& from, const RigidTransform& to, const 
   return farthest;
 }
 
+double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner)
+{
+  // short enough for chords to be arcs, to 1 % in half a turn
+  constexpr int pieces = 8;
+  double fastest = 0;
+  RigidTransform before = from;
+  for (int piece = 1; piece <= pieces; ++piece)
+  {
+    const RigidTransform now = interpolate(from, to, static_cast<double>(piece) / pieces);
+    fastest = std::max(fastest, pieces * farthest_way(before, now, corner));
+    before = now;
+  }
+  return fastest;
+}
+
 }  // namespace frontalis

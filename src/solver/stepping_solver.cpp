@@ -18,14 +18,15 @@ namespace frontalis
 namespace
 {
 
+constexpr int close_steps = 8;              // between looks that follow closely
+constexpr double alert_share = 0.55;        // of the critical time step
+constexpr double much_stiffer = 4;          // than at rest, of the frequency squared
 constexpr double stiffening_allowed = 1.1;  // of the frequency squared from look to look
-constexpr int wary_looks = 8;
-constexpr int close_steps = 8;  // between looks that follow closely
-constexpr int looks_after_a_switch = 6;
-constexpr double much_stiffer = 4;         // than at rest, of the frequency squared
-constexpr double alert_share = 0.55;       // of the critical time step
+constexpr int steps_after_stiffening = 128;
 constexpr float activation_a_plan = 0.3F;  // that calls for close looks
-constexpr double bone_way_a_step = 0.1;    // of the shortest edge of a voxel
+constexpr int steps_after_a_switch = 48;
+constexpr double jerk_felt = 0.005;  // change of a bone's way a step, in edges of a voxel
+constexpr int steps_after_a_jerk = 1000;
 
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
@@ -47,24 +48,6 @@ Controls interpolate(const Controls& from, const Controls& to, double fraction)
 Controls rest_controls(const Model& model)
 {
   return { std::vector<float>(model.muscles.size(), 0), std::vector<RigidTransform>(model.bones.size()) };
-}
-
-void StepPlan::activation(int step, float* out) const
-{
-  const auto f = static_cast<float>(fraction(step));
-  for (std::size_t m = 0; m < begin.activation.size(); ++m)
-    out[m] = begin.activation[m] + f * (end.activation[m] - begin.activation[m]);
-}
-
-Drive StepPlan::drive(int step) const
-{
-  Drive drive{ time + (step + 1) * dt, dt, {}, {} };
-  for (std::size_t b = 0; b < begin.bone.size(); ++b)
-  {
-    drive.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
-    drive.bone_before.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step - 1)));
-  }
-  return drive;
 }
 
 SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
@@ -135,7 +118,7 @@ void SteppingSolver::displacements_were_set()
   latest_step_ = 0;
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
-  wary_ = wary_looks;
+  wary_ = steps_after_stiffening;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
   velocities_were_set();
@@ -203,19 +186,6 @@ void SteppingSolver::expect_frequency(double squared)
   frequency_squared_ = std::max({ squared, 0.95 * frequency_squared_, discretisation_.frequency_squared_max });
 }
 
-// longest step in which no bone moves by more than a share of a voxel: what hangs on one that is faster would be turned
-// inside out before the time step follows it
-double SteppingSolver::steady_step(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to,
-                                   double seconds) const
-{
-  const auto& h = model_->spacing;
-  double farthest = 0;
-  for (std::size_t b = 0; b < from.size(); ++b)
-    farthest = std::max(farthest, farthest_way(from[b], to[b], far_corner(*model_)));
-  return farthest > 0 ? bone_way_a_step * std::min({ h[0], h[1], h[2] }) * seconds / farthest
-                      : std::numeric_limits<double>::infinity();
-}
-
 void SteppingSolver::advance(double seconds, const Controls& target)
 {
   check(seconds, target);
@@ -223,7 +193,11 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   const double end = time_ + seconds;
   const Controls from = controls_;
   const double begin = time_;
-  const double steady = steady_step(from.bone, target.bone, seconds);
+  const double steady = steady_step(target.bone, seconds);
+  if (jerk_of_bones(target.bone, seconds) * safe_time_step() > jerk_felt)
+    wary_ = std::max(wary_, steps_after_a_jerk);
+  bone_before_ = from.bone;
+  bone_seconds_ = seconds;
   while (time_ < end)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
@@ -249,7 +223,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       if (std::abs(plan.end.activation[m] - plan.begin.activation[m]) > activation_a_plan)
       {
         plan.closely = true;
-        wary_ = std::max(wary_, looks_after_a_switch);
+        wary_ = std::max(wary_, steps_after_a_switch);
       }
     plan.alarm = stiffening_allowed * frequency_squared_;
     const double squared = run(plan);
@@ -262,7 +236,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       failed_ = true;
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
-    wary_ = squared > plan.alarm ? wary_looks : std::max(0, wary_ - 1);
+    wary_ = squared > plan.alarm ? std::max(steps_after_stiffening, wary_) : std::max(0, wary_ - plan.steps);
     if (!mutation::time_step_of_rest)
       expect_frequency(squared);
   }

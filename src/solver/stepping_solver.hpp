@@ -36,7 +36,7 @@ struct Course
   double time_ = 0;
   double latest_step_ = 0;        // [s]
   double frequency_squared_ = 0;  // of the stiffest voxel, as it is believed
-  int wary_ = 0;                  // looks that follow closely, since it grew much from one to the next
+  int wary_ = 0;                  // steps to be taken with care yet
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
   double assembled_at_frequency_ = 0;
@@ -45,6 +45,8 @@ struct Course
   std::vector<std::array<double, 3>> assembled_mode_;
   bool failed_ = false;
   Controls controls_;
+  std::vector<RigidTransform> bone_before_;  // an advance ago
+  double bone_seconds_ = 0;                  // which took so long; 0: there was none
   std::vector<float> activation_;
   EnergyLedger ledger_;
   double initial_ = 0;
@@ -53,7 +55,7 @@ struct Course
   {
     archive(time_)(latest_step_)(frequency_squared_)(wary_)(assembled_share_)(assembled_at_step_);
     archive(assembled_at_frequency_)(assembled_at_activation_)(assembled_good_for_)(assembled_mode_);
-    archive(failed_)(controls_.activation)(controls_.bone)(activation_)(ledger_)(initial_);
+    archive(failed_)(controls_.activation)(controls_.bone)(bone_before_)(bone_seconds_)(activation_)(ledger_)(initial_);
   }
 };
 
@@ -141,6 +143,9 @@ protected:
   double gain(double dt) const;
   /// Most simulated seconds between two renewals of the viscous stresses.
   double viscous_interval() const { return 0.005 * discretisation_.viscous_time_min; }
+  /// By how much viscous stresses relax after each step [s], 0 in most: after the last, and when they have not for that
+  /// long; while it settles, for good.
+  std::vector<double> relaxations(const StepPlan& plan) const;
 
   std::shared_ptr<const Model> model_;
   Discretisation discretisation_;
@@ -157,8 +162,8 @@ private:
   double careful_time_step() const;
   double critical_frequency_squared() const;
   void set_gravity();
-  double steady_step(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to,
-                     double seconds) const;
+  double steady_step(const std::vector<RigidTransform>& to, double seconds) const;
+  double jerk_of_bones(const std::vector<RigidTransform>& to, double seconds) const;
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
   void renew_assembled_bound(const std::vector<float>& target);
   void expect_frequency(double squared);

@@ -1,4 +1,5 @@
-// random small scenes must stay finite, explain their energy or be stopped with a report, and repeat bit by bit
+// small scenes, random ones and those of them that once failed, must stay finite, explain their energy or be stopped
+// with a report, and repeat bit by bit
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/guard.hpp"
@@ -14,8 +15,212 @@
 
 #if __has_include(<rapidcheck.h>)
 #include <rapidcheck.h>
+#endif
 
 using namespace frontalis;
+
+namespace
+{
+
+struct SmallScene
+{
+  std::array<std::int32_t, 3> size;
+  std::array<double, 3> spacing;  // [m]
+  std::vector<Material> materials;
+  int holes, seed;  // tenths of the voxels that are missing, and which
+  double damping;
+  std::array<double, 3> gravity;
+  HourglassControl hourglass;
+  Integration integration;
+  Precision precision;
+  TimeStepEstimate estimate;
+  std::vector<Muscle> muscles;  // none or one
+  bool bone, floor;
+  std::vector<float> activation;
+  double turn, x, y;  // of the bone when it is away [rad], shortest edges
+};
+
+Model model_of(const SmallScene& scene)
+{
+  VoxelBox box;
+  box.size = scene.size;
+  box.spacing = scene.spacing;
+  box.materials = scene.materials;
+  const auto drawn = [&](const std::array<std::int32_t, 3>& v, int of)
+  { return (v[0] * 73 + v[1] * 179 + v[2] * 283 + scene.seed * (v[0] + 2 * v[1] + 5)) % of; };
+  box.fill = [&](const std::array<std::int32_t, 3>& v) -> double
+  {
+    const bool first = v[0] == 0 && v[1] == 0 && v[2] == 0;
+    return !first && drawn(v, 10) < scene.holes ? 0.0 : drawn(v, 7) == 1 ? 0.4 : 1.0;
+  };
+  Model model = voxel_model(box);
+  model.mixture_begin.assign(1, 0);
+  model.mixture_material.clear();
+  model.mixture_proportion.clear();
+  const int materials = static_cast<int>(scene.materials.size());
+  for (const auto& v : model.voxels)
+  {
+    const int a = drawn(v, materials), b = drawn(v, 11) % materials;
+    for (const auto& [m, share] : { std::pair(a, 0.7F), std::pair(b, 0.3F) })
+    {
+      model.mixture_material.push_back(static_cast<std::int16_t>(m));
+      model.mixture_proportion.push_back(share);
+    }
+    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
+  }
+  model.damping = scene.damping;
+  model.gravity = scene.gravity;
+  model.hourglass = scene.hourglass;
+  model.integration = scene.integration;
+  model.precision = scene.precision;
+  model.time_step_estimate = scene.estimate;
+  for (const Muscle& muscle : scene.muscles)
+  {
+    const float s = std::sqrt(0.5F);
+    add_muscle(model, muscle,
+               [&](std::size_t e) -> std::array<float, 3>
+               {
+                 if (model.voxels[e][1] % 2 == 0)
+                   return { { 1, 0, 0 } };
+                 return { { 0, s, s } };
+               });
+  }
+  if (scene.bone)
+  {
+    model.bones = { "bone" };
+    for (const auto node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
+      model.rigid.push_back({ node, 0 });
+  }
+  if (scene.floor)
+  {
+    const double wide = 1, low = -0.2e-3;
+    model.constraint_surfaces.push_back(
+        { "floor",
+          { { { { -wide, -wide, low } }, { { wide, -wide, low } }, { { wide, wide, low } }, { { -wide, wide, low } } },
+            { { { 0, 1, 2 } }, { { 0, 2, 3 } } } } });
+    for (const auto node : nodes_where(model, [](const auto& p) { return p[0] > 0 && p[2] == 0; }))
+      model.sliding.push_back({ node, 0, -low });
+  }
+  return model;
+}
+
+struct Outcome
+{
+  std::vector<std::array<double, 3>> displacements;
+  EnergyLedger ledger;
+  Monitor monitor;
+  bool stopped = false;  ///< by the guard, with a report
+};
+
+// 500 steps: muscles are switched on, off and half on, a bone goes away and comes back
+Outcome play(const SmallScene& scene, const std::shared_ptr<const Model>& model, int threads)
+{
+  SolverSettings settings{ Backend::cpu, threads, 0 };
+  settings.ledger = true;
+  const auto solver = make_solver(model, settings);
+  Guard guard(*solver, model, { 100 });
+  const double h = *std::min_element(scene.spacing.begin(), scene.spacing.end());
+  const RigidTransform away = rigid_motion({ { 0, 0, scene.turn } }, { { h * scene.x, h * scene.y, 0 } });
+  Outcome outcome;
+  for (std::size_t part = 0; part < scene.activation.size(); ++part)
+  {
+    Controls target = solver->controls();
+    std::fill(target.activation.begin(), target.activation.end(), scene.activation[part]);
+    std::fill(target.bone.begin(), target.bone.end(), part % 2 == 0 ? away : RigidTransform());
+    try
+    {
+      guard.advance(500.0 / static_cast<double>(scene.activation.size()) * solver->time_step(), target);
+    }
+    catch (const Unstable&)
+    {
+      outcome.stopped = true;
+      break;
+    }
+    outcome.ledger = solver->ledger();
+  }
+  solver->displacements(outcome.displacements);
+  outcome.monitor = solver->monitor();
+  return outcome;
+}
+
+// what one of them did wrong; empty: nothing
+std::string fault_of(const SmallScene& scene, bool& stopped)
+{
+  const auto model = std::make_shared<const Model>(model_of(scene));
+  const Outcome first = play(scene, model, 1);
+  stopped = first.stopped;
+  if (!first.monitor.finite)
+    return "not finite";
+  const double off = std::abs(first.ledger.imbalance());
+  if (!stopped && !(off <= 0.1 * first.ledger.largest + 1e-12))
+    return std::to_string(100 * off / first.ledger.largest) + " % of its energy without a cause";
+  for (const int threads : { 1, 2 })
+    if (play(scene, model, threads).displacements != first.displacements)
+      return "does not repeat with " + std::to_string(threads) + " threads";
+  return {};
+}
+
+void expect_sound(const SmallScene& scene)
+{
+  bool stopped = false;
+  EXPECT_EQ(fault_of(scene, stopped), "");
+  EXPECT_FALSE(stopped);
+}
+
+}  // namespace
+
+// Jerked by its bone, so fast that it is tossed about by what the time step can just follow: where the step was let
+// grow and shrink with every swing, each change left energy behind that nothing explained, 13 % here.
+TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
+{
+  SmallScene scene{};
+  scene.size = { { 1, 5, 4 } };
+  scene.spacing = { { 0.6e-3, 1.3e-3, 1.3e-3 } };
+  scene.materials = { neo_hookean(10e3 * std::pow(10.0, 2.1), 0.36) };
+  scene.materials[0].viscous_share[0] = 0.2;
+  scene.materials[0].viscous_time[0] = 0.031;
+  scene.holes = 1;
+  scene.seed = 346;
+  scene.damping = 60;
+  scene.gravity = { { 0, -17, -12 } };
+  scene.integration = Integration::selective_reduced;
+  scene.precision = Precision::compensated;
+  scene.muscles = { { "muscle", 4e3, false, true } };
+  scene.bone = scene.floor = true;
+  scene.activation = { 0.5F, 0.25F, 0.75F, 0.25F, 0.25F };
+  scene.turn = -0.3;
+  scene.x = -0.4;
+  scene.y = -0.2;
+  expect_sound(scene);
+}
+
+// The same without damping and with an assembled time step: 16 %.
+TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
+{
+  SmallScene scene{};
+  scene.size = { { 1, 5, 3 } };
+  scene.spacing = { { 0.5e-3, 1.3e-3, 1.1e-3 } };
+  scene.materials = { neo_hookean(10e3 * std::pow(10.0, 2.6), 0.34) };
+  Material& material = scene.materials[0];
+  const double shear = material.parameters[0];
+  material.law = Law::ogden;
+  material.parameters = { { 0.5 * shear, material.parameters[1], 2, -0.25 * shear, -4 } };
+  material.viscous_share[0] = 0.4;
+  material.viscous_time[0] = 0.017;
+  scene.holes = 1;
+  scene.seed = 562;
+  scene.gravity = { { -7, 5, 8 } };
+  scene.precision = Precision::double_precision;
+  scene.estimate = TimeStepEstimate::assembled;
+  scene.muscles = { { "muscle", 25e3, false, false } };
+  scene.bone = scene.floor = true;
+  scene.activation = { 0, 0.75F, 0.75F, 0.75F, 0.75F };
+  scene.turn = -0.3;
+  scene.y = -0.1;
+  expect_sound(scene);
+}
+
+#if __has_include(<rapidcheck.h>)
 
 namespace
 {
@@ -48,111 +253,35 @@ Material material()
   return result;
 }
 
-Model scene()
+SmallScene draw()
 {
-  VoxelBox box;
-  for (auto& n : box.size)
+  SmallScene scene{};
+  for (auto& n : scene.size)
     n = *rc::gen::inRange(1, 7);
-  box.spacing = { { real(5, 20, 1e4), real(5, 20, 1e4), real(5, 20, 1e4) } };
+  scene.spacing = { { real(5, 20, 1e4), real(5, 20, 1e4), real(5, 20, 1e4) } };
   const int materials = *rc::gen::inRange(1, 4);
   for (int m = 0; m < materials; ++m)
-    box.materials.push_back(material());
-  const int holes = *rc::gen::inRange(0, 4), seed = *rc::gen::inRange(0, 1000);
-  const auto drawn = [seed](const std::array<std::int32_t, 3>& v, int of)
-  { return (v[0] * 73 + v[1] * 179 + v[2] * 283 + seed * (v[0] + 2 * v[1] + 5)) % of; };
-  box.fill = [=](const std::array<std::int32_t, 3>& v) -> double
-  {
-    const bool first = v[0] == 0 && v[1] == 0 && v[2] == 0;
-    return !first && drawn(v, 10) < holes ? 0.0 : drawn(v, 7) == 1 ? 0.4 : 1.0;
-  };
-  Model model = voxel_model(box);
-  model.mixture_begin.assign(1, 0);
-  model.mixture_material.clear();
-  model.mixture_proportion.clear();
-  for (const auto& v : model.voxels)
-  {
-    const int a = drawn(v, materials), b = drawn(v, 11) % materials;
-    for (const auto& [m, share] : { std::pair(a, 0.7F), std::pair(b, 0.3F) })
-    {
-      model.mixture_material.push_back(static_cast<std::int16_t>(m));
-      model.mixture_proportion.push_back(share);
-    }
-    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
-  }
-  model.damping = real(0, 5, 0.05);
-  for (double& g : model.gravity)
+    scene.materials.push_back(material());
+  scene.holes = *rc::gen::inRange(0, 4);
+  scene.seed = *rc::gen::inRange(0, 1000);
+  scene.damping = real(0, 5, 0.05);
+  for (double& g : scene.gravity)
     g = real(-20, 20, 1);
-  model.hourglass = static_cast<HourglassControl>(*rc::gen::inRange(0, 2));
-  model.integration = static_cast<Integration>(*rc::gen::inRange(0, 2));
-  model.precision = static_cast<Precision>(*rc::gen::inRange(0, 3));
-  model.time_step_estimate = static_cast<TimeStepEstimate>(*rc::gen::inRange(0, 2));
+  scene.hourglass = static_cast<HourglassControl>(*rc::gen::inRange(0, 2));
+  scene.integration = static_cast<Integration>(*rc::gen::inRange(0, 2));
+  scene.precision = static_cast<Precision>(*rc::gen::inRange(0, 3));
+  scene.estimate = static_cast<TimeStepEstimate>(*rc::gen::inRange(0, 2));
   if (*rc::gen::inRange(0, 3) > 0)
-  {
-    const float s = std::sqrt(0.5F);
-    const Muscle muscle{ "muscle", 1e3 * real(1, 30, 1), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>() };
-    add_muscle(model, muscle,
-               [&](std::size_t e) -> std::array<float, 3>
-               {
-                 if (model.voxels[e][1] % 2 == 0)
-                   return { { 1, 0, 0 } };
-                 return { { 0, s, s } };
-               });
-  }
-  if (*rc::gen::inRange(0, 3) > 0)
-  {
-    model.bones = { "bone" };
-    for (const auto node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
-      model.rigid.push_back({ node, 0 });
-  }
-  if (*rc::gen::inRange(0, 3) == 0)
-  {
-    const double wide = 1, low = -0.2e-3;
-    model.constraint_surfaces.push_back(
-        { "floor",
-          { { { { -wide, -wide, low } }, { { wide, -wide, low } }, { { wide, wide, low } }, { { -wide, wide, low } } },
-            { { { 0, 1, 2 } }, { { 0, 2, 3 } } } } });
-    for (const auto node : nodes_where(model, [](const auto& p) { return p[0] > 0 && p[2] == 0; }))
-      model.sliding.push_back({ node, 0, -low });
-  }
-  return model;
-}
-
-struct Outcome
-{
-  std::vector<std::array<double, 3>> displacements;
-  EnergyLedger ledger;
-  Monitor monitor;
-  bool stopped = false;  ///< by the guard, with a report
-};
-
-// 500 steps: muscles are switched on, off and half on, a bone goes away and comes back
-Outcome play(const std::shared_ptr<const Model>& model, const std::vector<float>& activation,
-             const RigidTransform& away, int threads)
-{
-  SolverSettings settings{ Backend::cpu, threads, 0 };
-  settings.ledger = true;
-  const auto solver = make_solver(model, settings);
-  Guard guard(*solver, model, { 100 });
-  Outcome outcome;
-  for (std::size_t part = 0; part < activation.size(); ++part)
-  {
-    Controls target = solver->controls();
-    std::fill(target.activation.begin(), target.activation.end(), activation[part]);
-    std::fill(target.bone.begin(), target.bone.end(), part % 2 == 0 ? away : RigidTransform());
-    try
-    {
-      guard.advance(500.0 / static_cast<double>(activation.size()) * solver->time_step(), target);
-    }
-    catch (const Unstable&)
-    {
-      outcome.stopped = true;
-      break;
-    }
-    outcome.ledger = solver->ledger();
-  }
-  solver->displacements(outcome.displacements);
-  outcome.monitor = solver->monitor();
-  return outcome;
+    scene.muscles.push_back(
+        { "muscle", 1e3 * real(1, 30, 1), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>() });
+  scene.bone = *rc::gen::inRange(0, 3) > 0;
+  scene.floor = *rc::gen::inRange(0, 3) == 0;
+  for (int part = 0; part < 5; ++part)
+    scene.activation.push_back(static_cast<float>(real(0, 4, 4)));
+  scene.x = real(-4, 4, 10);
+  scene.y = real(-4, 4, 10);
+  scene.turn = real(-3, 3, 10);
+  return scene;
 }
 
 }  // namespace
@@ -165,25 +294,14 @@ TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
   const bool held = rc::check(
       [&]()
       {
-        const auto model = std::make_shared<const Model>(scene());
-        std::vector<float> activation;
-        for (int part = 0; part < 5; ++part)
-          activation.push_back(static_cast<float>(real(0, 4, 4)));
-        const double h = *std::min_element(model->spacing.begin(), model->spacing.end());
-        const RigidTransform away =
-            rigid_motion({ { 0, 0, real(-3, 3, 10) } }, { { h * real(-4, 4, 10), h * real(-4, 4, 10), 0 } });
-        const Outcome first = play(model, activation, away, 1);
-        RC_ASSERT(first.monitor.finite);
-        RC_CLASSIFY(first.stopped);
+        const SmallScene scene = draw();
+        bool stops = false;
+        const std::string fault = fault_of(scene, stops);
+        RC_CLASSIFY(stops);
         ++scenes;
-        stopped += first.stopped ? 1 : 0;
-        if (!first.stopped)
-        {
-          RC_ASSERT(std::isfinite(first.ledger.imbalance()));
-          RC_ASSERT(std::abs(first.ledger.imbalance()) <= 0.1 * first.ledger.largest + 1e-12);
-        }
-        RC_ASSERT(play(model, activation, away, 1).displacements == first.displacements);
-        RC_ASSERT(play(model, activation, away, 2).displacements == first.displacements);
+        stopped += stops ? 1 : 0;
+        RC_LOG(fault);
+        RC_ASSERT(fault.empty());
       });
   EXPECT_TRUE(held);
   // a guard that stopped them all would hide what the others are to show

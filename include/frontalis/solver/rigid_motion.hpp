@@ -21,4 +21,8 @@ RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::ar
 /// Farthest that a corner of the box between the origin and `corner` [m] gets between two poses, as the crow flies [m].
 double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
+/// The same where the way of interpolate() is gone at an even pace and no corner stops being as fast as the fastest is
+/// on it [m]: no less, and more where it turns.
+double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
+
 }  // namespace frontalis
