@@ -72,8 +72,13 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
     advance(std::min(steps_a_look() * safe_time_step(), seconds - (time_ - begin)), target);
     displacements(u_now);
     const double change = distance(u, u_now), moved = distance(rest, u_now);
-    if (change < clear * moved && ++looks < longest && time_ - begin < seconds)
+    result.seconds = time_ - begin;
+    if (change < clear * moved && ++looks < longest && result.seconds < seconds)
+    {
+      if (go_on && !go_on(result))
+        break;
       continue;
+    }
     looks = 0;
     const double window = time_ - opened;
     opened = time_;
@@ -95,10 +100,9 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
       result.residual = speed * damping_ / lowest / moved;
     else if (change == 0)
       result.residual = 0;
-    const bool under_way = lowest > 0 && (time_ - begin) * std::sqrt(lowest) < 4;
+    const bool under_way = lowest > 0 && result.seconds * std::sqrt(lowest) < 4;
     good = result.residual <= tolerance && !under_way ? good + 1 : 0;
     result.reached = good == 4;
-    result.seconds = time_ - begin;
     if (go_on && !go_on(result))
       break;
   }

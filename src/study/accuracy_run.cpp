@@ -22,7 +22,6 @@ namespace frontalis
 namespace
 {
 
-constexpr int slices_a_phase = 10;
 constexpr int repetitions = 9;
 constexpr double seconds_a_checkpoint = 60;        // at least
 constexpr double share_of_checkpoints = 1 / 40.0;  // of the wall time, at most
@@ -160,12 +159,14 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       const double end = wall_seconds();
       next_checkpoint = end + std::max(seconds_a_checkpoint, (end - begin) / share_of_checkpoints);
     };
+    // where steps are long there are more slices, so that an interruption does not wait for long
+    const std::int64_t slices_a_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
     const double length = history.ramp + history.hold;
     const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
     const auto time_of = [&](std::int64_t slices)
     {
       const auto phase = static_cast<std::size_t>(slices / slices_a_phase);
-      const double share = static_cast<double>(slices % slices_a_phase) / slices_a_phase;
+      const double share = static_cast<double>(slices % slices_a_phase) / static_cast<double>(slices_a_phase);
       return share > 0 ? ends[phase] + (ends[phase + 1] - ends[phase]) * share : ends[phase];
     };
     while (state.slices < 3 * slices_a_phase)
