@@ -54,7 +54,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // what the frequency bound allows for
+  // what the bound of the stiffness allows for
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)
@@ -64,7 +64,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
   {
     discretisation.voxel(e, voxel);
     float& bound = palette[palette_of_voxel_[e]].w;
-    bound = std::max(bound, static_cast<float>(voxel.frequency_squared));
+    bound = std::max(bound, static_cast<float>(voxel.stiffness));
   }
   palette_.upload(palette.data(), palette.size());
 }
@@ -123,6 +123,7 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   { (list.add(effect, what, arrays.bytes()), ...); };
   add(Effect::elasticity, "strips", strips_, slots_);
   add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_makes_, halo_);
+  add(Effect::elasticity, "inverse masses", mobility_);
   add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
   add(Effect::rigid_nodes, "poses", rigid_);

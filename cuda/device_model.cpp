@@ -2,6 +2,7 @@
 
 #include "archive_contacts.hpp"
 #include "device_archive.hpp"
+#include "step_bound.hpp"
 #include "surface_tree.hpp"
 
 #include <algorithm>
@@ -85,6 +86,13 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
                  cut.patches != nullptr)
 {
   palette_of_voxel_ = add_palette(model, discretisation);
+  if (const std::vector<float> of_node = mobility(discretisation); !of_node.empty())
+  {
+    std::vector<float> of_device(nodes(), 0);
+    for (std::size_t n = 0; n < of_node.size(); ++n)
+      of_device[device_node_[n]] = of_node[n];
+    mobility_ = DeviceArray<float>(of_device);
+  }
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
   if (cut.patches)
@@ -106,6 +114,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   static_assert(sizeof(StripSlot) == sizeof(uint2), "a slot is read as two words");
   g.slots = reinterpret_cast<const uint2*>(slots_.data());
   g.strip_count = static_cast<std::uint32_t>(strips_.size());
+  g.mobility = mobility_.data();
   g.palette = palette_.data();
   g.stabilisation = stabilisation_.data();
   g.law_begin = law_begin_.data();
@@ -144,7 +153,6 @@ StepArguments DeviceModel::arguments() const { return constants_; }
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
 {
   const bool stabilised = d.assumed_strain;
-  const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
   std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
   std::vector<std::uint32_t> law_begin(2, 0);
@@ -159,7 +167,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     d.voxel(e, voxel);
     entry.clear();
     for (const double x : { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass,
-                            voxel.frequency_squared })
+                            voxel.stiffness })
       entry.push_back(static_cast<float>(x));
     const auto& form = voxel.stabilisation;
     if (stabilised)
@@ -168,7 +176,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     for (const LawPart& part : voxel.laws)
     {
       for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume,
-                              8 * part.weight / (voxel.density * shortest * shortest), part.stiffness_at_rest })
+                              part.per_tangent, part.stiffness_at_rest })
         entry.push_back(static_cast<float>(x));
       for (const double x : part.parameters)
         entry.push_back(static_cast<float>(x));

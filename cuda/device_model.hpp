@@ -121,6 +121,7 @@ private:
   DeviceArray<Strip> strips_;
   double filled_ = 1;
   DeviceArray<StripSlot> slots_;
+  DeviceArray<float> mobility_;
   DeviceArray<float4> palette_, stabilisation_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;

@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Looks at all voxels of a model in device memory: 36 bytes a voxel, taken when it is made.
+/// Looks at all voxels of a model in device memory: 44 bytes a voxel, taken when it is made.
 class DeviceMonitor
 {
 public:
@@ -22,6 +22,9 @@ private:
   DeviceArray<MonitorVoxel> voxels_;
   DeviceArray<PlaneMonitor> parts_{ monitor_blocks };
   PinnedArray<PlaneMonitor> seen_{ monitor_blocks };
+  DeviceArray<float> stiffness_, node_stiffness_;
+  DeviceArray<StiffestVoxel> stiffest_{ monitor_blocks };
+  PinnedArray<StiffestVoxel> seen_stiffest_{ monitor_blocks };
   MonitorVoxels view_{};
 };
 

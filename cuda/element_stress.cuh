@@ -107,7 +107,7 @@ static __device__ __noinline__ void add_laws(const StepArguments& g, std::uint32
   }
 }
 
-/// What the laws add to the frequency bound squared since rest.
+/// What the laws add to the bound of the stiffness since rest [N/m].
 static __device__ __noinline__ float stiffened(const StepArguments& g, std::uint32_t palette,
                                                const physics::Kinematics<float>& k)
 {
@@ -116,8 +116,7 @@ static __device__ __noinline__ float stiffened(const StepArguments& g, std::uint
   for (std::uint32_t l = __ldg(g.law_begin + palette); l < last; ++l)
   {
     const LawEntry entry = g.laws[l];
-    const float more = law_stiffness(static_cast<Law>(entry.law), entry.parameters, k) - entry.at_rest;
-    sum += entry.inertia * fmaxf(more, 0.0f);
+    sum += law_stiffening(static_cast<Law>(entry.law), entry.parameters, entry.at_rest, entry.per_tangent, k);
   }
   return sum;
 }
@@ -140,22 +139,31 @@ __device__ __forceinline__ physics::Matrix3<float> elastic_stress(const StepArgu
   return P;
 }
 
-/// The largest frequency bound squared so far.
+/// Bits of numbers that are not negative are in their order, and NaN's lie above them all.
+__device__ __forceinline__ std::uint32_t bits_of(float x) { return __float_as_uint(x) & 0x7fffffffu; }
+
+/// Bound of the largest eigenvalue of a voxel's stiffness now [N/m], NaN where motion is not finite.
 template <Effects With>
-__device__ __forceinline__ void look_at(const StepArguments& g, std::uint32_t palette, const float4& entry,
-                                        const physics::Kinematics<float>& k, std::uint32_t& frequency_bits)
+__device__ __forceinline__ float stiffness_now(const StepArguments& g, std::uint32_t palette, const float4& entry,
+                                               const physics::Kinematics<float>& k)
 {
-  const float growth = physics::stiffening(physics::NeoHookean<float>{ entry.x, entry.y }, k, g.stretch_weight);
-  float now = entry.w * fmaxf(growth, 1.0f);
+  const physics::NeoHookean<float> material{ entry.x, entry.y };
+  float now = physics::voxel_stiffness_now(entry.w, material, k, g.stretch_weight);
   if (has<With, Effects::forms> && g.law_begin != nullptr)
     now += stiffened(g, palette, k);
-  // bits of numbers that are not negative are in their order; growth - growth is 0, or NaN, which lies above them all
-  frequency_bits = max(frequency_bits, __float_as_uint(now + (growth - growth)) & 0x7fffffffu);
+  return now;
+}
+
+/// Bits of the highest frequency squared that a node allows. stiffness: sum of its voxels'.
+__device__ __forceinline__ std::uint32_t frequency_bits_of(const StepArguments& g, std::uint32_t node,
+                                                           float inverse_mass, float stiffness)
+{
+  return bits_of(stiffness * (g.mobility == nullptr ? inverse_mass : __ldg(g.mobility + node)));
 }
 
 /// Isochoric stress at eight points: modes to the forces on them.
 static __device__ __noinline__ void gauss_points(const StepArguments& g, std::uint32_t palette, const float4& entry,
-                                                 float (&mode)[3][8], bool look, std::uint32_t& frequency_bits)
+                                                 float (&mode)[3][8], bool look, float& stiffness)
 {
   float force[3][8] = {};
   // unrolled, so that the weights are constants
@@ -168,7 +176,8 @@ static __device__ __noinline__ void gauss_points(const StepArguments& g, std::ui
     const physics::NeoHookean<float> material{ entry.x, 0.0f };
     physics::add_gauss_forces(point, elastic_stress<Effects::forms>(g, palette, material, k), g.scale, force);
     if (look && palette != 0)
-      look_at<Effects::forms>(g, palette, entry, k, frequency_bits);
+      stiffness = __uint_as_float(
+          max(bits_of(stiffness), bits_of(stiffness_now<Effects::forms>(g, palette, entry, k))));
   }
   for (int c = 0; c < 3; ++c)
     for (int m = 0; m < 8; ++m)
@@ -241,13 +250,13 @@ __device__ __forceinline__ void relax_apart(const StepArguments& g, const Elemen
   relax_copy<part<With, Effects::forms>>(g, place.viscous - 1, place.palette, elapsed, copy);
 }
 
-/// `relaxes`: seconds by which viscous stresses relax first. Replaces the
-/// transformed displacements of a voxel by the forces conjugate to them; the one place where the GPU computes stress.
-/// Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
+/// `relaxes`: seconds by which viscous stresses relax first. Replaces the transformed displacements of a voxel by the
+/// forces conjugate to them; the one place where the GPU computes stress. Palette entry 0 has no stiffness, so that
+/// places without a voxel give exact zeros. stiffness: 0 before; the bound now [N/m] where `look` asks for it.
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
                                                const Activations& activation, float relaxes, float (&mode)[3][8],
-                                               bool look, std::uint32_t& frequency_bits)
+                                               bool look, float& stiffness)
 {
   const float4 entry = __ldg(g.palette + place.palette);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], g.scale);
@@ -273,12 +282,12 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     physics::take_relaxed(k, load_relaxed(g, place.viscous - 1, physics::relaxed_tensors(g.viscous_terms) - 1), P);
   }
   if (look && place.palette != 0 && !reduced)
-    look_at<With>(g, place.palette, entry, k, frequency_bits);
+    stiffness = stiffness_now<With>(g, place.palette, entry, k);
   if (has<With, Effects::forms> && g.stabilisation != nullptr)
   {
     const float4 s = __ldg(g.stabilisation + place.palette);
-    const physics::AssumedStrain<float> stiffness{ s.x, s.y, s.z, s.w };
-    physics::hourglass_forces(stiffness, entry.z, g.hourglass_weight, k.F, mode, P);
+    const physics::AssumedStrain<float> form{ s.x, s.y, s.z, s.w };
+    physics::hourglass_forces(form, entry.z, g.hourglass_weight, k.F, mode, P);
   }
   else if (reduced)
   {
@@ -287,7 +296,7 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
         force[c][m] = mode[c][m];
-    gauss_points(g, place.palette, entry, force, look, frequency_bits);
+    gauss_points(g, place.palette, entry, force, look, stiffness);
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
         mode[c][m] = force[c][m];

@@ -69,7 +69,7 @@ template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
                                              const Activations& activation, const RowValues& below_a,
                                              const RowValues& below_b, const RowValues& above_a,
-                                             const RowValues& above_b, bool look, std::uint32_t& frequency_bits,
+                                             const RowValues& above_b, bool look, float& stiffness,
                                              RowForces force[2][2])
 {
   float mode[3][8];
@@ -87,7 +87,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<With>(g, place, activation, 0, mode, look, frequency_bits);
+  element_forces<With>(g, place, activation, 0, mode, look, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -153,6 +153,7 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
   const int left = (lane + 31) & 31;
   RowValues below[nodes];
   RowForces carried[Rows];
+  float carried_stiffness[Rows] = {};
   uint2 here[nodes], above_slot[nodes];
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
@@ -184,6 +185,7 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
     for (int r = 0; r < nodes; ++r)
       further[r] = slot[r * 32];
     RowForces pending_below = no_forces(), pending_above = no_forces();
+    float pending_stiffness = 0;
     RowValues above_a = transform_x(raw_a);
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
@@ -208,11 +210,22 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
       if (r > 0)
         fetch = fetch_node(g, u, here[r].x);
       RowForces force[2][2] = { { no_forces(), no_forces() }, { no_forces(), no_forces() } };
+      float stiffness = 0;
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, frequency_bits, force);
+        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, stiffness, force);
       }
+      // a voxel adds the same to each of its nodes
+      if (look && r > 0)
+      {
+        const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;
+        const float sum = right + __shfl_sync(whole_warp, right, left);
+        if ((here[r].x & StripSlot::updated) != 0)
+          frequency_bits = max(frequency_bits, frequency_bits_of(g, here[r].x & StripSlot::node_mask, fetch.own.w, sum));
+        carried_stiffness[r - 1] = pair;
+      }
+      pending_stiffness = stiffness;
       if (r > 0)
       {
         RowForces sum = carried[r - 1];

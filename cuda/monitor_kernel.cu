@@ -33,11 +33,11 @@ __device__ double elastic_energy(const StepArguments& g, std::uint32_t palette,
   return sum;
 }
 
-__device__ double frequency_squared(const StepArguments& g, std::uint32_t palette, const Kinematics& k)
+__device__ double stiffness_now(const StepArguments& g, std::uint32_t palette, const Kinematics& k)
 {
   const float4 entry = g.palette[palette];
-  const double growth = physics::stiffening(physics::NeoHookean<double>{ entry.x, entry.y }, k, g.stretch_weight);
-  double sum = double(entry.w) * fmax(growth, 1.0) + (growth - growth);
+  const physics::NeoHookean<double> material{ entry.x, entry.y };
+  double sum = physics::voxel_stiffness_now(double(entry.w), material, k, g.stretch_weight);
   for (std::uint32_t l = g.law_begin == nullptr ? 0 : g.law_begin[palette];
        g.law_begin != nullptr && l < g.law_begin[palette + 1]; ++l)
   {
@@ -45,8 +45,7 @@ __device__ double frequency_squared(const StepArguments& g, std::uint32_t palett
     double parameters[11];
     for (int p = 0; p < 11; ++p)
       parameters[p] = law.parameters[p];
-    sum +=
-        double(law.inertia) * fmax(law_stiffness(static_cast<Law>(law.law), parameters, k) - double(law.at_rest), 0.0);
+    sum += law_stiffening(static_cast<Law>(law.law), parameters, double(law.at_rest), double(law.per_tangent), k);
   }
   return sum;
 }
@@ -85,12 +84,13 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
   const Kinematics k = physics::kinematics(mode[0], mode[1], mode[2], voxels.scale);
   const float4 entry = g.palette[voxel.palette];
   const auto name = static_cast<std::int32_t>(index);
-  PlaneMonitor own{ 0, 0, 0, k.J, 0, 0, name, name };
+  PlaneMonitor own{ 0, 0, 0, k.J, 0, name };
+  double stiffness = 0;
   if (!g.selective_reduced)
   {
     own.internal = elastic_energy(g, voxel.palette, { entry.x, entry.y }, k);
     own.hourglass = hourglass_energy(g, voxel.palette, k, mode);
-    own.frequency_squared = frequency_squared(g, voxel.palette, k);
+    stiffness = stiffness_now(g, voxel.palette, k);
   }
   else
   {
@@ -102,11 +102,12 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
       const Kinematics there = physics::kinematics(moved[0], moved[1], moved[2], voxels.scale);
       own.internal += 0.125 * elastic_energy(g, voxel.palette, { entry.x, 0 }, there);
       own.worst_jacobian = fmin(own.worst_jacobian, there.J);
-      const double squared = frequency_squared(g, voxel.palette, there);
-      own.frequency_squared = squared <= own.frequency_squared ? own.frequency_squared : squared;
+      const double at_point = stiffness_now(g, voxel.palette, there);
+      stiffness = at_point <= stiffness || stiffness != stiffness ? stiffness : at_point;
     }
   }
   own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
+  voxels.stiffness[index] = static_cast<float>(stiffness);
   return own;
 }
 
@@ -136,12 +137,53 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
+// a node is this corner of one voxel at most, so that nothing is added in a racing order
+__global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
+{
+  for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)
+    voxels.node_stiffness[voxels.voxels[e].node[corner]] += voxels.stiffness[e];
+}
+
+// a voxel as stiff as the stiffest of its nodes; of those at one node the stiffest
+__global__ void __launch_bounds__(block)
+    find_stiffest(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels,
+                  const float4* u, StiffestVoxel* parts)
+{
+  __shared__ StiffestVoxel found[block];
+  StiffestVoxel most;
+  for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)
+  {
+    StiffestVoxel own{ 0, voxels.stiffness[e], static_cast<std::int32_t>(e) };
+    for (const std::uint32_t n : voxels.voxels[e].node)
+    {
+      const float squared = voxels.node_stiffness[n] * (g.mobility == nullptr ? u[n].w : g.mobility[n]);
+      own.frequency_squared =
+          squared <= own.frequency_squared || own.frequency_squared != own.frequency_squared ? own.frequency_squared
+                                                                                             : squared;
+    }
+    most.add(own);
+  }
+  found[threadIdx.x] = most;
+  for (int half = block / 2; half > 0; half /= 2)
+  {
+    __syncthreads();
+    if (threadIdx.x < half)
+      found[threadIdx.x].add(found[threadIdx.x + half]);
+  }
+  if (threadIdx.x == 0)
+    parts[blockIdx.x] = found[0];
+}
+
 }  // namespace cuda
 
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
-                           PlaneMonitor* parts, cudaStream_t stream)
+                           PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream)
 {
   cuda::monitor<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, parts);
+  cudaMemsetAsync(voxels.node_stiffness, 0, voxels.nodes * sizeof(float), stream);
+  for (int corner = 0; corner < 8; ++corner)
+    cuda::add_to_corners<<<monitor_blocks, cuda::block, 0, stream>>>(voxels, corner);
+  cuda::find_stiffest<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, stiffest);
   return cudaGetLastError();
 }
 

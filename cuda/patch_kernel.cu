@@ -48,7 +48,7 @@ struct PatchMemory
 {
   float4* place;        // halo, then own nodes: displacement and, of own nodes, inverse mass
   float* v[3];          // of own nodes
-  float* force;         // [corner][component][voxel]; the last column is no voxel's and stays 0
+  float* force;         // [corner][component][voxel], then stiffness; the last column is no voxel's and stays 0
   std::uint32_t width;  // of a row of it
 };
 
@@ -100,8 +100,7 @@ __device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::u
 template <Effects With>
 __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel,
                                            const Activations& activation, float relaxes, bool look,
-                                           std::uint32_t& frequency_bits, const PatchMemory& memory,
-                                           std::uint32_t column)
+                                           const PatchMemory& memory, std::uint32_t column)
 {
   std::uint32_t corner[8];
   split(voxel.corner, corner);
@@ -117,7 +116,10 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
 #pragma unroll
   for (int c = 0; c < 3; ++c)
     physics::walsh_hadamard(mode[c]);
-  element_forces<With>(g, voxel.place, activation, relaxes, mode, look, frequency_bits);
+  float stiffness = 0;
+  element_forces<With>(g, voxel.place, activation, relaxes, mode, look, stiffness);
+  if (look)
+    memory.force[24 * memory.width + column] = stiffness;
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
@@ -141,6 +143,19 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
     for (int b = 0; b < 8; ++b)
       force[c] += memory.force[(3 * b + c) * memory.width + column[b]];
   }
+}
+
+/// Bits of the highest frequency squared that a node allows; voxels as in sum_forces().
+__device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
+                                                      std::uint32_t node, float inverse_mass)
+{
+  std::uint32_t column[8];
+  split(__ldg(g.node_voxels + node), column);
+  float stiffness = 0;
+#pragma unroll
+  for (int b = 0; b < 8; ++b)
+    stiffness += memory.force[24 * memory.width + column[b]];
+  return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
 /// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
@@ -216,7 +231,7 @@ __global__ void __launch_bounds__(512, 1)
   }
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
-  if (threadIdx.x < 24)
+  if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
   {
@@ -249,14 +264,19 @@ __global__ void __launch_bounds__(512, 1)
         if (v != threadIdx.x)
           voxel = fetch(v);
         if (is_plain(v))
-          put_forces<plain>(g, voxel, activation, 0, look, frequency_bits, memory, v);
+          put_forces<plain>(g, voxel, activation, 0, look, memory, v);
         else
-          put_forces<With>(g, voxel, activation, relaxes, look, frequency_bits, memory, v);
+          put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
       }
       __syncthreads();
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
                               step + 1 == g.step_end, g.u[1 - present], step);
+      if (look)
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+          if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
+            frequency_bits = max(frequency_bits, look_at_node(g, memory, patch.first_node + n,
+                                                              memory.place[launch.most_halo + filled + n].w));
       filled += patch.nodes;
     }
     if (look)

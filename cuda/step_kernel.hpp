@@ -83,7 +83,7 @@ struct LawEntry
 {
   std::int32_t law;
   float weight;          ///< proportion times tissue volume [m3]
-  float inertia;         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
+  float per_tangent;     ///< LawPart::per_tangent [m]
   float at_rest;         ///< tangent stiffness at rest [Pa]
   float parameters[11];  ///< order: Law
 };
@@ -104,10 +104,11 @@ struct StepArguments
   std::uint32_t strip_count;
   float4* u[2];  ///< displacement [m] and inverse mass [1/kg]; u[first] holds the present ones
   float* v[3];   ///< velocity [m/s]
+  const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: none is
   std::int32_t first;
 
-  // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], frequency
-  // bound squared at rest [1/s2]; entry 0 is nothing
+  // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
+  // largest eigenvalue of the stiffness at rest [N/m]; entry 0 is nothing
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
@@ -151,7 +152,7 @@ struct StepArguments
   double time, dt_exact;
   double kick;                               ///< for how long forces change velocities in these steps [s]
   std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
-  std::uint32_t* look;         ///< bits of the largest frequency bound squared at the plan's last step, or all
+  std::uint32_t* look;         ///< bits of the bound of the highest frequency squared at the plan's last step, or all
   bool look_always;            ///< at every step of the plan
   bool forces_only;            ///< internal forces into u[1 - first], nothing updated
   float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
@@ -229,11 +230,12 @@ constexpr int strip_blocks(Effects effects)
   return (effects & (Effects::viscosity | Effects::forms)) == Effects::none ? 4 : 3;
 }
 
-/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners.
+/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners and
+/// their stiffness.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
-         24 * sizeof(float) * (most_voxels + 1);
+         25 * sizeof(float) * (most_voxels + 1);
 }
 
 /// Blocks of the patch kernel that a device holds at once; 0 where it has no code for the device.

@@ -113,25 +113,26 @@ __global__ void __launch_bounds__(block)
 }
 
 __global__ void __launch_bounds__(block)
-    displace(std::uint32_t nodes, const float4* u, const float4* mode, float amount, float4* out)
+    displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode, float amount, float4* out)
 {
   const std::uint32_t n = blockIdx.x * block + threadIdx.x;
   if (n >= nodes)
     return;
   const float4 at = u[n], along = mode[n];
-  const float share = amount * sqrtf(at.w);
+  const float share = amount * sqrtf(mobility == nullptr ? at.w : mobility[n]);
   out[n] = make_float4(at.x + share * along.x, at.y + share * along.y, at.z + share * along.z, at.w);
 }
 
-__global__ void __launch_bounds__(block) product(std::uint32_t nodes, const float4* u, const float4* plus,
-                                                 const float4* minus, float factor, float4* mode, double2* seen)
+__global__ void __launch_bounds__(block) product(std::uint32_t nodes, const float* mobility, const float4* u,
+                                                 const float4* plus, const float4* minus, float factor, float4* mode,
+                                                 double2* seen)
 {
   __shared__ double2 own[block];
   double2 sum{ 0, 0 };
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < nodes; n += product_blocks * block)
   {
     const float4 p = plus[n], m = minus[n];
-    const float root = sqrtf(u[n].w), share = factor * root;
+    const float root = sqrtf(mobility == nullptr ? u[n].w : mobility[n]), share = factor * root;
     const float4 now = make_float4(share * (p.x - m.x), share * (p.y - m.y), share * (p.z - m.z), 0);
     mode[n] = now;
     sum.x = fmax(sum.x, double(root) * fmax(fabs(now.x), fmax(fabs(now.y), fabs(now.z))));
@@ -182,17 +183,17 @@ cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccoun
   return cudaGetLastError();
 }
 
-cudaError_t launch_displace(std::uint32_t nodes, const float4* u, const float4* mode, float amount, float4* out,
-                            cudaStream_t stream)
+cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
+                            float amount, float4* out, cudaStream_t stream)
 {
-  cuda::displace<<<cuda::blocks(nodes), cuda::block, 0, stream>>>(nodes, u, mode, amount, out);
+  cuda::displace<<<cuda::blocks(nodes), cuda::block, 0, stream>>>(nodes, mobility, u, mode, amount, out);
   return cudaGetLastError();
 }
 
-cudaError_t launch_product(std::uint32_t nodes, const float4* u, const float4* plus, const float4* minus, float factor,
-                           float4* mode, double2* seen, cudaStream_t stream)
+cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus,
+                           const float4* minus, float factor, float4* mode, double2* seen, cudaStream_t stream)
 {
-  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, u, plus, minus, factor, mode, seen);
+  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, mobility, u, plus, minus, factor, mode, seen);
   return cudaGetLastError();
 }
 

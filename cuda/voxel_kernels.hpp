@@ -58,16 +58,16 @@ cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels&
 cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
                                 cudaStream_t stream);
 
-/// out = u + amount times mode over the root of the mass.
-cudaError_t launch_displace(std::uint32_t nodes, const float4* u, const float4* mode, float amount, float4* out,
-                            cudaStream_t stream);
+/// out = u + amount times mode over the root of the mass; held nodes (StepArguments::mobility) stay.
+cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
+                            float amount, float4* out, cudaStream_t stream);
 
 /// Blocks whose sums launch_product() leaves, two numbers each: largest size of a component over the root of the mass;
 /// sum of squares.
 constexpr int product_blocks = 128;
 
-/// mode = (plus - minus) times factor over the root of the mass, and what there is to say of it.
-cudaError_t launch_product(std::uint32_t nodes, const float4* u, const float4* plus, const float4* minus, float factor,
-                           float4* mode, double2* seen, cudaStream_t stream);
+/// mode = (plus - minus) times factor over the root of the mass, 0 of held nodes, and what there is to say of it.
+cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus,
+                           const float4* minus, float factor, float4* mode, double2* seen, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -28,7 +28,7 @@ double length(const Vectors& x)
 
 }  // namespace
 
-// without the constraints, which only lower it
+// held nodes stay; without the other constraints, which only lower it
 void SteppingSolver::renew_assembled_bound(const std::vector<float>& target)
 {
   // fibres stiffen as they are activated, and what they move stiffens after that: until it has moved, the stiffest
@@ -86,6 +86,11 @@ double SteppingSolver::assembled_frequency_squared(int most_iterations)
     assembled_mode_.resize(mass.size());
     random_mode(assembled_mode_);
   }
+  std::vector<double> root;  // of the inverse mass; 0: held
+  for (const double m : mass)
+    root.push_back(1 / std::sqrt(m));
+  for (const auto n : discretisation_.held)
+    root[n] = 0;
   Vectors u, moved, plus, minus;
   displacements(u);
   const double amplitude = mode_amplitude(*model_);
@@ -95,20 +100,20 @@ double SteppingSolver::assembled_frequency_squared(int most_iterations)
     double largest = 0;
     for (std::size_t n = 0; n < mass.size(); ++n)
       for (const double x : assembled_mode_[n])
-        largest = std::max(largest, std::abs(x) / std::sqrt(mass[n]));
+        largest = std::max(largest, std::abs(x) * root[n]);
     const double scale = amplitude / largest;
     for (const double sign : { 1.0, -1.0 })
     {
       moved = u;
       for (std::size_t n = 0; n < mass.size(); ++n)
         for (int axis = 0; axis < 3; ++axis)
-          moved[n][axis] += sign * scale * assembled_mode_[n][axis] / std::sqrt(mass[n]);
+          moved[n][axis] += sign * scale * assembled_mode_[n][axis] * root[n];
       forces_at(moved, sign > 0 ? plus : minus);
     }
     const double before = length(assembled_mode_);
     for (std::size_t n = 0; n < mass.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
-        assembled_mode_[n][axis] = (plus[n][axis] - minus[n][axis]) / (2 * scale * std::sqrt(mass[n]));
+        assembled_mode_[n][axis] = (plus[n][axis] - minus[n][axis]) * root[n] / (2 * scale);
     const double now = length(assembled_mode_) / before;
     for (auto& p : assembled_mode_)
       for (double& x : p)

@@ -253,26 +253,31 @@ struct CpuElement
         Lane::store(sum.a[n], relaxed_of(g, at, 2) + n * Tile::width);
   }
 
-  // the largest frequency bound squared now, NaN for good where motion is not finite
-  static __attribute__((noinline)) void look(const Arguments& g, const Place& at, const Kinematics& k,
-                                             Batch& frequency_squared)
+  /// Bound of the largest eigenvalue of the stiffness now [N/m], NaN where motion is not finite.
+  static __attribute__((noinline)) Batch stiffness_now(const Arguments& g, const Place& at, const Kinematics& k)
   {
-    const Batch growth = physics::stiffening(material_of(g, at), k, g.stretch_weight);
-    Batch now = Lane::load(g.stiffness[at.index].frequency_squared + at.offset) * N::max(growth, N::of(1));
-    // what the laws have stiffened since rest
+    const Batch at_rest = Lane::load(g.stiffness[at.index].bound + at.offset);
+    Batch now = physics::voxel_stiffness_now(at_rest, material_of(g, at), k, g.stretch_weight);
     for (auto s = at.tile->law_begin; s < at.tile->law_end; ++s)
     {
+      const LawSlot& slot = g.laws[s];
       Batch parameters[11];
-      load_parameters(g.laws[s], at.offset, parameters);
-      const Batch more = law_stiffness(g.laws[s].law, parameters, k) - Lane::load(g.laws[s].at_rest + at.offset);
-      now = now + Lane::load(g.laws[s].inertia + at.offset) * N::max(more, N::of(0));
+      load_parameters(slot, at.offset, parameters);
+      now = now + law_stiffening(slot.law, parameters, Lane::load(slot.at_rest + at.offset),
+                                 Lane::load(slot.per_tangent + at.offset), k);
     }
-    frequency_squared = N::max(frequency_squared, now) + (growth - growth);
+    return now;
+  }
+
+  /// The larger one, NaN for good where one is.
+  static FRONTALIS_LAW Batch larger(const Batch& a, const Batch& b)
+  {
+    return N::max(a, b) + (a - a) + (b - b);
   }
 
   // isochoric stress at eight points: modes to the forces on them
   static __attribute__((noinline)) void gauss_points(const Arguments& g, const Place& at, Batch (&mode)[3][8],
-                                                     Batch& frequency_squared)
+                                                     Batch& stiffest)
   {
     auto material = material_of(g, at);
     material.kappa = N::of(0);
@@ -287,7 +292,7 @@ struct CpuElement
       const auto k = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
       physics::add_gauss_forces(point, elastic(g, at, material, k), g.scale, force);
       if (at.look)
-        look(g, at, k, frequency_squared);
+        stiffest = larger(stiffest, stiffness_now(g, at, k));
     }
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
@@ -331,23 +336,33 @@ struct CpuElement
     return lists;
   }
 
-  /// Forces of the voxels added to the plane buffers below and above.
+  /// Forces of the voxels, and where frequencies are wanted the bound of their stiffness, added to the plane buffers
+  /// below and above.
   template <Stabilisation Form>
   static FRONTALIS_LAW void add_forces(const Arguments& g, const Place& at, Real* below, Real* above,
-                                       const std::int32_t* base, Batch& frequency_squared, double& work)
+                                       const std::int32_t* base, double& work)
   {
     Batch mode[3][8];
     const Kinematics k = load_modes(g, at, mode);
     Stress P = centre_stress<Form>(g, at, k, work);
+    Batch stiffest(Real(0));
     if (Form != Stabilisation::selective_reduced && at.look)
-      look(g, at, k, frequency_squared);
+      stiffest = stiffness_now(g, at, k);
     const TileStiffness& stiffness = g.stiffness[at.index];
     const Batch hourglass = Lane::load(stiffness.hourglass + at.offset);
     if (Form == Stabilisation::assumed_strain)
       physics::hourglass_forces(stabilisation_of(g, at), hourglass, g.hourglass_weight, k.F, mode, P);
     if (Form == Stabilisation::selective_reduced)
-      gauss_points(g, at, mode, frequency_squared);
+      gauss_points(g, at, mode, stiffest);
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
+    const auto row_of = [&](int component, int r)
+    { return (r < 2 ? below : above) + component * g.buffer_stride - base[r / 2]; };
+    if (at.look)
+      for (int r = 0; r < 4; ++r)
+      {
+        Real* const sum = row_of(3, r);
+        Lane::add(sum + at.tile->node[strip][r] + within, sum + at.tile->node[Tile::strips - 1][r], stiffest, stiffest);
+      }
     for (int c = 0; c < 3; ++c)
     {
       mode[c][0] = N::of(0);
@@ -363,7 +378,7 @@ struct CpuElement
       physics::walsh_hadamard_transposed(mode[c]);
       for (int r = 0; r < 4; ++r)
       {
-        Real* force = (r < 2 ? below : above) + c * g.buffer_stride - base[r / 2];
+        Real* const force = row_of(c, r);
         Lane::add(force + at.tile->node[strip][r] + within, force + at.tile->node[Tile::strips - 1][r], mode[c][2 * r],
                   mode[c][2 * r + 1]);
       }

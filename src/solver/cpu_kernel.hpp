@@ -24,6 +24,7 @@ struct CpuKernelArguments
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< what the sums of displacements have lost [m]; null: not kept
   const float* inverse_mass;  ///< [1/kg]
+  const float* mobility;      ///< the same, 0 where a node is held [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;
@@ -57,22 +58,23 @@ struct CpuKernelArguments
 enum class KernelTask
 {
   step,           ///< updates v and next
-  step_and_look,  ///< the same, and the largest frequency bound squared now
+  step_and_look,  ///< the same, and the bound of the highest frequency squared now
   forces,         ///< internal forces into next, nothing updated
   relax           ///< viscous stresses relax, nothing else
 };
 
-/// Steps the nodes of planes [first, last); buffer has 6 * buffer_stride numbers. Returns the largest frequency bound
-/// squared [1/s2] over the voxels passed (step_and_look), NaN where motion is not finite.
+/// Steps the nodes of planes [first, last); buffer has 8 * buffer_stride numbers. Returns the bound of the highest
+/// frequency squared [1/s2] that these nodes allow (step_and_look), NaN where motion is not finite.
 template <class Real>
 using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32_t first, std::int32_t last,
                            Real* buffer, KernelTask task);
 
 struct PlaneMonitor;
 
-/// Energies and worst voxels of the voxel planes [first, last) at g.u, one a plane.
+/// Energies and worst voxels of the voxel planes [first, last) at g.u, one a plane, and the stiffness bound of each
+/// voxel [N/m].
 using CpuMonitorKernel = void (*)(const CpuKernelArguments<double>& g, std::int32_t first, std::int32_t last,
-                                  PlaneMonitor* planes);
+                                  PlaneMonitor* planes, double* stiffness);
 
 struct CpuKernelChoice
 {

@@ -28,25 +28,39 @@ struct CpuKernelBody
   }
 
   template <Stabilisation Form>
-  static Real plane_forces(const Arguments& g, const PassLists& passes, std::int32_t plane, Real* below, Real* above,
+  static void plane_forces(const Arguments& g, const PassLists& passes, std::int32_t plane, Real* below, Real* above,
                            bool owned, bool look)
   {
-    Batch frequency_squared(Real(0));
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     each_batch(g, passes, plane, owned, look,
-               [&](const auto& at)
-               { Element::template add_forces<Form>(g, at, below, above, base, frequency_squared, work); });
+               [&](const auto& at) { Element::template add_forces<Form>(g, at, below, above, base, work); });
     if (g.muscle_work != nullptr && owned)
       g.muscle_work[plane] += work;
-    Real result = 0;
-    if (look)
+  }
+
+  /// Bound of the highest frequency squared that the nodes of a plane allow; `stiffness`: sums of their voxels'.
+  static Real plane_frequency(const Arguments& g, std::int32_t plane, const Real* stiffness)
+  {
+    const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
+    const float* const mobility = g.mobility + first;
+    // as many maxima at once as a batch has lanes; what is no number shows in the sums of differences
+    Real most[lanes] = {}, odd[lanes] = {};
+    const auto take = [&](std::int32_t n, int lane)
     {
-      Real lane[lanes];
-      frequency_squared.store_unaligned(lane);
-      for (const Real x : lane)
-        result = larger(result, x);
-    }
+      const Real squared = stiffness[n] * static_cast<Real>(mobility[n]);
+      most[lane] = squared > most[lane] ? squared : most[lane];
+      odd[lane] += squared - squared;
+    };
+    std::int32_t n = 0;
+    for (; n + lanes <= count; n += lanes)
+      for (int lane = 0; lane < lanes; ++lane)
+        take(n + lane, lane);
+    for (; n < count; ++n)
+      take(n, 0);
+    Real result = 0;
+    for (int lane = 0; lane < lanes; ++lane)
+      result = larger(result, most[lane] + odd[lane]);
     return result;
   }
 
@@ -105,20 +119,21 @@ struct CpuKernelBody
   {
     const PassLists passes = Element::pass_lists(g.passes);
     Real* below = buffer;
-    Real* above = buffer + 3 * static_cast<std::size_t>(g.buffer_stride);
-    clear(below, 3 * g.buffer_stride);
+    Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
+    const bool look = task == KernelTask::step_and_look;
+    const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
+    clear(below, used);
     Real frequency_squared = 0;
     // voxel plane k joins node planes k and k + 1; the one below the first plane is computed for its upper nodes alone
     for (std::int32_t k = first - 1; k < last; ++k)
     {
-      clear(above, 3 * g.buffer_stride);
+      clear(above, used);
       if (k >= 0 && k < g.planes - 1)
-      {
-        const Real now = plane_forces<Form>(g, passes, k, below, above, k >= first, task == KernelTask::step_and_look);
-        frequency_squared = larger(frequency_squared, now);
-      }
+        plane_forces<Form>(g, passes, k, below, above, k >= first, look);
       if (k >= first)
       {
+        if (look)
+          frequency_squared = larger(frequency_squared, plane_frequency(g, k, below + 3 * g.buffer_stride));
         if (task == KernelTask::forces)
           for (int c = 0; c < 3; ++c)
             for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)

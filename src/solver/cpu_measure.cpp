@@ -1,6 +1,7 @@
 #include "cpu_solver.hpp"
 #include "flush_denormals.hpp"
 #include "plane_monitor.hpp"
+#include "step_bound.hpp"
 
 #include <algorithm>
 
@@ -30,6 +31,15 @@ Monitor CpuSolver<Real>::measure()
   g.selective_reduced = from.selective_reduced;
   g.laws = from.laws;
   std::vector<PlaneMonitor> planes(static_cast<std::size_t>(rows_.planes));
+  std::vector<StepBound> bounds(slab_.size() - 1);
+  std::vector<double> stiffness(model_->voxels.size());
+  // of voxel plane k; there is none above the last plane of nodes
+  const auto first_voxel = [&](std::int32_t k)
+  {
+    const auto tile = rows_.plane_tiles[std::clamp(k, 0, rows_.planes - 1)];
+    return static_cast<std::size_t>(tile) < rows_.tiles.size() ? rows_.tiles[tile].first_voxel[0]
+                                                               : static_cast<std::int32_t>(stiffness.size());
+  };
   team_.run(
       [&](int t)
       {
@@ -46,12 +56,21 @@ Monitor CpuSolver<Real>::measure()
             planes[k].kinetic += 0.5 * kinetic;
           }
         team_.barrier();
-        choice_.monitor(g, slab_[t], std::min(slab_[t + 1], rows_.planes - 1), planes.data());
+        const std::int32_t first = slab_[t], last = slab_[t + 1];
+        choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
+        team_.barrier();
+        // displacements have been read: their place takes the sums
+        bounds[t] = bound_of_nodes(discretisation_, *model_, stiffness.data(),
+                                   { first_voxel(first - 1), first_voxel(last) },
+                                   { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());
       });
   PlaneMonitor sum;
   for (const PlaneMonitor& plane : planes)
     sum.add(plane);
-  return monitor_of(sum);
+  StepBound bound;
+  for (const StepBound& part : bounds)
+    bound.add(part);
+  return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(*model_, bound.node, stiffness.data()));
 }
 
 template Monitor CpuSolver<float>::measure();

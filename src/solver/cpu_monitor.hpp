@@ -21,7 +21,7 @@ struct CpuMonitor
 
   struct Found
   {
-    Batch internal, hourglass, jacobian, frequency_squared;
+    Batch internal, hourglass, jacobian, stiffness;
   };
 
   // elastic energy, the volumetric part by kappa
@@ -67,7 +67,7 @@ struct CpuMonitor
     {
       found.internal = elastic_energy(g, at, material, k);
       found.hourglass = hourglass_energy(g, at, k, mode);
-      Element::look(g, at, k, found.frequency_squared);
+      found.stiffness = Element::stiffness_now(g, at, k);
       return found;
     }
     found.internal = N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
@@ -79,32 +79,32 @@ struct CpuMonitor
       const auto there = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
       found.internal = found.internal + N::of(0.125) * elastic_energy(g, at, material, there);
       found.jacobian = N::min(found.jacobian, there.J);
-      Element::look(g, at, there, found.frequency_squared);
+      found.stiffness = Element::larger(found.stiffness, Element::stiffness_now(g, at, there));
     }
     return found;
   }
 
-  static void add(const Place& at, const Found& found, PlaneMonitor& plane)
+  static void add(const Place& at, const Found& found, PlaneMonitor& plane, double* stiffness)
   {
-    alignas(64) double internal[lanes], hourglass[lanes], jacobian[lanes], frequency_squared[lanes];
+    alignas(64) double internal[lanes], hourglass[lanes], jacobian[lanes], own[lanes];
     found.internal.store_aligned(internal);
     found.hourglass.store_aligned(hourglass);
     found.jacobian.store_aligned(jacobian);
-    found.frequency_squared.store_aligned(frequency_squared);
+    found.stiffness.store_aligned(own);
     for (int lane = 0; lane < lanes; ++lane)
     {
       const int l = at.offset + lane, strip = l / Tile::strip;
       if (l % Tile::strip < at.tile->count[strip])
       {
         const std::int32_t voxel = at.tile->first_voxel[strip] + l % Tile::strip;
-        plane.add({ 0, internal[lane], hourglass[lane], jacobian[lane], frequency_squared[lane],
-                    jacobian[lane] <= 0 ? 1 : 0, voxel, voxel });
+        plane.add({ 0, internal[lane], hourglass[lane], jacobian[lane], jacobian[lane] <= 0 ? 1 : 0, voxel });
+        stiffness[voxel] = own[lane];
       }
     }
   }
 
-  /// Planes of voxels [first, last); `planes`: one a plane.
-  static void run(const Arguments& g, std::int32_t first, std::int32_t last, PlaneMonitor* planes)
+  /// Planes of voxels [first, last); `planes`: one a plane; stiffness: bound of each voxel [N/m].
+  static void run(const Arguments& g, std::int32_t first, std::int32_t last, PlaneMonitor* planes, double* stiffness)
   {
     for (auto k = first; k < last; ++k)
       for (auto t = g.plane_tiles[k]; t < g.plane_tiles[k + 1]; ++t)
@@ -112,7 +112,7 @@ struct CpuMonitor
           if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
           {
             const Place at{ g.tiles + t, t, offset, true, true };
-            add(at, look(g, at), planes[k]);
+            add(at, look(g, at), planes[k], stiffness);
           }
   }
 };

@@ -2,6 +2,7 @@
 
 #include "bound_points.hpp"
 #include "frontalis/physics/viscosity.hpp"
+#include "step_bound.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -23,6 +24,7 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
                            const std::string& remark)
     : SteppingSolver(std::move(model), settings),
       rows_(*model_, discretisation_),
+      mobility_(mobility(discretisation_)),
       choice_(choose_cpu_kernel()),
       kernel_(pick(choice_, Real(0))),
       restricted_(*model_, slide(choice_, Real(0))),
@@ -77,6 +79,7 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
 {
   rows_.list_allocations(effect_of_fibres(), list);
   list.add(Effect::elasticity, "inverse masses", inverse_mass_);
+  list.add(Effect::elasticity, "inverse masses", mobility_);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     for (const auto* field : { &u_, &next_, &v_ })
@@ -85,7 +88,7 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
     list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
   }
   for (const auto& buffer : buffers_)
-    list.add(Effect::elasticity, "forces of two planes", buffer);
+    list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);
   list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
   list.add(Effect::viscosity, "relaxed stresses", relaxed_);
   restricted_.list_allocations(list);
@@ -109,7 +112,7 @@ void CpuSolver<Real>::share_planes()
     slab_.push_back(std::clamp(plane, slab_.back(), rows_.planes));
   }
   slab_.push_back(rows_.planes);
-  buffers_.assign(threads, std::vector<Real>(6 * static_cast<std::size_t>(buffer_stride_)));
+  buffers_.assign(threads, std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
 }
 
 template <class Real>

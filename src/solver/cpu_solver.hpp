@@ -65,7 +65,7 @@ private:
   struct Kept;
 
   VoxelRows rows_;
-  std::vector<float> inverse_mass_, with_length_, with_passive_, relaxed_;
+  std::vector<float> inverse_mass_, mobility_, with_length_, with_passive_, relaxed_;
   Components u_, next_, v_, rounding_;
   std::vector<FibreMemory> fibre_memory_;
   std::unique_ptr<EnergyAccount<Real>> account_;

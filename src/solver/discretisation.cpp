@@ -4,7 +4,9 @@
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "mass_factors.hpp"
 #include "material_laws.hpp"
+#include "step_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +57,7 @@ void add_law(const Model& model, std::size_t voxel, std::int32_t index, double p
   auto part = std::find_if(parts.begin(), parts.end(),
                            [&](const auto& p) { return p.law == material.law && p.material == key; });
   if (part == parts.end())
-    part = parts.insert(parts.end(), { material.law, 0, {}, 0, key });
+    part = parts.insert(parts.end(), { material.law, 0, {}, 0, 0, key });
   const double before = part->weight;
   part->weight += proportion;
   for (std::size_t p = 0; p < part->parameters.size(); ++p)
@@ -82,6 +84,24 @@ double shear_at_rest(const Material& material)
 {
   return material.law == Law::neo_hookean ? material.parameters[0]
                                           : law_stiffness(material.law, material.parameters.data(), at_rest());
+}
+
+// rigid nodes, and those whose displacement is prescribed in every direction; none where no node is left, so that a
+// model that cannot move has a time step too
+std::vector<std::int32_t> held_nodes(const Model& model)
+{
+  std::vector<int> directions(model.nodes.size(), 0);
+  for (const auto& node : model.prescribed)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.loads[node.load].fixed[axis])
+        directions[node.node] |= 1 << axis;
+  for (const auto& node : model.rigid)
+    directions[node.node] = 7;
+  std::vector<std::int32_t> held;
+  for (std::size_t n = 0; n < directions.size(); ++n)
+    if (directions[n] == 7)
+      held.push_back(static_cast<std::int32_t>(n));
+  return held.size() < directions.size() ? held : std::vector<std::int32_t>();
 }
 
 void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
@@ -112,6 +132,7 @@ void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
 Discretisation::Discretisation(const Model& model)
     : assumed_strain(model.hourglass == HourglassControl::assumed_strain),
       selective_reduced(model.integration == Integration::selective_reduced),
+      held(held_nodes(model)),
       model_(&model),
       running_(effects_of(model))
 {
@@ -134,16 +155,28 @@ Discretisation::Discretisation(const Model& model)
         const double time = material.viscous_time[term];
         viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
       }
-  choose_mass_factors();
+  const MassScalingSettings& scaling = model.mass_scaling;
+  VoxelProperties v;
+  if (scaling.kind == MassScalingSettings::Kind::uniform && scaling.factor != 1)
+    mass_factor_.assign(model.voxels.size(), static_cast<float>(scaling.factor));
+  if (scaling.kind == MassScalingSettings::Kind::selective)
+  {
+    std::vector<ScaledVoxel> voxels;
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    {
+      mix(e, v);
+      voxels.push_back({ v.stiffness, v.density * v.tissue_volume,
+                         scaling.materials.empty() || contains_any(model, e, scaling.materials) });
+    }
+    mass_factor_ = selective_mass_factors(model, voxels, held);
+  }
 
   node_mass.assign(model.nodes.size(), 0);
   std::vector<double> weight(mass_factor_.empty() ? 0 : model.nodes.size(), 0.0);
-  VoxelProperties v;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     voxel(e, v);
     laws = laws || !v.laws.empty();
-    frequency_squared_max = std::max(frequency_squared_max, v.frequency_squared);
     const double mass = v.density * v.tissue_volume;
     for (const auto node : model.voxel_nodes[e])
     {
@@ -154,6 +187,7 @@ Discretisation::Discretisation(const Model& model)
   }
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
+  bound_at_rest();
 }
 
 void Discretisation::mix(std::size_t e, VoxelProperties& out) const
@@ -183,6 +217,9 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
     throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
   out.tissue_volume = volume * model.fill[e];
+  const double shortest = std::min({ h[0], h[1], h[2] });
+  for (auto& part : out.laws)
+    part.per_tangent = part.weight * out.tissue_volume / (shortest * shortest);
   out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
                                                std::max({ h[0], h[1], h[2] }));
   if (assumed_strain)
@@ -192,8 +229,8 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   }
   else if (selective_reduced)
     out.hourglass = 0;
-  out.frequency_squared = physics::frequency_squared_bound(shear, out.kappa, fibre_stiffness(model, e, running_),
-                                                           out.density, h[0], h[1], h[2]);
+  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
+                                           h[0], h[1], h[2]);
   if (viscous_terms > 0)
     mix_viscosity(model, e, out);
 }
@@ -201,18 +238,25 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
 void Discretisation::bound(EffectSet running)
 {
   running_ = running;
-  frequency_squared_max = 0;
+  bound_at_rest();
+}
+
+void Discretisation::bound_at_rest()
+{
+  std::vector<double> stiffness(model_->voxels.size());
   VoxelProperties v;
-  for (std::size_t e = 0; e < model_->voxels.size(); ++e)
+  for (std::size_t e = 0; e < stiffness.size(); ++e)
   {
-    voxel(e, v);
-    frequency_squared_max = std::max(frequency_squared_max, v.frequency_squared);
+    mix(e, v);
+    stiffness[e] = v.stiffness;
   }
+  frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
 }
 
 void Discretisation::list_allocations(AllocationList& list) const
 {
   list.add(Effect::elasticity, "masses of nodes", node_mass);
+  list.add(Effect::elasticity, "held nodes", held);
   list.add(Effect::elasticity, "shares of weight", weight_share);
   list.add(Effect::elasticity, "mass scaling", mass_factor_);
 }
@@ -220,38 +264,8 @@ void Discretisation::list_allocations(AllocationList& list) const
 void Discretisation::voxel(std::size_t e, VoxelProperties& out) const
 {
   mix(e, out);
-  if (mass_factor_.empty())
-    return;
-  out.density *= double(mass_factor_[e]);
-  out.frequency_squared /= double(mass_factor_[e]);
-}
-
-// how much more mass each voxel gets, as the model's settings say
-void Discretisation::choose_mass_factors()
-{
-  const MassScalingSettings& settings = model_->mass_scaling;
-  const std::size_t count = model_->voxels.size();
-  if (settings.kind == MassScalingSettings::Kind::uniform && settings.factor != 1)
-    mass_factor_.assign(count, static_cast<float>(settings.factor));
-  if (settings.kind != MassScalingSettings::Kind::selective)
-    return;
-  double allowed = 0;
-  std::vector<double> chosen(count, 0);
-  VoxelProperties v;
-  for (std::size_t e = 0; e < count; ++e)
-  {
-    mix(e, v);
-    if (settings.materials.empty() || contains_any(*model_, e, settings.materials))
-      chosen[e] = v.frequency_squared;
-    else
-      allowed = std::max(allowed, v.frequency_squared);
-  }
-  if (settings.time_step > 0)
-    allowed = 4 * model_->time_step_share * model_->time_step_share / (settings.time_step * settings.time_step);
-  if (allowed == 0 || *std::max_element(chosen.begin(), chosen.end()) <= allowed)
-    return;
-  for (const double squared : chosen)
-    mass_factor_.push_back(static_cast<float>(std::max(squared / allowed, 1.0)));
+  if (!mass_factor_.empty())
+    out.density *= double(mass_factor_[e]);
 }
 
 }  // namespace frontalis

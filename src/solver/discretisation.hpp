@@ -18,6 +18,7 @@ struct LawPart
   double weight;  ///< proportion of the voxel's tissue
   std::array<double, 11> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
+  double per_tangent;        ///< of the voxel's stiffness: weight times tissue volume over h^2 of the shortest edge [m]
   std::int32_t material;     ///< -1: averaged
 };
 
@@ -30,7 +31,8 @@ struct VoxelProperties
   double density = 0;                              ///< mixed, after mass scaling [kg/m3]
   double hourglass = 0;                            ///< scalar stiffness on the hourglass modes [N/m]
   physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
-  double frequency_squared = 0;                    ///< bound at rest with every muscle at full activation [1/s2]
+  /// Bound of the largest eigenvalue of its stiffness at rest, every muscle at full activation [N/m].
+  double stiffness = 0;
   std::vector<LawPart> laws;
   /// Prony terms: shares are averaged by stiffness, rates [1/s] by relaxing stiffness.
   std::array<double, 2> viscous_share{};
@@ -46,7 +48,7 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// Bounds of frequency allow for the fibre effects of this set from now on; mass stays as it is scaled.
+  /// Bounds of stiffness allow for the fibre effects of this set from now on; mass stays as it is scaled.
   void bound(EffectSet running);
   void list_allocations(AllocationList& list) const;
 
@@ -60,11 +62,12 @@ public:
   std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
-  double frequency_squared_max = 0;          ///< [1/s2]
+  std::vector<std::int32_t> held;            ///< nodes that move as they are told in every direction, ascending
+  double frequency_squared_max = 0;          ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:
   void mix(std::size_t index, VoxelProperties& out) const;
-  void choose_mass_factors();
+  void bound_at_rest();
 
   const Model* model_;
   EffectSet running_;

@@ -41,7 +41,7 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     discretisation.voxel(e, voxel);
-    const double own = voxel.frequency_squared * voxel.density * voxel.tissue_volume;
+    const double own = 8 * voxel.stiffness;
     floor_ += 0.5 * own * small_strain * small_strain * shortest * shortest;
     for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
       fibres_[model.fibre_muscle[f]] +=

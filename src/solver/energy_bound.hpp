@@ -27,7 +27,7 @@ public:
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
 
 private:
-  // voxels that hang on a bone or on prescribed nodes: sum of frequency bound squared times mass [N/m]
+  // voxels that hang on a bone or on prescribed nodes: sum of eight times their stiffness bound [N/m]
   struct Driven
   {
     std::int32_t index;  // bone or load

@@ -66,4 +66,13 @@ FRONTALIS_LAW T law_stiffness(Law law, const T* parameters, const physics::Kinem
   return stiffness;
 }
 
+/// What a law adds to the bound of a voxel's stiffness since rest [N/m]. per_tangent: LawPart's.
+template <class T>
+FRONTALIS_LAW T law_stiffening(Law law, const T* parameters, const T& at_rest, const T& per_tangent,
+                               const physics::Kinematics<T>& k)
+{
+  using N = physics::Number<T>;
+  return per_tangent * N::max(law_stiffness(law, parameters, k) - at_rest, N::of(0));
+}
+
 }  // namespace frontalis

@@ -11,9 +11,8 @@ struct PlaneMonitor
 {
   double kinetic = 0, internal = 0, hourglass = 0;  ///< [J]
   double worst_jacobian = 1e300;
-  double frequency_squared = 0;  ///< largest bound [1/s2]
   std::int64_t inverted = 0;
-  std::int32_t worst_voxel = -1, stiffest_voxel = -1;
+  std::int32_t worst_voxel = -1;
 
   /// Parts must be added in the order of their voxels. Numbers that are not finite count as the worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
@@ -27,15 +26,10 @@ struct PlaneMonitor
       worst_jacobian = part.worst_jacobian;
       worst_voxel = part.worst_voxel;
     }
-    if (!(part.frequency_squared <= frequency_squared) && frequency_squared == frequency_squared)
-    {
-      frequency_squared = part.frequency_squared;
-      stiffest_voxel = part.stiffest_voxel;
-    }
   }
 };
 
-/// The whole model's, from the parts' sum.
-Monitor monitor_of(const PlaneMonitor& sum);
+/// The whole model's, from the parts' sum and the bound of the highest frequency [1/s2].
+Monitor monitor_of(const PlaneMonitor& sum, double frequency_squared, std::int32_t stiffest_voxel);
 
 }  // namespace frontalis

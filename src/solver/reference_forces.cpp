@@ -1,5 +1,6 @@
 #include "frontalis/physics/assumed_strain.hpp"
 #include "reference_solver.hpp"
+#include "step_bound.hpp"
 #include "voxel_monitor.hpp"
 #include "voxel_stress.hpp"
 
@@ -104,11 +105,7 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
 
 void ReferenceSolver::look(std::size_t e, const Kinematics& k)
 {
-  const auto& h = model_->spacing;
-  const double squared = frequency_squared_now(voxels_[e], k, discretisation_.stretch_weight.data(),
-                                               *std::min_element(h.begin(), h.end()));
-  if (!(squared <= frequency_squared_) && frequency_squared_ == frequency_squared_)
-    frequency_squared_ = squared;
+  stiffness_[e] = larger(stiffness_[e], stiffness_now(voxels_[e], k, discretisation_.stretch_weight.data()));
 }
 
 void ReferenceSolver::add_element(std::size_t e, const Components& u, const std::vector<float>& activation)
@@ -145,7 +142,7 @@ void ReferenceSolver::forces(const Components& u, const std::vector<float>& acti
 {
   for (auto& component : f_)
     std::fill(component.begin(), component.end(), 0);
-  frequency_squared_ = 0;
+  std::fill(stiffness_.begin(), stiffness_.end(), 0);
   for (std::size_t e = 0; e < model_->voxels.size(); ++e)
     add_element(e, u, activation);
 }

@@ -1,6 +1,7 @@
 #include "reference_solver.hpp"
 
 #include "bound_points.hpp"
+#include "step_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Model> model, const Solve
     : SteppingSolver(std::move(model), settings), restricted_(*model_), loads_(*model_, discretisation_)
 {
   voxels_.resize(model_->voxels.size());
+  stiffness_.resize(voxels_.size());
   mix_voxels();
   shape_derivatives({ 0, 0, 0 }, centre_);
   for (int point = 0; point < 8; ++point)
@@ -54,6 +56,7 @@ void ReferenceSolver::effect_switched(Effect effect)
 void ReferenceSolver::list_allocations(AllocationList& list) const
 {
   list.add(Effect::elasticity, "voxels", voxels_);
+  list.add(Effect::elasticity, "stiffness now", stiffness_);
   for (const auto* field : { &u_, &v_, &f_ })
     for (const auto& component : *field)
       list.add(Effect::elasticity, "motion and forces", component);
@@ -205,7 +208,7 @@ double ReferenceSolver::run(const StepPlan& plan)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
     const Components before = u_;
     if (plan.closely || step + 1 == plan.steps)
-      worst = frequency_squared_ <= worst ? worst : frequency_squared_;
+      worst = larger(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
     if (account_)
       account_->before(0, count, v);
     for (int axis = 0; axis < 3; ++axis)

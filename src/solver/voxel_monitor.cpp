@@ -6,6 +6,7 @@
 #include "frontalis/physics/time_step.hpp"
 #include "material_laws.hpp"
 #include "plane_monitor.hpp"
+#include "step_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,19 +44,16 @@ double hourglass_energy(const Discretisation& d, const VoxelProperties& voxel, c
 
 }  // namespace
 
-double frequency_squared_now(const VoxelProperties& voxel, const Kinematics& k, const double* weight, double shortest)
+double stiffness_now(const VoxelProperties& voxel, const Kinematics& k, const double* weight)
 {
-  const double growth = physics::stiffening(physics::NeoHookean<double>{ voxel.mu, voxel.kappa }, k, weight);
-  double squared = voxel.frequency_squared * std::max(growth, 1.0) + (growth - growth);
+  const physics::NeoHookean<double> material{ voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume };
+  double stiffness = physics::voxel_stiffness_now(voxel.stiffness, material, k, weight);
   for (const auto& part : voxel.laws)
-  {
-    const double more = law_stiffness(part.law, part.parameters.data(), k) - part.stiffness_at_rest;
-    squared += 8 * part.weight / (voxel.density * shortest * shortest) * std::max(more, 0.0);
-  }
-  return squared;
+    stiffness += law_stiffening(part.law, part.parameters.data(), part.stiffness_at_rest, part.per_tangent, k);
+  return stiffness;
 }
 
-Monitor monitor_of(const PlaneMonitor& sum)
+Monitor monitor_of(const PlaneMonitor& sum, double frequency_squared, std::int32_t stiffest_voxel)
 {
   Monitor result;
   result.kinetic = sum.kinetic;
@@ -64,8 +62,8 @@ Monitor monitor_of(const PlaneMonitor& sum)
   result.worst_jacobian = sum.worst_jacobian;
   result.worst_voxel = sum.worst_voxel;
   result.inverted = sum.inverted;
-  result.critical_time_step = 2 / std::sqrt(sum.frequency_squared);
-  result.stiffest_voxel = sum.stiffest_voxel;
+  result.critical_time_step = 2 / std::sqrt(frequency_squared);
+  result.stiffest_voxel = stiffest_voxel;
   result.finite = std::isfinite(sum.kinetic) && std::isfinite(sum.internal) && std::isfinite(sum.hourglass);
   return result;
 }
@@ -75,8 +73,8 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
 {
   const auto& h = model.spacing;
   const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
-  const double shortest = std::min({ h[0], h[1], h[2] });
   const double* const weight = d.stretch_weight.data();
+  std::vector<double> stiffness(model.voxels.size(), 0);
   PlaneMonitor sum;
   for (std::size_t n = 0; n < v.size(); ++n)
     sum.kinetic += 0.5 * d.node_mass[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
@@ -93,7 +91,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
     const auto index = static_cast<std::int32_t>(e);
-    PlaneMonitor own{ 0, 0, 0, k.J, 0, 0, index, index };
+    PlaneMonitor own{ 0, 0, 0, k.J, 0, index };
     if (d.selective_reduced)
     {
       own.internal = voxel.tissue_volume * 0.5 * voxel.kappa * k.dilatation * k.dilatation;
@@ -103,8 +101,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
         physics::at_gauss_point(point, mode, moved);
         const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
         own.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
-        own.frequency_squared =
-            std::max(own.frequency_squared, frequency_squared_now(voxel, at_point, weight, shortest));
+        stiffness[e] = larger(stiffness[e], stiffness_now(voxel, at_point, weight));
         own.worst_jacobian = std::min(own.worst_jacobian, at_point.J);
       }
     }
@@ -112,12 +109,13 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     {
       own.internal = voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
       own.hourglass = hourglass_energy(d, voxel, k, mode);
-      own.frequency_squared = frequency_squared_now(voxel, k, weight, shortest);
+      stiffness[e] = stiffness_now(voxel, k, weight);
     }
     own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
     sum.add(own);
   }
-  return monitor_of(sum);
+  const StepBound bound = step_bound(d, model, stiffness);
+  return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(model, bound.node, stiffness.data()));
 }
 
 }  // namespace frontalis

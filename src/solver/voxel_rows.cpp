@@ -41,9 +41,8 @@ void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::v
 }
 
 // the laws of a tile beyond neo-Hookean, one slot a law; unused lanes keep valid parameters and weight 0
-void add_laws(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
+void add_laws(const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
 {
-  const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
   tile.law_begin = static_cast<std::int32_t>(slots.size());
   for (int lane = 0; lane < Tile::width; ++lane)
     for (const auto& part : voxels[lane].laws)
@@ -60,7 +59,7 @@ void add_laws(const Model& model, const TileVoxels& voxels, Tile& tile, std::vec
         slot = slots.insert(slots.end(), empty);
       }
       slot->weight[lane] = static_cast<float>(part.weight * voxels[lane].tissue_volume);
-      slot->inertia[lane] = static_cast<float>(8 * part.weight / (voxels[lane].density * shortest * shortest));
+      slot->per_tangent[lane] = static_cast<float>(part.per_tangent);
       slot->at_rest[lane] = static_cast<float>(part.stiffness_at_rest);
       for (std::size_t p = 0; p < part.parameters.size(); ++p)
         slot->parameters[p][lane] = static_cast<float>(part.parameters[p]);
@@ -95,7 +94,7 @@ TileStiffness stiffness_of(const TileVoxels& voxels)
     s.mu[lane] = static_cast<float>(v.mu * v.tissue_volume);
     s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
     s.hourglass[lane] = static_cast<float>(v.hourglass);
-    s.frequency_squared[lane] = static_cast<float>(v.frequency_squared);
+    s.bound[lane] = static_cast<float>(v.stiffness);
   }
   return s;
 }
@@ -163,7 +162,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
         discretisation.voxel(tile.voxel(lane), voxels[lane]);
     }
     add_fibres(model, voxels, tile, fibres);
-    add_laws(model, voxels, tile, laws);
+    add_laws(voxels, tile, laws);
     add_viscosity(voxels, tile, viscous);
     tile.passes = (tile.fibre_begin < tile.fibre_end ? pass_fibres : 0) | (tile.viscous >= 0 ? pass_viscosity : 0);
     stiffness.push_back(stiffness_of(voxels));
@@ -190,7 +189,7 @@ void VoxelRows::renew_bounds(const Discretisation& discretisation)
       if (const auto e = tiles[t].voxel(lane); e >= 0)
       {
         discretisation.voxel(static_cast<std::size_t>(e), voxel);
-        stiffness[t].frequency_squared[lane] = static_cast<float>(voxel.frequency_squared);
+        stiffness[t].bound[lane] = static_cast<float>(voxel.stiffness);
       }
 }
 

@@ -43,10 +43,10 @@ struct Tile
 /// Elasticity of a tile's voxels; 0 in unused lanes.
 struct TileStiffness
 {
-  float mu[Tile::width];                 ///< shear modulus times tissue volume [N m]
-  float kappa[Tile::width];              ///< bulk modulus times tissue volume [N m]
-  float hourglass[Tile::width];          ///< scalar stiffness [N/m]
-  float frequency_squared[Tile::width];  ///< bound at rest [1/s2]
+  float mu[Tile::width];         ///< shear modulus times tissue volume [N m]
+  float kappa[Tile::width];      ///< bulk modulus times tissue volume [N m]
+  float hourglass[Tile::width];  ///< scalar stiffness [N/m]
+  float bound[Tile::width];      ///< of the largest eigenvalue of the stiffness at rest [N/m]
 };
 
 /// Assumed-strain hourglass control of a tile's voxels [N m].
@@ -69,7 +69,7 @@ struct LawSlot
   Law law;
   std::int32_t material;              ///< as in LawPart
   float weight[Tile::width];          ///< proportion times tissue volume [m3]
-  float inertia[Tile::width];         ///< frequency squared a tangent stiffness: 8 / (density h^2) times proportion
+  float per_tangent[Tile::width];     ///< LawPart::per_tangent [m]
   float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]
   float parameters[11][Tile::width];  ///< order: Law
 };
@@ -86,7 +86,7 @@ struct ViscousSlot
 struct VoxelRows
 {
   VoxelRows(const Model& model, const Discretisation& discretisation);
-  /// Frequency bounds anew, after what they allow for has changed.
+  /// Bounds of stiffness anew, after what they allow for has changed.
   void renew_bounds(const Discretisation& discretisation);
   /// `of_fibres`: the effect that they are for.
   void list_allocations(Effect of_fibres, AllocationList& list) const;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 #include <random>
 
 using namespace frontalis;
@@ -91,33 +93,44 @@ double largest_eigenvalue(const std::vector<std::vector<double>>& K)
   return value - shift;
 }
 
-// square of the true highest frequency of a lone voxel at a deformation, over the bound's
-double true_over_bound(const Model& model, const Matrix& F)
+// square of the true highest frequency at given displacements, over the bound's. Node masses [kg]; rows: unknowns that
+// are free.
+double true_over_bound(const Model& model, const Vectors& u, const std::vector<double>& mass,
+                       const std::vector<std::size_t>& free)
 {
   const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 });
-  Vectors u(8), moved, plus, minus;
-  for (std::size_t n = 0; n < 8; ++n)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        u[n][i] += (F[i][j] - (i == j ? 1 : 0)) * test::rest(model, n)[j];
   solver->set_displacements(u);
   const double critical = solver->monitor().critical_time_step;
-  std::vector<std::vector<double>> K(24, std::vector<double>(24));
-  for (std::size_t a = 0; a < 24; ++a)
+  Vectors moved, plus, minus;
+  std::vector<std::vector<double>> K(free.size(), std::vector<double>(free.size()));
+  for (std::size_t a = 0; a < free.size(); ++a)
   {
     const double step = 1e-8;
     for (const double sign : { 1.0, -1.0 })
     {
       moved = u;
-      moved[a / 3][a % 3] += sign * step;
+      moved[free[a] / 3][free[a] % 3] += sign * step;
       solver->set_displacements(moved);
       solver->internal_forces(sign > 0 ? plus : minus);
     }
-    for (std::size_t b = 0; b < 24; ++b)
-      K[a][b] = (plus[b / 3][b % 3] - minus[b / 3][b % 3]) / (2 * step);
+    for (std::size_t b = 0; b < free.size(); ++b)
+      K[a][b] = (plus[free[b] / 3][free[b] % 3] - minus[free[b] / 3][free[b] % 3]) /
+                (2 * step * std::sqrt(mass[free[a] / 3] * mass[free[b] / 3]));
   }
-  const double mass = model.materials[0].density * 1e-9 / 8;
-  return largest_eigenvalue(K) / mass * critical * critical / 4;
+  return largest_eigenvalue(K) * critical * critical / 4;
+}
+
+// of a lone voxel
+double true_over_bound(const Model& model, const Matrix& F)
+{
+  Vectors u(8);
+  for (std::size_t n = 0; n < 8; ++n)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        u[n][i] += (F[i][j] - (i == j ? 1 : 0)) * test::rest(model, n)[j];
+  std::vector<std::size_t> free(24);
+  std::iota(free.begin(), free.end(), 0);
+  return true_over_bound(model, u, std::vector<double>(8, model.materials[0].density * 1e-9 / 8), free);
 }
 
 struct Tissue
@@ -167,3 +180,148 @@ INSTANTIATE_TEST_SUITE_P(
                     Tissue{ "holzapfel", Law::holzapfel, 0.49, { mu, 0, mu, 5, 0, 1, 0, 0, 0, 1, 0 }, 1.02 },
                     Tissue{ "guccione", Law::guccione, 0.49, { 0.25 * mu, 0, 8, 2, 4, 1, 0, 0 }, 1.01 }),
     [](const auto& of) { return of.param.name; });
+
+namespace
+{
+
+// fat, and stiffer and heavier things in single voxels, two in some, at random; holes; a muscle through some voxels;
+// nodes that are rigid, prescribed, or prescribed along one axis
+Model random_mixture(std::mt19937& random)
+{
+  std::uniform_real_distribution<double> share(0, 1);
+  test::BlockSettings settings;
+  settings.voxels = { { 3, 2, 2 } };
+  settings.keep = [&](auto i, auto, auto) { return i == 0 || share(random) < 0.85; };
+  Model model = test::block_model(settings);
+  for (const double stiffer : { 10.0, 100.0, 700.0 })
+  {
+    Material material = model.materials[0];
+    material.parameters[0] *= stiffer;
+    material.parameters[1] *= stiffer;
+    material.density *= 1 + share(random);
+    model.materials.push_back(material);
+  }
+  model.mixture_begin.assign(1, 0);
+  model.mixture_material.clear();
+  model.mixture_proportion.clear();
+  for (auto& fill : model.fill)
+  {
+    fill = static_cast<float>(0.3 + 0.7 * share(random));
+    const std::int16_t stiff = share(random) < 0.3 ? static_cast<std::int16_t>(1 + 3 * share(random)) : std::int16_t(0);
+    const auto part = static_cast<float>(stiff > 0 && share(random) < 0.5 ? share(random) : 1);
+    model.mixture_material.insert(model.mixture_material.end(), { stiff, std::int16_t(0) });
+    model.mixture_proportion.insert(model.mixture_proportion.end(), { part, 1 - part });
+    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
+  }
+  if (share(random) < 0.5)
+  {
+    Muscle muscle;
+    muscle.name = "muscle";
+    muscle.stress_reference = 3e5;
+    muscle.passive = share(random) < 0.5;
+    test::add_muscle(model, { { 0.6f, 0, 0.8f } }, muscle);
+  }
+  Load along, whole;
+  along.kind = whole.kind = Load::Kind::displacement;
+  along.name = "along";
+  along.fixed = { { true, false, false } };
+  whole.name = "whole";
+  model.loads = { along, whole };
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(model.nodes.size()); ++n)
+    if (const double kind = share(random); kind < 0.15)
+      model.rigid.push_back({ n, -1 });
+    else if (kind < 0.3)
+      model.prescribed.push_back({ n, kind < 0.2 ? 1 : 0 });
+  return model;
+}
+
+std::vector<double> masses(const Model& model)
+{
+  std::vector<double> mass(model.nodes.size(), 0);
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+      for (const auto n : model.voxel_nodes[e])
+        mass[n] += model.materials[model.mixture_material[m]].density * model.mixture_proportion[m] * model.fill[e] *
+                   1e-9 / 8;
+  return mass;
+}
+
+double critical_step(const Model& model)
+{
+  return make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 })->monitor().critical_time_step;
+}
+
+// with voxels of another material where it is asked for
+Model with_stiff_voxels(const std::function<bool(const std::array<std::int32_t, 3>&)>& stiff)
+{
+  test::BlockSettings settings;
+  settings.voxels = { { 5, 5, 5 } };
+  Model model = test::block_model(settings);
+  model.materials.push_back(model.materials[0]);
+  for (double& parameter : model.materials[1].parameters)
+    parameter *= 1e4;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    model.mixture_material[e] = stiff(model.voxels[e]) ? 1 : 0;
+  return model;
+}
+
+}  // namespace
+
+// nodes that are prescribed along one axis are free along the others
+TEST(AssembledBound, holds_for_mixtures_fibres_and_constraints)
+{
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  double worst = 0;
+  for (int i = 0; i < 40; ++i)
+  {
+    const Model model = random_mixture(random);
+    const double size = i % 3 == 0 ? 0 : i % 3 == 1 ? 3e-5 : 1.5e-4;
+    Vectors u(model.nodes.size());
+    for (auto& x : u)
+      for (double& component : x)
+        component = size * noise(random);
+    std::vector<std::size_t> free;
+    for (std::size_t a = 0; a < 3 * u.size(); ++a)
+    {
+      const auto is_it = [&](const auto& held) { return static_cast<std::size_t>(held.node) == a / 3; };
+      const auto prescribed = std::find_if(model.prescribed.begin(), model.prescribed.end(), is_it);
+      if (std::none_of(model.rigid.begin(), model.rigid.end(), is_it) &&
+          (prescribed == model.prescribed.end() || !model.loads[prescribed->load].fixed[a % 3]))
+        free.push_back(a);
+    }
+    const double ratio = true_over_bound(model, u, masses(model), free);
+    EXPECT_LT(ratio, 1) << "model " << i;
+    worst = std::max(worst, ratio);
+  }
+  EXPECT_GT(worst, 0.5) << "far too careful";
+}
+
+TEST(AssembledBound, shares_a_stiff_voxels_nodes_with_its_neighbours)
+{
+  const double whole = critical_step(with_stiff_voxels([](const auto&) { return true; }));
+  const double lone = critical_step(with_stiff_voxels([](const auto& v) { return v[0] + v[1] + v[2] == 0; }));
+  const double layer = critical_step(with_stiff_voxels([](const auto& v) { return v[2] == 2; }));
+  const double single = critical_step(with_stiff_voxels([](const auto& v) { return v == std::array<std::int32_t, 3>{ { 2, 2, 2 } }; }));
+  test::BlockSettings settings;
+  settings.voxels = { { 1, 1, 1 } };
+  settings.young *= 1e4;
+  EXPECT_NEAR(whole / critical_step(test::block_model(settings)), 1, 1e-9) << "a uniform block is as its voxels are";
+  EXPECT_NEAR(lone / whole, 1, 1e-9) << "a corner has the mass of its voxel alone";
+  EXPECT_NEAR(layer / whole, std::sqrt(2.0), 1e-3);
+  EXPECT_NEAR(single / whole, std::sqrt(8.0), 1e-3);
+}
+
+TEST(AssembledBound, leaves_out_what_cannot_move)
+{
+  Model model = with_stiff_voxels([](const auto& v) { return v[2] == 0; });
+  const double before = critical_step(model);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  EXPECT_NEAR(critical_step(model) / before, std::sqrt(2.0), 1e-3) << "what is left has neighbours";
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] > 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  EXPECT_NEAR(critical_step(model) / before, 1, 1e-9) << "where nothing can move a time step is left";
+}

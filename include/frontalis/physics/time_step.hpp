@@ -7,18 +7,27 @@ namespace frontalis
 namespace physics
 {
 
-/// Square of the highest frequency [1/s2] of a lone box voxel with one-point quadrature and lumped mass: an upper bound
-/// for any assembly of such voxels (Irons & Treharne). With d_j = 1/h_j^2 the stress modes have
-/// omega^2 = 4/rho eig(lambda sqrt(d) sqrt(d)^T + 2 mu diag(d)) <= 4/rho (lambda sum d + 2 mu max d), exact on cubes.
-/// `along_fibre` [Pa] is stiffness that fibres add in one direction.
+/// Bound of the largest eigenvalue [N/m] of the stiffness of a box voxel with one-point quadrature, at rest, for a
+/// volume of tissue [m3]. With d_j = 1/h_j^2 its stress modes have the eigenvalues V/2 eig(lambda sqrt(d) sqrt(d)^T +
+/// 2 mu diag(d)) <= V/2 (lambda sum d + 2 mu max d), exact on cubes. `along_fibre` [Pa] is stiffness that fibres add in
+/// one direction.
+///
+/// What it is for: with k_e >= the largest eigenvalue of the stiffness K_e of voxel e, and lumped masses m_n,
+///   x^T K x = sum_e x_e^T K_e x_e <= sum_e k_e |x_e|^2 = sum_n (sum of k_e over the voxels at n) |x_n|^2,
+/// so that the highest frequency of the model is bounded by
+///   omega^2 <= max_n (sum of k_e over the voxels at n) / m_n,
+/// where only nodes count that can move (x_n = 0 elsewhere, and what a constraint leaves of the others lowers a Rayleigh
+/// quotient's maximum). It is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu & Moran,
+/// Nonlinear Finite Elements, 6.2) with the mass of a node split among its voxels by their stiffness, which is the
+/// inequality's best where voxels share nodes evenly; in a uniform block it is the bound of a lone voxel, 8 k_e / m_e.
 template <class T>
-FRONTALIS_LAW T frequency_squared_bound(T mu, T kappa, T along_fibre, T density, T hx, T hy, T hz)
+FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T hy, T hz)
 {
   using N = Number<T>;
   const T dx = N::of(1) / (hx * hx), dy = N::of(1) / (hy * hy), dz = N::of(1) / (hz * hz);
   const T largest = N::max(dx, N::max(dy, dz));
   const T lambda = kappa - N::of(2.0 / 3.0) * mu;
-  return N::of(4) / density * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
+  return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
 /// How much a neo-Hookean element has stiffened by deformation, 1 at rest. The second derivatives of the energy
@@ -47,6 +56,16 @@ FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k
   const T stiffness = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
   return N::of(1) + (material.kappa * volumetric + material.mu * N::max(isochoric - at_rest, N::of(0))) /
                         N::max(stiffness, N::of(1e-30));
+}
+
+/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, but for what laws beyond neo-Hookean
+/// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness().
+template <class T, class S>
+FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight)
+{
+  using N = Number<T>;
+  const T growth = stiffening(material, k, weight);
+  return at_rest * N::max(growth, N::of(1)) + (growth - growth);
 }
 
 }  // namespace physics

@@ -74,8 +74,8 @@ public:
 /// Energy, without a ledger: kinetic, internal and hourglass energy E may have grown since the last good check, t ago,
 /// to no more than twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2, where W is the energy of a strain of 1e-4
 /// everywhere, what the fibres can give (tension times volume times a stretch of 1.2, and of 0.3 of passive ones), what
-/// bones that went a way of d, there and back, and prescribed nodes that moved by d can have brought (half the bound of
-/// frequency squared times mass times d^2 of the voxels that hang on them) and what viscous stresses can give back; f
+/// bones that went a way of d, there and back, and prescribed nodes that moved by d can have brought (four times
+/// the bound of stiffness of the voxels that hang on them times d^2) and what viscous stresses can give back; f
 /// are gravity and surface loads on nodes of mass m.
 class Guard
 {
