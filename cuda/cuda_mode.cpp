@@ -45,13 +45,13 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
   {
     for (const double sign : { 1.0, -1.0 })
     {
-      require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(sign * amplitude / m.largest), m.moved.data(),
-                              stream_),
+      require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(sign * amplitude / m.largest),
+                              m.moved.data(), stream_),
               "displacing nodes");
       queue_forces(m.moved.data(), activation.data(), (sign > 0 ? m.plus : m.minus).data());
     }
-    require(launch_product(nodes, mobility, u, m.plus.data(), m.minus.data(), static_cast<float>(0.5 / amplitude), m.mode.data(),
-                           m.seen.data(), stream_),
+    require(launch_product(nodes, mobility, u, m.plus.data(), m.minus.data(), static_cast<float>(0.5 / amplitude),
+                           m.mode.data(), m.seen.data(), stream_),
             "a product with the stiffness");
     synchronise();
     m.seen.download(seen);

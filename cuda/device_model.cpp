@@ -166,8 +166,8 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   {
     d.voxel(e, voxel);
     entry.clear();
-    for (const double x : { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass,
-                            voxel.stiffness })
+    for (const double x :
+         { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffness })
       entry.push_back(static_cast<float>(x));
     const auto& form = voxel.stabilisation;
     if (stabilised)
@@ -175,8 +175,8 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
         entry.push_back(static_cast<float>(x));
     for (const LawPart& part : voxel.laws)
     {
-      for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume,
-                              part.per_tangent, part.stiffness_at_rest })
+      for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume, part.per_tangent,
+                              part.stiffness_at_rest })
         entry.push_back(static_cast<float>(x));
       for (const double x : part.parameters)
         entry.push_back(static_cast<float>(x));

@@ -176,8 +176,8 @@ static __device__ __noinline__ void gauss_points(const StepArguments& g, std::ui
     const physics::NeoHookean<float> material{ entry.x, 0.0f };
     physics::add_gauss_forces(point, elastic_stress<Effects::forms>(g, palette, material, k), g.scale, force);
     if (look && palette != 0)
-      stiffness = __uint_as_float(
-          max(bits_of(stiffness), bits_of(stiffness_now<Effects::forms>(g, palette, entry, k))));
+      stiffness =
+          __uint_as_float(max(bits_of(stiffness), bits_of(stiffness_now<Effects::forms>(g, palette, entry, k))));
   }
   for (int c = 0; c < 3; ++c)
     for (int m = 0; m < 8; ++m)

@@ -222,7 +222,8 @@ __device__ __forceinline__ void march(const StepArguments& g, const Strip& strip
         const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;
         const float sum = right + __shfl_sync(whole_warp, right, left);
         if ((here[r].x & StripSlot::updated) != 0)
-          frequency_bits = max(frequency_bits, frequency_bits_of(g, here[r].x & StripSlot::node_mask, fetch.own.w, sum));
+          frequency_bits =
+              max(frequency_bits, frequency_bits_of(g, here[r].x & StripSlot::node_mask, fetch.own.w, sum));
         carried_stiffness[r - 1] = pair;
       }
       pending_stiffness = stiffness;

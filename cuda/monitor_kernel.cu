@@ -157,9 +157,9 @@ __global__ void __launch_bounds__(block)
     for (const std::uint32_t n : voxels.voxels[e].node)
     {
       const float squared = voxels.node_stiffness[n] * (g.mobility == nullptr ? u[n].w : g.mobility[n]);
-      own.frequency_squared =
-          squared <= own.frequency_squared || own.frequency_squared != own.frequency_squared ? own.frequency_squared
-                                                                                             : squared;
+      own.frequency_squared = squared <= own.frequency_squared || own.frequency_squared != own.frequency_squared
+                                  ? own.frequency_squared
+                                  : squared;
     }
     most.add(own);
   }

@@ -17,8 +17,8 @@ struct MonitorVoxels
 {
   const MonitorVoxel* voxels;  ///< in the model's order
   std::uint32_t count;
-  std::uint32_t nodes;  ///< device nodes
-  double scale[3];      ///< 1 / (4 h)
+  std::uint32_t nodes;    ///< device nodes
+  double scale[3];        ///< 1 / (4 h)
   float* stiffness;       ///< room for the bound of each voxel [N/m]
   float* node_stiffness;  ///< and for the sum at each node
 };

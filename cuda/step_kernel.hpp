@@ -102,8 +102,8 @@ struct StepArguments
   const Strip* strips;
   const uint2* slots;  ///< StripSlot: node and palette entry
   std::uint32_t strip_count;
-  float4* u[2];  ///< displacement [m] and inverse mass [1/kg]; u[first] holds the present ones
-  float* v[3];   ///< velocity [m/s]
+  float4* u[2];           ///< displacement [m] and inverse mass [1/kg]; u[first] holds the present ones
+  float* v[3];            ///< velocity [m/s]
   const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: none is
   std::int32_t first;
 
@@ -230,8 +230,8 @@ constexpr int strip_blocks(Effects effects)
   return (effects & (Effects::viscosity | Effects::forms)) == Effects::none ? 4 : 3;
 }
 
-/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners and
-/// their stiffness.
+/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners
+/// and their stiffness.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +

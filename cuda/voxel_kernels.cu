@@ -123,9 +123,9 @@ __global__ void __launch_bounds__(block)
   out[n] = make_float4(at.x + share * along.x, at.y + share * along.y, at.z + share * along.z, at.w);
 }
 
-__global__ void __launch_bounds__(block) product(std::uint32_t nodes, const float* mobility, const float4* u,
-                                                 const float4* plus, const float4* minus, float factor, float4* mode,
-                                                 double2* seen)
+__global__ void __launch_bounds__(block)
+    product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus, const float4* minus,
+            float factor, float4* mode, double2* seen)
 {
   __shared__ double2 own[block];
   double2 sum{ 0, 0 };

@@ -270,10 +270,7 @@ struct CpuElement
   }
 
   /// The larger one, NaN for good where one is.
-  static FRONTALIS_LAW Batch larger(const Batch& a, const Batch& b)
-  {
-    return N::max(a, b) + (a - a) + (b - b);
-  }
+  static FRONTALIS_LAW Batch larger(const Batch& a, const Batch& b) { return N::max(a, b) + (a - a) + (b - b); }
 
   // isochoric stress at eight points: modes to the forces on them
   static __attribute__((noinline)) void gauss_points(const Arguments& g, const Place& at, Batch (&mode)[3][8],

@@ -60,9 +60,9 @@ Monitor CpuSolver<Real>::measure()
         choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
         team_.barrier();
         // displacements have been read: their place takes the sums
-        bounds[t] = bound_of_nodes(discretisation_, *model_, stiffness.data(),
-                                   { first_voxel(first - 1), first_voxel(last) },
-                                   { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());
+        bounds[t] =
+            bound_of_nodes(discretisation_, *model_, stiffness.data(), { first_voxel(first - 1), first_voxel(last) },
+                           { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());
       });
   PlaneMonitor sum;
   for (const PlaneMonitor& plane : planes)

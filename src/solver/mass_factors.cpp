@@ -34,10 +34,9 @@ std::vector<float> selective_mass_factors(const Model& model, const std::vector<
                                           const std::vector<std::int32_t>& held)
 {
   const MassScalingSettings& settings = model.mass_scaling;
-  const double allowed =
-      settings.time_step > 0
-          ? 4 * model.time_step_share * model.time_step_share / (settings.time_step * settings.time_step)
-          : allowed_by_others(model, voxels, held);
+  const double allowed = settings.time_step > 0 ? 4 * model.time_step_share * model.time_step_share /
+                                                      (settings.time_step * settings.time_step)
+                                                : allowed_by_others(model, voxels, held);
   if (allowed == 0)
     return {};
   std::vector<float> factors;

@@ -69,7 +69,7 @@ private:
   std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // fibres note their work
   std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last
-  std::vector<double> stiffness_;  // bound of each voxel at the forces computed last [N/m]
+  std::vector<double> stiffness_;                    // bound of each voxel at the forces computed last [N/m]
 };
 
 }  // namespace frontalis

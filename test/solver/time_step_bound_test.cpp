@@ -241,8 +241,8 @@ std::vector<double> masses(const Model& model)
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
       for (const auto n : model.voxel_nodes[e])
-        mass[n] += model.materials[model.mixture_material[m]].density * model.mixture_proportion[m] * model.fill[e] *
-                   1e-9 / 8;
+        mass[n] +=
+            model.materials[model.mixture_material[m]].density * model.mixture_proportion[m] * model.fill[e] * 1e-9 / 8;
   return mass;
 }
 
@@ -302,7 +302,10 @@ TEST(AssembledBound, shares_a_stiff_voxels_nodes_with_its_neighbours)
   const double whole = critical_step(with_stiff_voxels([](const auto&) { return true; }));
   const double lone = critical_step(with_stiff_voxels([](const auto& v) { return v[0] + v[1] + v[2] == 0; }));
   const double layer = critical_step(with_stiff_voxels([](const auto& v) { return v[2] == 2; }));
-  const double single = critical_step(with_stiff_voxels([](const auto& v) { return v == std::array<std::int32_t, 3>{ { 2, 2, 2 } }; }));
+  const double single = critical_step(with_stiff_voxels(
+      [](const auto& v) {
+        return v == std::array<std::int32_t, 3>{ { 2, 2, 2 } };
+      }));
   test::BlockSettings settings;
   settings.voxels = { { 1, 1, 1 } };
   settings.young *= 1e4;

@@ -86,7 +86,7 @@ enum class Precision : std::uint8_t
 /// How the critical time step is found.
 enum class TimeStepEstimate : std::uint8_t
 {
-  element,   ///< from the stiffest voxel by itself: always safe
+  element,   ///< bounded at nodes from the stiffness of their voxels: always safe
   assembled  ///< from the assembled model by power iteration, renewed as it stiffens: longer where few voxels are stiff
 };
 

@@ -16,10 +16,10 @@ namespace physics
 ///   x^T K x = sum_e x_e^T K_e x_e <= sum_e k_e |x_e|^2 = sum_n (sum of k_e over the voxels at n) |x_n|^2,
 /// so that the highest frequency of the model is bounded by
 ///   omega^2 <= max_n (sum of k_e over the voxels at n) / m_n,
-/// where only nodes count that can move (x_n = 0 elsewhere, and what a constraint leaves of the others lowers a Rayleigh
-/// quotient's maximum). It is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu & Moran,
-/// Nonlinear Finite Elements, 6.2) with the mass of a node split among its voxels by their stiffness, which is the
-/// inequality's best where voxels share nodes evenly; in a uniform block it is the bound of a lone voxel, 8 k_e / m_e.
+/// where only nodes count that can move: x_n = 0 at the others, and what constraints leave of x can only lower the
+/// largest Rayleigh quotient. This is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu &
+/// Moran, Nonlinear Finite Elements for Continua and Structures, chapter 6) with the mass of a node split among its
+/// voxels in proportion to k_e. In a uniform block it is what a lone voxel of mass m has, 8 k / m.
 template <class T>
 FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T hy, T hz)
 {

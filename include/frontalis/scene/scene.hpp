@@ -69,7 +69,7 @@ struct AccuracyProfile
   bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness a voxel
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< compensated, double: of the CPU backend
-  std::string time_step = "element";      ///< critical time step: of the stiffest voxel, or of the assembled model
+  std::string time_step = "element";      ///< critical time step: bounded at nodes, or of the assembled model
   MeasuredAccuracy measured;
 };
 

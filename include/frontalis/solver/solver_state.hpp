@@ -31,8 +31,8 @@ struct Monitor
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
   std::int64_t inverted = 0;         ///< voxels with J <= 0
-  double critical_time_step = 0;     ///< [s] now, element bound
-  std::int32_t stiffest_voxel = -1;  ///< that sets it
+  double critical_time_step = 0;     ///< [s] now, bounded at nodes (physics/time_step.hpp)
+  std::int32_t stiffest_voxel = -1;  ///< of those at the node that sets it
   double step_share = 0;             ///< latest time step over the critical now, by the model's estimate
   bool finite = true;
 };
