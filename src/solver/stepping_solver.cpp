@@ -22,7 +22,9 @@ constexpr int close_steps = 8;              // between looks that follow closely
 constexpr double alert_share = 0.55;        // of the critical time step
 constexpr double much_stiffer = 4;          // than at rest, of the frequency squared
 constexpr double stiffening_allowed = 1.1;  // of the frequency squared from look to look
+constexpr double restless_change = 0.02;    // of it from look to look
 constexpr int steps_after_stiffening = 128;
+constexpr int steps_after_restlessness = 256;
 constexpr float activation_a_plan = 0.3F;  // that calls for close looks
 constexpr int steps_after_a_switch = 48;
 constexpr double jerk_felt = 0.005;  // change of a bone's way a step, in edges of a voxel
@@ -81,11 +83,6 @@ double SteppingSolver::critical_frequency_squared() const
   return frequency_squared_;
 }
 
-bool SteppingSolver::alert() const
-{
-  return wary_ > 0 || frequency_squared_ > much_stiffer * discretisation_.frequency_squared_max;
-}
-
 double SteppingSolver::safe_time_step() const
 {
   const double critical = 2 / std::sqrt(critical_frequency_squared());
@@ -97,7 +94,7 @@ double SteppingSolver::safe_time_step() const
 double SteppingSolver::careful_time_step() const
 {
   const double safe = safe_time_step();
-  return alert() ? std::min(safe, slow_share_ * alert_share * 2 / std::sqrt(critical_frequency_squared())) : safe;
+  return wary_ > 0 ? std::min(safe, slow_share_ * alert_share * 2 / std::sqrt(critical_frequency_squared())) : safe;
 }
 
 double SteppingSolver::keep(double dt) const { return (1 - 0.5 * damping_ * dt) / (1 + 0.5 * damping_ * dt); }
@@ -179,6 +176,17 @@ void SteppingSolver::respond(const std::vector<float>& from, const std::vector<f
   }
 }
 
+// What grows fast is watched closely, and for longer what is much stiffer than at rest and changes: it vibrates. What
+// a contraction stiffens slowly does not.
+void SteppingSolver::watch(double squared, const StepPlan& plan)
+{
+  const bool restless = squared > much_stiffer * discretisation_.frequency_squared_max &&
+                        std::abs(squared - latest_seen_) > restless_change * latest_seen_;
+  latest_seen_ = squared;
+  const int anew = squared > plan.alarm ? steps_after_stiffening : restless ? steps_after_restlessness : 0;
+  wary_ = std::max(anew, wary_ - plan.steps);
+}
+
 // what softens is believed slowly: it may stiffen again before the next look, and each change of the time step costs
 // accuracy
 void SteppingSolver::expect_frequency(double squared)
@@ -206,7 +214,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     const double longest = std::min(careful_time_step(), steady);
     const double steps_left = std::ceil(remaining / longest * (1 - 1e-9));
     StepPlan plan;
-    plan.closely = alert() || longest == steady;
+    plan.closely = wary_ > 0 || longest == steady;
     const int most_steps = plan.closely ? close_steps : steps_a_plan();
     plan.steps = static_cast<int>(std::min<double>(steps_left, most_steps));
     plan.dt = remaining / steps_left;
@@ -236,7 +244,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
       failed_ = true;
       throw Diverged("the motion diverged at " + std::to_string(time_) + " s: displacements are no longer finite");
     }
-    wary_ = squared > plan.alarm ? std::max(steps_after_stiffening, wary_) : std::max(0, wary_ - plan.steps);
+    watch(squared, plan);
     if (!mutation::time_step_of_rest)
       expect_frequency(squared);
   }

@@ -36,6 +36,7 @@ struct Course
   double time_ = 0;
   double latest_step_ = 0;        // [s]
   double frequency_squared_ = 0;  // of the stiffest voxel, as it is believed
+  double latest_seen_ = 0;        // of it
   int wary_ = 0;                  // steps to be taken with care yet
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
@@ -53,7 +54,7 @@ struct Course
 
   void archive(ByteArchive& archive)
   {
-    archive(time_)(latest_step_)(frequency_squared_)(wary_)(assembled_share_)(assembled_at_step_);
+    archive(time_)(latest_step_)(frequency_squared_)(latest_seen_)(wary_)(assembled_share_)(assembled_at_step_);
     archive(assembled_at_frequency_)(assembled_at_activation_)(assembled_good_for_)(assembled_mode_);
     archive(failed_)(controls_.activation)(controls_.bone)(bone_before_)(bone_seconds_)(activation_)(ledger_)(initial_);
   }
@@ -157,7 +158,6 @@ protected:
   std::array<double, 3> gravity_{};
 
 private:
-  bool alert() const;
   double safe_time_step() const;
   double careful_time_step() const;
   double critical_frequency_squared() const;
@@ -167,6 +167,7 @@ private:
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
   void renew_assembled_bound(const std::vector<float>& target);
   void expect_frequency(double squared);
+  void watch(double squared, const StepPlan& plan);
   double rayleigh_quotient(const Vectors& u, const Vectors& f, const Vectors& u_now, const Vectors& f_now) const;
   double distance(const Vectors& a, const Vectors& b) const;
   void open_ledger();
