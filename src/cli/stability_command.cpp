@@ -22,14 +22,14 @@ struct StabilityOptions
 {
   std::vector<std::string> only;
   std::string backend = "cpu";
-  std::string json, table, markdown, models;
+  std::string cases, json, table, markdown, models;
   StabilityScenes scenes;
   bool all = false;
 };
 
 void run_stability(const StabilityOptions& options)
 {
-  const auto cases = chosen_cases(stability_cases(), options.only, options.all);
+  const auto cases = chosen_cases(stability_cases(stability_folder(options.cases)), options.only, options.all);
   Progress progress(Progress::OffTerminal::silent);
   std::string name;
   StabilitySettings settings;
@@ -93,6 +93,7 @@ void add_stability_command(CLI::App& app, Action& action)
   command->add_flag("--all", options->all, "long cases too, and all in full length");
   command->add_option("--backend", options->backend, "reference, cpu or cuda (cpu)")
       ->check(CLI::IsMember({ "reference", "cpu", "cuda" }));
+  command->add_option("--cases", options->cases, "folder of the cases' files (where the program finds them itself)");
   command->add_option("--mesh-dir", options->scenes.mesh_directory, "folder of the real head's meshes, for its case");
   command->add_option(
       "--scenes", options->scenes.folder,

@@ -16,27 +16,35 @@ namespace
 
 namespace fs = std::filesystem;
 
-// folders that may hold scenes or models: given, installed (bin/ or lib/frontalis/ beside share/), of a bundle (bin/
-// beside models/), the sources'
-std::vector<fs::path> folders(const StabilityScenes& where)
+// where a folder of the package may be: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/ beside
+// `bundled`), in the sources
+std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
 {
-  if (!where.folder.empty())
-    return { where.folder };
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none).parent_path();
-  const fs::path sources(FRONTALIS_SOURCE_DIRECTORY);
-  return { program / "../share/frontalis/config", program / "../../share/frontalis/config",
-           program / "../models/stability", sources / "config" };
+  return { program / "../share/frontalis" / shared, program / "../../share/frontalis" / shared,
+           program / ".." / bundled, fs::path(FRONTALIS_SOURCE_DIRECTORY) / source };
 }
 
 }  // namespace
+
+std::string stability_folder(const std::string& given)
+{
+  if (!given.empty())
+    return given;
+  for (const fs::path& folder : folders("stability", "stability", "test/stability"))
+    if (fs::is_directory(folder))
+      return folder.lexically_normal().string();
+  throw Error("the files of the hard cases (stability/*.yaml) are not beside the program: say where (--cases)");
+}
 
 std::shared_ptr<const Model> stability_scene(const StabilityScenes& where, const std::string& name)
 {
   const bool real = name == "real_head";
   if (real && where.mesh_directory.empty())
     throw Skipped{ "needs meshes (--mesh-dir)" };
-  for (const fs::path& folder : folders(where))
+  const std::vector<fs::path> given{ where.folder };
+  for (const fs::path& folder : where.folder.empty() ? folders("config", "models/stability", "config") : given)
   {
     const fs::path model = folder / (name + ".vtkhdf");
     if (fs::exists(model))

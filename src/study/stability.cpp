@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 namespace frontalis
 {
@@ -16,11 +17,21 @@ bool Trial::passed() const
   return failure.empty() && std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); });
 }
 
-std::vector<StabilityCase> stability_cases()
+std::vector<StabilityCase> stability_cases(const std::string& folder)
 {
   std::vector<StabilityCase> all;
   for (const auto& family : { hard_materials(), hard_shapes(), hard_muscles(), hard_constraints(), hard_times() })
-    all.insert(all.end(), family.begin(), family.end());
+    for (const auto& [name, play] : family)
+    {
+      const CaseFile file((std::filesystem::path(folder) / (name + ".yaml")).string());
+      const auto run = [file, play = play](const StabilitySettings& settings, Trial& trial)
+      {
+        play(settings, file, trial);
+        for (const std::string& key : file.idle())
+          trial.failure += (trial.failure.empty() ? "" : "; ") + key + " of its file is of no use";
+      };
+      all.push_back({ name, true, file.hard(), file.text(), run });
+    }
   return all;
 }
 

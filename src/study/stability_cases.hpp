@@ -1,16 +1,18 @@
 #pragma once
 
+#include "stability_file.hpp"
 #include "watched_motion.hpp"
 
 namespace frontalis
 {
 
-// one function a family; stability.cpp puts them together
-std::vector<StabilityCase> hard_materials();
-std::vector<StabilityCase> hard_shapes();
-std::vector<StabilityCase> hard_muscles();
-std::vector<StabilityCase> hard_constraints();
-std::vector<StabilityCase> hard_times();
+// one function a family, cases by name; stability.cpp puts them together with their files
+using CaseFunctions = std::vector<std::pair<std::string, void (*)(const StabilitySettings&, const CaseFile&, Trial&)>>;
+CaseFunctions hard_materials();
+CaseFunctions hard_shapes();
+CaseFunctions hard_muscles();
+CaseFunctions hard_constraints();
+CaseFunctions hard_times();
 
 /// "held", "stopped with a report: ...", "skipped: ..." or "FAILED: ...".
 std::string verdict_of(const Trial& trial);

@@ -1,6 +1,7 @@
 #include "watched_motion.hpp"
 
 #include "frontalis/error.hpp"
+#include "stability_file.hpp"
 #include "stability_models.hpp"
 
 #include <algorithm>
@@ -46,16 +47,16 @@ void WatchedMotion::advance(double seconds, const Controls& target, int looks)
   }
 }
 
-void WatchedMotion::come_and_go(const std::vector<Phase>& phases, const std::string& of, double share, double left,
-                                const std::string& file, const std::string& title)
+void WatchedMotion::come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                                const std::string& picture, const std::string& title)
 {
   for (const Phase& phase : phases)
     advance(phase.seconds, phase.target, phase.looks);
-  plot(file, title);
+  plot(picture, title);
   advance(0.2, controls(), 20);
-  expect_balance(of, share);
+  expect_balance(of, file.bound("energy", "%"));
   trial_.checks.push_back(
-      absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), 1e3 * left));
+      absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm")));
 }
 
 void WatchedMotion::settle(const Controls& target, double tolerance, double seconds)
@@ -122,12 +123,12 @@ void WatchedMotion::look()
                        monitor_.worst_jacobian });
 }
 
-void WatchedMotion::expect_balance(const std::string& of, double share)
+void WatchedMotion::expect_balance(const std::string& of, double percent)
 {
   const double error = worst_imbalance_ / largest_;
   trial_.energy_error = std::fmax(trial_.energy_error, error);
   trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
-  trial_.checks.push_back(absolute_check("energy unexplained, " + of, "%", 0, 100 * error, 100 * share));
+  trial_.checks.push_back(absolute_check("energy unexplained, " + of, "%", 0, 100 * error, percent));
 }
 
 void WatchedMotion::plot(const std::string& file, const std::string& title)

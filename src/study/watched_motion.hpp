@@ -11,6 +11,8 @@
 namespace frontalis
 {
 
+class CaseFile;
+
 /// A guarded motion that is looked at as it goes on: energies, worst voxel, hourglass share. What it finds goes into
 /// its trial.
 class WatchedMotion
@@ -40,10 +42,10 @@ public:
     Controls target;
     int looks;
   };
-  /// Plays phases, plots them and leaves the model alone for a while: energy must be explained to a share
-  /// throughout, and no node be farther than `left` [m] from where it rests in the end.
-  void come_and_go(const std::vector<Phase>& phases, const std::string& of, double share, double left,
-                   const std::string& file, const std::string& title);
+  /// Plays phases, plots them and leaves the model alone for a while: energy must be explained throughout to a share
+  /// (the case's bounds.energy), and no node be farther from where it rests in the end than bounds.left.
+  void come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                   const std::string& picture, const std::string& title);
   /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.
   void settle(const Controls& target, double tolerance, double seconds);
   /// Plays a motion that may be too much: where the guard stops it, the trial has its report, and that the state is a
@@ -56,8 +58,8 @@ public:
   const Monitor& monitor() const { return monitor_; }       ///< at the latest look
   const EnergyLedger& energies() const { return ledger_; }  ///< the same
 
-  /// Checks that what the ledger left unexplained stayed within a share of its largest term.
-  void expect_balance(const std::string& of, double share);
+  /// Checks that what the ledger left unexplained stayed within so many percent of its largest term.
+  void expect_balance(const std::string& of, double percent);
   /// Energies over time and the smallest J, as a picture.
   void plot(const std::string& file, const std::string& title);
 
