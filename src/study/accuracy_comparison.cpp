@@ -18,7 +18,8 @@ constexpr double exactly_represented = 1e-3;  // error over motion
 
 }  // namespace
 
-AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference)
+AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
+                   const SkinAverage* average)
 {
   AccuracyRow row;
   row.name = measured.name;
@@ -35,6 +36,8 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
     row.error = worst(errors);
     row.settled = errors.back();
     row.landmark = landmark_error(found, truth);
+    if (average != nullptr)
+      row.averaged = worst(skin_errors(average->of(found), average->of(truth))).rms;
   }
   catch (const Error& error)
   {
@@ -55,7 +58,8 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
   return row;
 }
 
-void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings)
+void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
+                              AccuracyFindings& findings)
 {
   // the finest three levels that were measured
   std::vector<const MeasuredVariant*> levels;
@@ -79,6 +83,16 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
       findings.reference_error = richardson(edge(2), edge(1), apart(1), findings.order);
   }
   findings.motion = motion_size(level(1)->motion);
+  std::string plain, averaged;
+  for (std::size_t back = levels.size() - 1; back > 0; --back)
+  {
+    const VariantMotion &coarse = level(back + 1)->motion, &fine = level(back)->motion;
+    const std::string comma = plain.empty() ? "" : ", ";
+    plain += comma + readable(1e3 * apart(back), 3);
+    averaged += comma + readable(1e3 * worst(skin_errors(average.of(coarse), average.of(fine))).rms, 3);
+  }
+  findings.notes.push_back("From level to level of its voxels the reference's form moves the skin by " + plain +
+                           " mm RMS, averaged by " + averaged + " mm.");
 }
 
 // in the voxel edge, of the standard setting's form and of the reference's
@@ -96,7 +110,7 @@ void tell_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
       if (known == nullptr || !known->motion.fault.empty())
         continue;
       edges.push_back(edge);
-      errors.push_back(row_of(*known, plan, {}).error.rms);
+      errors.push_back(row_of(*known, plan, {}, nullptr).error.rms);
     }
     if (errors.size() < 2)
       continue;

@@ -71,17 +71,17 @@ std::string reference_words(const AccuracyFindings& f)
 Table accuracy_table(const AccuracyFindings& findings)
 {
   Table table({ "setting", "front", "error RMS [mm]", "error max [mm]", "settled RMS [mm]", "settled max [mm]",
-                "landmark [mm]", "energy [%]", "cost [s/s]", "spread [%]", "step [us]", "steps/s", "voxels",
-                "memory [MB]", "build [s]", "state" });
+                "averaged RMS [mm]", "landmark [mm]", "energy [%]", "cost [s/s]", "spread [%]", "step [us]", "steps/s",
+                "voxels", "memory [MB]", "build [s]", "state" });
   for (std::size_t r = 0; r < findings.rows.size(); ++r)
   {
     const AccuracyRow& row = findings.rows[r];
     const bool best = std::find(findings.front.begin(), findings.front.end(), r) != findings.front.end();
     const auto three = [](double value) { return std::isnan(value) ? value : std::stod(readable(value, 3)); };
     table.add({ row.name, best ? "*" : "", three(mm(row.error.rms)), three(mm(row.error.largest)),
-                three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
-                three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
-                three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
+                three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.averaged)),
+                three(mm(row.landmark)), three(100 * row.energy), three(row.cost), three(100 * row.spread),
+                three(1e6 * row.step), three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
                 row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault });
   }
   return table;
@@ -170,7 +170,10 @@ std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
   const std::string phases =
       f.closed_form ? "*error* is that of the skin once settled, "
                     : "*error* is that of the skin in the worst phase of the history (half of the ramp, its end, "
-                      "the end of the history, settled), *settled* at rest alone, ";
+                      "the end of the history, settled), *settled* at rest alone, *averaged* that of displacements "
+                      "averaged over a "
+                      "Gaussian of " +
+                          millimetres(f.averaged_over, 2) + " on the skin, from which folds are gone, ";
   std::string out =
       "# " + title + "\n\n" + reference_words(f) + " The skin moves by " + millimetres(f.motion, 2) + " RMS. " +
       phases +

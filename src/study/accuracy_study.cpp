@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace frontalis
 {
 namespace
 {
+
+constexpr double averaged_voxels = 1.5;  // of the standard setting
 
 class Study
 {
@@ -32,7 +35,10 @@ private:
   void measure_combinations();
   void check_reference();
 
-  AccuracyRow row(const MeasuredVariant& measured) const { return row_of(measured, plan_, motion_of(reference_)); }
+  AccuracyRow row(const MeasuredVariant& measured) const
+  {
+    return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
+  }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
   // edges that are variants': all but the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
@@ -49,6 +55,7 @@ private:
   AccuracyPlan plan_;
   VariantBench bench_;
   std::size_t reference_ = 0;
+  std::optional<SkinAverage> average_;  // where there is no closed form
   AccuracyFindings findings_;
 };
 
@@ -88,6 +95,8 @@ void Study::choose_reference()
   reference_ = bench_.measure(findings_.reference);
   if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
     throw Error("the reference, voxels of " + millimetres(edges.back()) + ", is of no use: " + fault);
+  findings_.averaged_over = averaged_voxels * plan_.standard.profile.voxel[0];
+  average_.emplace(motion_of(reference_), findings_.averaged_over);
 }
 
 void Study::measure_knobs()
@@ -216,7 +225,7 @@ AccuracyFindings Study::run()
   if (plan_.exact)
     tell_orders(plan_, bench_, findings_);
   else
-    estimate_reference_error(plan_, bench_, findings_);
+    estimate_reference_error(plan_, bench_, *average_, findings_);
   std::map<Backend, int> elsewhere;
   for (const MeasuredVariant& measured : bench_.done())
   {
@@ -233,7 +242,7 @@ AccuracyFindings Study::run()
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};
-    reference.landmark = NAN;
+    reference.landmark = reference.averaged = NAN;
   }
   findings_.front = pareto_front(findings_.rows, plan_.standard, findings_.reference_error);
   return findings_;

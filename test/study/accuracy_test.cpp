@@ -166,6 +166,8 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_GT(findings.reference_error, 0);
   EXPECT_LT(findings.reference_error, standard);
   EXPECT_GT(findings.motion, 5 * standard) << "errors are small beside the motion";
+  EXPECT_GT(row_named(findings, "standard").averaged, 0);
+  EXPECT_LT(row_named(findings, "standard").averaged, standard) << "what neighbours err by against each other is gone";
 
   const double tolerance = 1.02 * standard;
   const AccuracyRow& chosen = cheapest_within(findings, tolerance);

@@ -71,6 +71,7 @@ struct AccuracyRow
   std::string fault;        ///< why it has no figures: unstable, no model; empty: it has
   SkinError error;          ///< of the worst phase of the history, settled included
   SkinError settled;        ///< once settled
+  double averaged = NAN;    ///< as error, RMS, of the skin averaged over AccuracyFindings::averaged_over [m]
   double landmark = NAN;    ///< farthest that a landmark is off in any phase [m]
   double energy = NAN;      ///< what the ledger of energies leaves unexplained, over its largest term
   double cost = NAN;        ///< wall seconds a simulated second, skins published at the scene's frame rate
@@ -107,6 +108,7 @@ struct AccuracyFindings
   bool closed_form = false;    ///< what skins are compared with; otherwise the reference's
   double motion = 0;           ///< root mean square displacement of the reference's skin, largest of the phases [m]
   double reference_error = 0;  ///< [m], estimated
+  double averaged_over = 0;    ///< standard deviation of the Gaussian [m]; 0: nothing was averaged
   double order = NAN;          ///< observed order of convergence in the voxel edge
   bool extrapolated = false;   ///< whether the order is one to extrapolate with (0.5 to 2.5)
   std::string machine;
