@@ -15,14 +15,17 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
   const std::uint32_t index = blockIdx.x * block + threadIdx.x;
   if (index >= g.sliding_count || g.sliding[index].glides)
     return;
-  const std::uint32_t node = g.sliding[index].node;
+  SlidingContact& s = g.sliding[index];
+  const std::uint32_t node = s.node;
   const float4 now = g.u[g.first][node];
   const float u[3] = { now.x, now.y, now.z };
   float v[3] = { g.v[0][node], g.v[1][node], g.v[2][node] };
   const TangentPlane found = g.planes_ahead[index];
   bool changed = false;
-  if (found.reference.w >= 0)
+  if (found.reference.w >= 0 && !s.renewed)
   {
+    s.searching.stay_on(s.contact);
+    s.contact = s.searching;
     turn(g.contact_planes[index].normal_offset, found.normal_offset, v);
     g.contact_planes[index] = found;
     changed = true;
@@ -44,7 +47,11 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
     changed = true;
   }
   else if (reached(2 * plan, 0.5f) > reference.w || slip_squared(reference, u) > 0.5f * reference.w)
+  {
     asked = wanted_ahead;
+    s.searching = s.contact;
+  }
+  s.renewed = false;
   // where it will be halfway through the next plan
   g.planes_ahead[index].reference =
       make_float4(u[0] + 1.5f * plan * v[0], u[1] + 1.5f * plan * v[1], u[2] + 1.5f * plan * v[2], asked);
@@ -64,7 +71,7 @@ __global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_cons
   {
     const float4 at = g.planes_ahead[index].reference;
     const float u[3] = { at.x, at.y, at.z };
-    g.planes_ahead[index] = contact_plane(g.sliding[index], u);
+    g.planes_ahead[index] = contact_plane(g.sliding[index], g.sliding[index].searching, u);
   };
   // those that ask are few: they are listed first, so that all lanes work at once
   for (std::uint32_t first = blockIdx.x * block_ahead; first < g.sliding_count; first += gridDim.x * block_ahead)

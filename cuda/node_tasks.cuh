@@ -16,12 +16,13 @@ struct NodeState
   float v[3];
 };
 
-/// The plane of a node at displacement u.
-static __device__ __noinline__ TangentPlane contact_plane(SlidingContact& s, const float* u)
+/// The plane of a node at displacement u, found with `contact`, which is one of its two.
+static __device__ __noinline__ TangentPlane contact_plane(const SlidingContact& s, SurfaceContact& contact,
+                                                          const float* u)
 {
   using Point = SurfaceContact::Point;
   const Point rest{ s.rest[0], s.rest[1], s.rest[2] };
-  const ContactPlane plane = s.contact.renew(rest + Point{ u[0], u[1], u[2] });
+  const ContactPlane plane = contact.renew(rest + Point{ u[0], u[1], u[2] });
   const Point& n = plane.normal;
   return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
            make_float4(u[0], u[1], u[2], plane.slip * plane.slip) };
@@ -43,9 +44,10 @@ static __device__ __noinline__ void renew_contact(const StepArguments& g, std::i
 {
   if (g.contact_planes[index].reference.w < 0)
     g.sliding[index].contact.forget();
-  const TangentPlane plane = contact_plane(g.sliding[index], u);
+  const TangentPlane plane = contact_plane(g.sliding[index], g.sliding[index].contact, u);
   turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
   g.contact_planes[index] = plane;
+  g.sliding[index].renewed = true;
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -54,12 +56,10 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
   return x * x + y * y + z * z;
 }
 
-/// `plane`: as it was read before the step. A node whose new plane is being found keeps its own for the rest of the
-/// plan.
+/// `plane`: as it was read before the step.
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, TangentPlane plane, NodeState& n)
 {
-  if (slip_squared(plane.reference, n.u) > plane.reference.w &&
-      (plane.reference.w < 0 || g.planes_ahead[index].reference.w == nothing_ahead))
+  if (slip_squared(plane.reference, n.u) > plane.reference.w)
   {
     renew_contact(g, index, n.u, n.v);
     plane = g.contact_planes[index];

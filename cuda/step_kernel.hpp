@@ -56,7 +56,9 @@ struct SlidingContact
 {
   double rest[3];  ///< [m]
   SurfaceContact contact;
+  SurfaceContact searching;  ///< the one with which a plane is found beside the steps
   std::uint32_t node;
+  bool renewed;  ///< the node left its plane within the plan, and has another: what was found ahead is of no use
 
   // where the surface follows a bone or has friction: all in the frame of the bone, plane and point in double
   bool glides;

@@ -56,7 +56,7 @@ Equilibrium SteppingSolver::settle(const Controls& target, double tolerance, dou
 
   // windows last until the change is a share of the displacement that rounding errors in float cannot make
   constexpr double clear = 1e-4;
-  constexpr int longest = 64;  // looks
+  const int longest = std::max(1, 2048 / steps_a_look());  // looks
   Equilibrium result;
   result.residual = 1;
   const double begin = time_;

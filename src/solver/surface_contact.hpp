@@ -40,7 +40,7 @@ public:
   }
 
   /// Takes the other's surface.
-  void stay_on(const SurfaceContact& other) { surface_ = other.surface_; }
+  FRONTALIS_LAW void stay_on(const SurfaceContact& other) { surface_ = other.surface_; }
 
 private:
   using N = physics::Number<double>;
