@@ -111,7 +111,8 @@ void sharp_ridge(const StabilitySettings& settings, const CaseFile& file, Trial&
 
 void off_the_edge(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  const std::vector<double> rims = file.numbers("rims", "mm"), ways = file.numbers("least_ways", "mm");
+  const std::vector<double> rims = file.numbers("rims", "mm");
+  const std::vector<double> ways = file.numbers("least_ways", "mm", rims.size());
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
     Model model = soft_block(file.size());
@@ -119,7 +120,7 @@ void off_the_edge(const StabilitySettings& settings, const CaseFile& file, Trial
     slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } }), underside);
     model.gravity = { { file.number("pull", "m/s2"), 0, -9.81 } };
     WatchedMotion motion(settings, trial, model);
-    drag(file, trial, motion, "off an edge at " + readable(rims[i]) + " mm", ways.at(i), 40);
+    drag(file, trial, motion, "off an edge at " + readable(rims[i]) + " mm", ways[i], 40);
     motion.plot("off_the_edge_" + std::to_string(i + 1),
                 "A block is dragged off an edge at " + readable(rims[i]) + " mm of the surface that it slides on");
   }
@@ -133,7 +134,7 @@ void two_surfaces(const StabilitySettings& settings, const CaseFile& file, Trial
   slide(model, strip_of({ { -40e-3, 0.2e-3 }, { 60e-3, 0.2e-3 } }), underside, -1);
   slide(model, strip_of({ { -40e-3, 0.8e-3 }, { 10e-3, 0.8e-3 }, { 30e-3, 0.6e-3 }, { 60e-3, 0.6e-3 } }),
         [](const Point& p) { return !underside(p); });
-  add_muscles(model, { Muscle{ "sheet", 50e3, false, true } },
+  add_muscles(model, { Muscle{ "sheet", 1e3 * file.number("stress", "kPa"), false, true } },
               [](std::size_t) -> std::vector<Fibre> {
                 return { { 0, { { 1, 0, 0 } } } };
               });
@@ -150,9 +151,9 @@ void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& t
   model.damping = file.number("damping", "1/s");
   hold_face(model, 0, false, "bone");
   RigidTransform jumped;
-  const std::vector<double> jump_by = file.numbers("jump", "mm");
+  const std::vector<double> jump_by = file.numbers("jump", "mm", 3);
   for (std::size_t i = 0; i < 3; ++i)
-    jumped.translation[i] = 1e-3 * jump_by.at(i);
+    jumped.translation[i] = 1e-3 * jump_by[i];
   const double frame = file.seconds("frame"), step = make_solver(std::make_shared<const Model>(model))->time_step();
   for (const auto& jump : { std::pair("frame", frame), std::pair("millisecond", 1e-3), std::pair("step", step) })
   {

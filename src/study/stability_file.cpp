@@ -65,8 +65,10 @@ CaseFile::CaseFile(std::string path) : path_(std::move(path))
     fault("hard", "is missing: what is hard about the case, in a few words");
   if (text_.empty())
     fault("text", "is missing: what the case does and has to fulfil");
-  // on which backends the tests run it by default is CMake's
-  values("tests");
+  // CMake reads these: the tests that run by default
+  for (const std::string& backend : values("tests"))
+    if (backend != "cpu" && backend != "reference")
+      fault("tests", "'" + backend + "'; allowed are cpu and reference");
   for (std::size_t open = text_.find('{'); open != std::string::npos; open = text_.find('{', open))
   {
     const std::size_t close = text_.find('}', open);
@@ -93,7 +95,7 @@ const std::vector<std::string>& CaseFile::values(const std::string& key) const
   return found->second;
 }
 
-std::vector<double> CaseFile::numbers(const std::string& key, const std::string& unit) const
+std::vector<double> CaseFile::numbers(const std::string& key, const std::string& unit, std::size_t count) const
 {
   std::vector<double> numbers;
   for (const std::string& text : values(key))
@@ -102,29 +104,30 @@ std::vector<double> CaseFile::numbers(const std::string& key, const std::string&
     if (!split(text, numbers.emplace_back(), behind) || behind != unit)
       fault(key, "'" + text + "'; must be a number " + (unit.empty() ? "without a unit" : "in " + unit));
   }
+  if (numbers.empty() || (count > 0 && numbers.size() != count))
+    fault(key, "has " + std::to_string(numbers.size()) + " values; must have " +
+                   (count > 0 ? std::to_string(count) : "one or more"));
   return numbers;
 }
 
-double CaseFile::number(const std::string& key, const std::string& unit) const
-{
-  const std::vector<double> found = numbers(key, unit);
-  if (found.size() != 1)
-    fault(key, "has " + std::to_string(found.size()) + " values; must have one");
-  return found[0];
-}
+double CaseFile::number(const std::string& key, const std::string& unit) const { return numbers(key, unit, 1)[0]; }
 
 double CaseFile::seconds(const std::string& key) const
 {
   const std::vector<std::string>& texts = values(key);
-  const bool milliseconds = !texts.empty() && texts[0].size() > 2 && texts[0].substr(texts[0].size() - 2) == "ms";
-  return milliseconds ? 1e-3 * number(key, "ms") : number(key, "s");
+  double number = 0;
+  std::string unit;
+  if (texts.size() != 1 || !split(texts[0], number, unit) || (unit != "s" && unit != "ms"))
+    fault(key, "must be one number in s or ms");
+  return unit == "ms" ? 1e-3 * number : number;
 }
 
 std::array<std::int32_t, 3> CaseFile::size(const std::string& key) const
 {
-  const std::vector<double> found = numbers(key);
-  if (found.size() != 3)
-    fault(key, "has " + std::to_string(found.size()) + " values; must have three, of voxels");
+  const std::vector<double> found = numbers(key, {}, 3);
+  for (const double voxels : found)
+    if (!(voxels >= 1 && voxels <= 1000) || voxels != std::floor(voxels))
+      fault(key, "must be three whole numbers of voxels from 1 to 1000");
   return { { static_cast<std::int32_t>(found[0]), static_cast<std::int32_t>(found[1]),
              static_cast<std::int32_t>(found[2]) } };
 }

@@ -22,7 +22,8 @@ public:
   const std::string& hard() const { return hard_; }  ///< what is hard about it, in a few words
   const std::string& text() const { return text_; }  ///< markdown; {KEY} stands for the value of that key
 
-  std::vector<double> numbers(const std::string& key, const std::string& unit = {}) const;
+  /// count 0: as many as there are.
+  std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
   double number(const std::string& key, const std::string& unit = {}) const;
   double seconds(const std::string& key) const;                             ///< of ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels

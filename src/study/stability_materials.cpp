@@ -16,7 +16,7 @@ RigidTransform shifted(double x, double y, double z) { return { RigidTransform()
 
 RigidTransform shifted(const std::vector<double>& millimetres)
 {
-  return shifted(1e-3 * millimetres.at(0), 1e-3 * millimetres.at(1), 1e-3 * millimetres.at(2));
+  return shifted(1e-3 * millimetres[0], 1e-3 * millimetres[1], 1e-3 * millimetres[2]);
 }
 
 Model cantilever(const CaseFile& file, double poisson)
@@ -31,7 +31,8 @@ Model cantilever(const CaseFile& file, double poisson)
 double settled_tip(const CaseFile& file, WatchedMotion& motion)
 {
   motion.settle(motion.controls(), 1e-4, file.seconds("longest_settling"));
-  const auto end = nodes_where(motion.model(), [](const auto& p) { return p[0] > 11.5e-3; });
+  const double last = 1e-3 * (motion.model().size[0] - 0.5);
+  const auto end = nodes_where(motion.model(), [&](const auto& p) { return p[0] > last; });
   return 1e3 * mean_displacement(motion.displacements(), end)[2];
 }
 
@@ -71,7 +72,7 @@ void stiffness_contrast(const StabilitySettings& settings, const CaseFile& file,
   hold_face(model, 0, false);
   hold_face(model, 0, true, "grip");
   WatchedMotion motion(settings, trial, model);
-  motion.come_and_go({ { file.seconds("draw"), motion.controls(0, shifted(file.numbers("drawn_by", "mm"))), 10 },
+  motion.come_and_go({ { file.seconds("draw"), motion.controls(0, shifted(file.numbers("drawn_by", "mm", 3))), 10 },
                        { file.seconds("back"), motion.controls(), 10 },
                        { file.seconds("rest"), motion.controls(), 10 } },
                      "drawn by a quarter and back", file, "stiffness_contrast",
@@ -97,7 +98,7 @@ void thin_layer(const StabilitySettings& settings, const CaseFile& file, Trial& 
   hold_face(model, 0, false);
   hold_face(model, 0, true, "grip");
   WatchedMotion motion(settings, trial, model);
-  const Controls drawn = motion.controls(0, shifted(file.numbers("drawn_by", "mm"))), back = motion.controls();
+  const Controls drawn = motion.controls(0, shifted(file.numbers("drawn_by", "mm", 3))), back = motion.controls();
   const double phase = file.seconds("draw");
   motion.come_and_go({ { phase, drawn, 10 }, { phase, drawn, 10 }, { phase, back, 10 }, { phase, back, 10 } },
                      "shortened by a fifth and back", file, "thin_layer",
@@ -112,7 +113,7 @@ void stiffening(const StabilitySettings& settings, const CaseFile& file, Trial& 
   tissue.parameters[2] = file.number("exponent");
   model.time_step_share = file.number("time_step_share");
   model.damping = file.number("damping", "1/s");
-  add_muscles(model, { Muscle{ "strand", 0.3e6, true, true } },
+  add_muscles(model, { Muscle{ "strand", 1e6 * file.number("stress", "MPa"), true, true } },
               [](std::size_t) -> std::vector<Fibre> {
                 return { { 0, { { 1, 0, 0 } } } };
               });
@@ -136,7 +137,7 @@ void mass_scaling(const StabilitySettings& settings, const CaseFile& file, Trial
   const auto make = [&file](double factor)
   {
     Model model = cantilever(file, 0.49);
-    add_muscles(model, { Muscle{ "strand", 5e3, false, true } },
+    add_muscles(model, { Muscle{ "strand", 1e3 * file.number("stress", "kPa"), false, true } },
                 [](std::size_t) -> std::vector<Fibre> {
                   return { { 0, { { 1, 0, 0 } } } };
                 });

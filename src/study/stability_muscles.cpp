@@ -70,11 +70,12 @@ void opposed_muscles(const StabilitySettings& settings, const CaseFile& file, Tr
               {
                 const auto& v = model.voxels[e];
                 std::vector<Fibre> fibres;
-                if (v[0] < 6)
+                const auto& n = model.size;
+                if (3 * v[0] < 2 * n[0])
                   fibres.push_back({ 0, { { s, s, 0 } }, 0.4F });
-                if (v[0] > 2)
+                if (3 * v[0] >= n[0])
                   fibres.push_back({ 1, { { -s, s, 0 } }, 0.4F });
-                if (v[1] > 2 && v[1] < 6)
+                if (3 * v[1] >= n[1] && 3 * v[1] < 2 * n[1])
                   fibres.push_back({ 2, { { 0, 0, 1 } }, 0.2F });
                 return fibres;
               });
@@ -101,7 +102,8 @@ void strong_muscle(const StabilitySettings& settings, const CaseFile& file, Tria
   const auto in_muscle = [&](std::size_t e)
   {
     const auto& v = model.voxels[e];
-    return v[0] >= 3 && v[0] < 13 && v[1] >= 2 && v[1] < 4 && v[2] >= 2 && v[2] < 4;
+    const auto& n = model.size;
+    return v[0] >= 3 && v[0] < n[0] - 3 && v[1] >= 2 && v[1] < n[1] - 2 && v[2] >= 2 && v[2] < n[2] - 2;
   };
   mix(model,
       [&](std::size_t e) -> std::vector<std::pair<int, float>> {

@@ -59,7 +59,7 @@ void write_stability(const Trials& trials, const std::string& folder)
       "report and the last good state. *Worst J* is the smallest volume ratio of a voxel that was seen, *energy* what "
       "the energy ledger left unexplained and *hourglass* the energy of hourglass modes, both over the ledger's "
       "largest term. A case passes when all its checks do, and every energy, volume ratio and displacement stayed "
-      "finite. Words, sizes, times and bounds stand in test/stability, a file a case. What is said to fail without a "
+      "finite. Words, voxels, times and bounds stand in test/stability, a file a case. What is said to fail without a "
       "measure was tried where a figure stands with it. `--models DIR` writes the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
   // of runs elsewhere and in full length

@@ -217,9 +217,9 @@ void slender(const StabilitySettings& settings, const CaseFile& file, Trial& tri
   {
     VoxelBox box;
     box.size = file.size(long_way ? "size_along" : "size_across");
-    const std::vector<double> edges = file.numbers("edges", "mm");
+    const std::vector<double> edges = file.numbers("edges", "mm", 3);
     for (std::size_t i = 0; i < 3; ++i)
-      box.spacing[i] = 1e-3 * edges.at(i);
+      box.spacing[i] = 1e-3 * edges[i];
     box.materials = { soft_tissue() };
     Model model = voxel_model(box);
     const std::string name = long_way ? "hung along the long edges" : "hung across them";

@@ -18,10 +18,10 @@ namespace
 Model hanging_strand(const CaseFile& file)
 {
   Model model = soft_block(file.size());
-  model.damping = 50;
+  model.damping = file.number("damping", "1/s");
   model.gravity = { { 9.81, 0, -3 } };
   hold_face(model, 0, false);
-  add_muscles(model, { Muscle{ "strand", 20e3, false, true } },
+  add_muscles(model, { Muscle{ "strand", 1e3 * file.number("stress", "kPa"), false, true } },
               [](std::size_t) -> std::vector<Fibre> {
                 return { { 0, { { 1, 0, 0 } } } };
               });
@@ -32,8 +32,8 @@ void long_rest(const StabilitySettings& settings, const CaseFile& file, Trial& t
 {
   WatchedMotion motion(settings, trial, hanging_strand(file), false);
   const Controls held = motion.controls(static_cast<float>(file.number("activation")));
-  motion.advance(0.05, held);
-  motion.advance(1, held);
+  motion.advance(file.seconds("switch"), held);
+  motion.advance(file.seconds("to_rest"), held);
   const Vectors at_rest = motion.displacements();
   const double few = file.number("steps"), many = file.number("steps_in_full"), steps = settings.long_runs ? many : few;
   double worst = 0;

@@ -53,7 +53,7 @@ void WatchedMotion::come_and_go(const std::vector<Phase>& phases, const std::str
   for (const Phase& phase : phases)
     advance(phase.seconds, phase.target, phase.looks);
   plot(picture, title);
-  advance(0.2, controls(), 20);
+  advance(file.seconds("in_the_end"), controls(), 20);
   expect_balance(of, file.bound("energy", "%"));
   trial_.checks.push_back(
       absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm")));

@@ -42,8 +42,8 @@ public:
     Controls target;
     int looks;
   };
-  /// Plays phases, plots them and leaves the model alone for a while: energy must be explained throughout to a share
-  /// (the case's bounds.energy), and no node be farther from where it rests in the end than bounds.left.
+  /// Plays phases, plots them and leaves the model alone for a while (the case's in_the_end): energy must be explained
+  /// throughout to a share (bounds.energy), and no node be farther from where it rests in the end than bounds.left.
   void come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
                    const std::string& picture, const std::string& title);
   /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.

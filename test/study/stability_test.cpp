@@ -87,6 +87,10 @@ TEST_F(StabilityFile, TellsWhatIsMissingOrTooMuch)
             std::string::npos);
   EXPECT_NE(played(folder("distance: 20 um", "distance: 20 mm")).failure.find("'20 mm'; must be a number in um"),
             std::string::npos);
+  EXPECT_NE(played(folder("[8, 3, 2]", "[8, 3.5, 2]")).failure.find("size: must be three whole numbers"),
+            std::string::npos);
+  EXPECT_NE(played(folder("[8, 3, 2]", "[8, 3]")).failure.find("size: has 2 values; must have 3"), std::string::npos);
+  EXPECT_NE(played(folder("160 ms", "160 m")).failure.find("drag: must be one number in s or ms"), std::string::npos);
   EXPECT_NE(played(folder("ridge: 9 mm", "ridge: 9 mm\nedge: 3 mm")).failure.find("edge"), std::string::npos);
 }
 
@@ -94,5 +98,6 @@ TEST_F(StabilityFile, IsRefusedWhereItSaysNothing)
 {
   EXPECT_NE(refusal(folder("hard: ", "easy: ")).find("sharp_ridge.yaml: hard: is missing"), std::string::npos);
   EXPECT_NE(refusal(folder("{bounds.energy}", "{bounds.engery}")).find("{bounds.engery}"), std::string::npos);
+  EXPECT_NE(refusal(folder("[cpu, reference]", "[cpu, gpu]")).find("tests: 'gpu'; allowed are"), std::string::npos);
   EXPECT_NE(refusal(folder("size: [8, 3, 2]", "size: [8, 3, 2")).find("sharp_ridge.yaml:"), std::string::npos);
 }
