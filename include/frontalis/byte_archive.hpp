@@ -21,6 +21,7 @@ public:
   explicit ByteArchive(std::string bytes) : reads_(true), bytes_(std::move(bytes)) {}
 
   bool reads() const { return reads_; }
+  bool ended() const { return at_ == bytes_.size(); }
   const std::string& bytes() const { return bytes_; }
 
   /// All of these throw Error where the bytes end too early.

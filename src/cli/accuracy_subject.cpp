@@ -164,11 +164,18 @@ AccuracySubject accuracy_subject(AccuracyOptions& options)
 {
   check_numbers(options);
   const std::string& path = options.source.path;
-  const bool exists = std::filesystem::exists(path);
+  const bool exists = std::filesystem::exists(path) && !std::filesystem::is_directory(path);
   if (exists && is_model_file(path))
     throw Error(path + ": is a baked model; a study of accuracy needs the scene (YAML)");
   const std::vector<ClosedForm> forms = closed_forms();
   const auto form = std::find_if(forms.begin(), forms.end(), [&](const auto& f) { return f.name == path; });
+  if (!exists && form == forms.end())
+  {
+    std::string names;
+    for (const ClosedForm& known : forms)
+      names += (names.empty() ? "" : ", ") + known.name;
+    throw Error(path + ": there is no such scene file, nor a body of that name with a closed form: " + names);
+  }
   AccuracySubject subject =
       exists || form == forms.end() ? scene_subject(options) : closed_form_subject(*form, options);
   if (options.folder.empty())

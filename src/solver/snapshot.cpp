@@ -80,6 +80,8 @@ void SteppingSolver::unpack(const std::string& bytes)
     archive(whose);
     if (whose == owner())
       static_cast<Motion&>(*snapshot).archive(archive);
+    if (whose == owner() && !archive.ended())
+      throw Error("more than a motion");
   }
   catch (const Error& error)
   {
@@ -92,8 +94,9 @@ void SteppingSolver::unpack(const std::string& bytes)
 
 std::string SteppingSolver::owner() const
 {
-  return description() + ", " + std::to_string(model_->voxels.size()) + " voxels, " +
-         std::to_string(model_->nodes.size()) + " nodes" + (wants_ledger_ ? ", with a ledger" : "");
+  return description() + " of generation " + std::to_string(motion_generation) + ", " +
+         std::to_string(model_->voxels.size()) + " voxels, " + std::to_string(model_->nodes.size()) + " nodes" +
+         (wants_ledger_ ? ", with a ledger" : "");
 }
 
 void SteppingSolver::slow_down(double share)

@@ -13,14 +13,17 @@ namespace frontalis
 class SkinAverage
 {
 public:
-  /// Of skins that rest as this one; weights are those of a Gaussian of so much [m], times the area.
-  SkinAverage(const VariantMotion& motion, double deviation);
+  /// Of skins that rest as the reference's; weights are those of a Gaussian of so much [m], times the area.
+  SkinAverage(const VariantMotion& reference, double deviation);
 
   /// Its phases with averaged displacements; landmarks stay.
   VariantMotion of(const VariantMotion& motion) const;
+  /// Beside the averaged reference, in the worst phase. Throws Error as skin_errors().
+  SkinError error(const VariantMotion& motion) const;
 
 private:
   std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // of each vertex
+  VariantMotion reference_;                                          // averaged
 };
 
 }  // namespace frontalis

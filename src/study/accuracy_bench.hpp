@@ -47,7 +47,7 @@ public:
 
   /// Not timed.
   void set_reference(const AccuracySetting& setting) { reference_ = setting; }
-  /// Time step of the standard setting by the element bound, without scaled mass [s].
+  /// Time step of the standard setting with `time_step: element`, without scaled mass [s].
   double critical_time_step() const { return critical_; }
   const std::string& machine() const { return machine_.at(plan_.standard.backend); }
 

@@ -37,7 +37,7 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
     row.settled = errors.back();
     row.landmark = landmark_error(found, truth);
     if (average != nullptr)
-      row.averaged = worst(skin_errors(average->of(found), average->of(truth))).rms;
+      row.averaged = average->error(found).rms;
   }
   catch (const Error& error)
   {
@@ -98,7 +98,11 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
 // in the voxel edge, of the standard setting's form and of the reference's
 void tell_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings)
 {
-  findings.motion = motion_size(exact_motion(bench.done().front().motion, plan.exact));
+  const auto& done = bench.done();
+  const auto sound = std::find_if(done.begin(), done.end(), [](const auto& v) { return v.motion.fault.empty(); });
+  if (sound == done.end())
+    throw Error("no setting could be measured: " + done.front().motion.fault);
+  findings.motion = motion_size(exact_motion(sound->motion, plan.exact));
   for (const bool refined : { false, true })
   {
     std::vector<double> edges, errors;

@@ -71,18 +71,18 @@ std::string reference_words(const AccuracyFindings& f)
 Table accuracy_table(const AccuracyFindings& findings)
 {
   Table table({ "setting", "front", "error RMS [mm]", "error max [mm]", "settled RMS [mm]", "settled max [mm]",
-                "averaged RMS [mm]", "landmark [mm]", "energy [%]", "cost [s/s]", "spread [%]", "step [us]", "steps/s",
-                "voxels", "memory [MB]", "build [s]", "state" });
+                "landmark [mm]", "energy [%]", "cost [s/s]", "spread [%]", "step [us]", "steps/s", "voxels",
+                "memory [MB]", "build [s]", "state", "averaged RMS [mm]" });
   for (std::size_t r = 0; r < findings.rows.size(); ++r)
   {
     const AccuracyRow& row = findings.rows[r];
     const bool best = std::find(findings.front.begin(), findings.front.end(), r) != findings.front.end();
     const auto three = [](double value) { return std::isnan(value) ? value : std::stod(readable(value, 3)); };
     table.add({ row.name, best ? "*" : "", three(mm(row.error.rms)), three(mm(row.error.largest)),
-                three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.averaged)),
-                three(mm(row.landmark)), three(100 * row.energy), three(row.cost), three(100 * row.spread),
-                three(1e6 * row.step), three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
-                row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault });
+                three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
+                three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
+                three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
+                row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault, three(mm(row.averaged)) });
   }
   return table;
 }

@@ -1,4 +1,4 @@
-// finished variants on disk: signature, hash of the rest, the rest as bytes
+// finished variants on disk: signature, which tells the solver's generation, hash of the rest, the rest as bytes
 
 #include "accuracy_run.hpp"
 
@@ -6,7 +6,6 @@
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,7 +16,7 @@ namespace frontalis
 namespace
 {
 
-constexpr const char* signature = "frontalis accuracy 1\n";
+const std::string signature = "frontalis accuracy 2, motions of generation " + std::to_string(motion_generation) + "\n";
 
 void write(const std::string& path, const std::string& content)
 {
@@ -34,7 +33,7 @@ std::optional<ByteArchive> read(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);
   const std::string whole{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-  const std::size_t begin = std::strlen(signature), hash = 16;
+  const std::size_t begin = signature.size(), hash = 16;
   if (whole.compare(0, begin, signature) != 0 || whole.size() < begin + hash)
     return std::nullopt;
   std::string content = whole.substr(begin + hash);
@@ -51,7 +50,7 @@ std::optional<T> archived(const std::string& path)
     return std::nullopt;
   T value;
   value.archive(*in);
-  return value;
+  return in->ended() ? std::optional<T>(std::move(value)) : std::nullopt;
 }
 
 }  // namespace

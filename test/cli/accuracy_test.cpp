@@ -77,6 +77,10 @@ TEST_F(AccuracyCommand, refuses_what_cannot_be)
   EXPECT_EQ(stiff.code, 1);
   expect_contains(stiff.errors, "cantilever has no knob 'poisson'; its knobs are voxel, hourglass");
   EXPECT_EQ(run_program({ "accuracy", "cantilever", "--accuracy", "draft", "-o", results }).code, 2);
+  const ProgramResult misspelt = run_program({ "accuracy", "cantilevr", "-o", results });
+  EXPECT_EQ(misspelt.code, 1);
+  expect_contains(misspelt.errors,
+                  "nor a body of that name with a closed form: cantilever, stretched_block, active_bar");
   EXPECT_EQ(run({ "--tolerance", "1", "--time", "1" }).code, 2);
   EXPECT_EQ(run({ "--save", folder / "chosen.yaml" }).code, 2);
   const ProgramResult few = run_program({ "accuracy", scene, "--voxels", "5,2.5", "-o", results });

@@ -152,7 +152,7 @@ TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
     const Seen before = play(*other, variant, 0.2f, 3e-4);
     other->unpack(bytes);
     play(*other, variant, 0.2f, 3e-4);
-    for (const std::string& bad : { std::string(), bytes.substr(0, bytes.size() / 2), "x" + bytes })
+    for (const std::string& bad : { std::string(), bytes.substr(0, bytes.size() / 2), "x" + bytes, bytes + "x" })
       EXPECT_THROW(other->unpack(bad), Error);
     EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == before) << variant.name;
   }

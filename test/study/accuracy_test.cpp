@@ -175,7 +175,12 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_LT(true_error(chosen.setting), 1.2 * tolerance);
   EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
   const AccuracyRow& best = most_accurate_within(findings, 1e9);
-  EXPECT_LT(0.95 * best.error.rms, std::max(fine, findings.reference_error)) << "what is below that counts as equal";
+  // a dearer setting joins the front where it is a twentieth better, and what is below the reference's error is all
+  // alike
+  if (fine > findings.reference_error)
+    EXPECT_LE(0.95 * best.error.rms, fine);
+  else
+    EXPECT_LE(0.95 * best.error.rms, findings.reference_error);
   EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
   // seconds are the machine's, but not how many steps they are for
   const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
