@@ -79,6 +79,8 @@ void CudaSolver::upload_displacements(const Vectors* in, DeviceArray<float4>& to
     u[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
                                     static_cast<float>(1 / discretisation_.node_mass[n]) };
   }
+  for (const auto node : device_.still_nodes())
+    u[device_.device_node()[node]].w = 0;
   to.upload(u.data(), u.size());
 }
 

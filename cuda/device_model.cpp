@@ -86,15 +86,17 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
                  cut.patches != nullptr)
 {
   palette_of_voxel_ = add_palette(model, discretisation);
-  if (const std::vector<float> of_node = mobility(discretisation); !of_node.empty())
+  add_fibres(model, discretisation);
+  std::vector<NodeTask> tasks = add_tasks(model);
+  // nodes that never move have no inverse mass
+  if (discretisation.held.size() > still_nodes_.size())
   {
+    const std::vector<float> of_node = mobility(discretisation);
     std::vector<float> of_device(nodes(), 0);
     for (std::size_t n = 0; n < of_node.size(); ++n)
       of_device[device_node_[n]] = of_node[n];
     mobility_ = DeviceArray<float>(of_device);
   }
-  add_fibres(model, discretisation);
-  std::vector<NodeTask> tasks = add_tasks(model);
   if (cut.patches)
     add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
@@ -138,6 +140,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
+  g.stretch_half_sum = static_cast<float>(discretisation.stretch_half_sum);
   const auto& h = model.spacing;
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -148,7 +148,7 @@ __device__ __forceinline__ float stiffness_now(const StepArguments& g, std::uint
                                                const physics::Kinematics<float>& k)
 {
   const physics::NeoHookean<float> material{ entry.x, entry.y };
-  float now = physics::voxel_stiffness_now(entry.w, material, k, g.stretch_weight);
+  float now = physics::voxel_stiffness_now(entry.w, material, k, g.stretch_weight, g.stretch_half_sum);
   if (has<With, Effects::forms> && g.law_begin != nullptr)
     now += stiffened(g, palette, k);
   return now;

@@ -37,7 +37,7 @@ __device__ double stiffness_now(const StepArguments& g, std::uint32_t palette, c
 {
   const float4 entry = g.palette[palette];
   const physics::NeoHookean<double> material{ entry.x, entry.y };
-  double sum = physics::voxel_stiffness_now(double(entry.w), material, k, g.stretch_weight);
+  double sum = physics::voxel_stiffness_now(double(entry.w), material, k, g.stretch_weight, g.stretch_half_sum);
   for (std::uint32_t l = g.law_begin == nullptr ? 0 : g.law_begin[palette];
        g.law_begin != nullptr && l < g.law_begin[palette + 1]; ++l)
   {

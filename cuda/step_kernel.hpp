@@ -104,9 +104,9 @@ struct StepArguments
   const Strip* strips;
   const uint2* slots;  ///< StripSlot: node and palette entry
   std::uint32_t strip_count;
-  float4* u[2];           ///< displacement [m] and inverse mass [1/kg]; u[first] holds the present ones
-  float* v[3];            ///< velocity [m/s]
-  const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: none is
+  float4* u[2];  ///< displacement [m] and inverse mass [1/kg], 0 of still nodes; u[first] holds the present ones
+  float* v[3];   ///< velocity [m/s]
+  const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: that of u
   std::int32_t first;
 
   // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
@@ -148,6 +148,7 @@ struct StepArguments
 
   float scale[3];             ///< 1 / (4 h)
   float stretch_weight[3];    ///< 1/h^2 over the sum of the three
+  float stretch_half_sum;     ///< half of that sum [1/m2]
   float hourglass_weight[3];  ///< 1 / (4 sqrt(3) h)
   float dt, keep, gain;       ///< v = keep v - gain f / m + impulse
   float impulse[3];

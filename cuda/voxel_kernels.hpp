@@ -58,7 +58,7 @@ cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels&
 cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
                                 cudaStream_t stream);
 
-/// out = u + amount times mode over the root of the mass; held nodes (StepArguments::mobility) stay.
+/// out = u + amount times mode over the root of the mass; held nodes stay (StepArguments::mobility).
 cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
                             float amount, float4* out, cudaStream_t stream);
 

@@ -257,7 +257,7 @@ struct CpuElement
   static __attribute__((noinline)) Batch stiffness_now(const Arguments& g, const Place& at, const Kinematics& k)
   {
     const Batch at_rest = Lane::load(g.stiffness[at.index].bound + at.offset);
-    Batch now = physics::voxel_stiffness_now(at_rest, material_of(g, at), k, g.stretch_weight);
+    Batch now = physics::voxel_stiffness_now(at_rest, material_of(g, at), k, g.stretch_weight, g.stretch_half_sum);
     for (auto s = at.tile->law_begin; s < at.tile->law_end; ++s)
     {
       const LawSlot& slot = g.laws[s];

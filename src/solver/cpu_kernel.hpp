@@ -48,6 +48,7 @@ struct CpuKernelArguments
   double* muscle_work;         ///< one a plane [J]; null: fibre_memory is only renewed
   Real scale[3];               ///< 1 / (4 h)
   Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
+  Real stretch_half_sum;       ///< half of that sum [1/m2]
   Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
   Real dt, keep, gain;         ///< v = keep v - gain f / m + impulse
   Real kick;                   ///< for how long forces change velocities: dt, but in the first step of a plan [s]

@@ -22,6 +22,7 @@ Monitor CpuSolver<Real>::measure()
     g.stretch_weight[axis] = discretisation_.stretch_weight[axis];
     g.hourglass_weight[axis] = discretisation_.hourglass_weight[axis];
   }
+  g.stretch_half_sum = discretisation_.stretch_half_sum;
   g.tiles = from.tiles;
   g.plane_tiles = from.plane_tiles;
   g.plane_nodes = from.plane_nodes;

@@ -32,6 +32,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
     g.hourglass_weight[axis] = static_cast<Real>(discretisation_.hourglass_weight[axis]);
     g.stretch_weight[axis] = static_cast<Real>(discretisation_.stretch_weight[axis]);
   }
+  g.stretch_half_sum = static_cast<Real>(discretisation_.stretch_half_sum);
   g.inverse_mass = inverse_mass_.data();
   g.mobility = mobility_.empty() ? g.inverse_mass : mobility_.data();
   g.tiles = rows_.tiles.data();

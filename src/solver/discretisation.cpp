@@ -141,6 +141,7 @@ Discretisation::Discretisation(const Model& model)
   double sum = 0;
   for (const double edge : h)
     sum += 1 / (edge * edge);
+  stretch_half_sum = 0.5 * sum;
   for (int axis = 0; axis < 3; ++axis)
   {
     hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);

@@ -60,6 +60,7 @@ public:
   double viscous_time_min = 0;               ///< [s]
   std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
   std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
+  double stretch_half_sum = 0;               ///< half of that sum [1/m2]
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes that move as they are told in every direction, ascending

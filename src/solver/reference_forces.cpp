@@ -105,7 +105,7 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
 
 void ReferenceSolver::look(std::size_t e, const Kinematics& k)
 {
-  stiffness_[e] = larger(stiffness_[e], stiffness_now(voxels_[e], k, discretisation_.stretch_weight.data()));
+  stiffness_[e] = larger(stiffness_[e], stiffness_now(discretisation_, voxels_[e], k));
 }
 
 void ReferenceSolver::add_element(std::size_t e, const Components& u, const std::vector<float>& activation)

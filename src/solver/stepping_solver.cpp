@@ -94,7 +94,9 @@ double SteppingSolver::safe_time_step() const
 double SteppingSolver::careful_time_step() const
 {
   const double safe = safe_time_step();
-  return wary_ > 0 ? std::min(safe, slow_share_ * alert_share * 2 / std::sqrt(critical_frequency_squared())) : safe;
+  if (wary_ == 0 && restless_ == 0)
+    return safe;
+  return std::min(safe, slow_share_ * alert_share * 2 / std::sqrt(critical_frequency_squared()));
 }
 
 double SteppingSolver::keep(double dt) const { return (1 - 0.5 * damping_ * dt) / (1 + 0.5 * damping_ * dt); }
@@ -176,15 +178,15 @@ void SteppingSolver::respond(const std::vector<float>& from, const std::vector<f
   }
 }
 
-// What grows fast is watched closely, and for longer what is much stiffer than at rest and changes: it vibrates. What
-// a contraction stiffens slowly does not.
+// What grows fast is watched closely. What is much stiffer than at rest and changes, vibrates; what a contraction
+// stiffens slowly does not.
 void SteppingSolver::watch(double squared, const StepPlan& plan)
 {
-  const bool restless = squared > much_stiffer * discretisation_.frequency_squared_max &&
-                        std::abs(squared - latest_seen_) > restless_change * latest_seen_;
+  const bool changes = std::abs(squared - latest_seen_) > restless_change * latest_seen_;
+  const bool restless = changes && squared > much_stiffer * discretisation_.frequency_squared_max;
   latest_seen_ = squared;
-  const int anew = squared > plan.alarm ? steps_after_stiffening : restless ? steps_after_restlessness : 0;
-  wary_ = std::max(anew, wary_ - plan.steps);
+  wary_ = std::max(squared > plan.alarm ? steps_after_stiffening : 0, wary_ - plan.steps);
+  restless_ = std::max(restless ? steps_after_restlessness : 0, restless_ - plan.steps);
 }
 
 // what softens is believed slowly: it may stiffen again before the next look, and each change of the time step costs

@@ -38,6 +38,7 @@ struct Course
   double frequency_squared_ = 0;  // of the stiffest voxel, as it is believed
   double latest_seen_ = 0;        // of it
   int wary_ = 0;                  // steps to be taken with care yet
+  int restless_ = 0;              // the same, but for close looks
   double assembled_share_ = 1;    // of the assembled model over it
   std::int64_t assembled_at_step_ = 0;
   double assembled_at_frequency_ = 0;
@@ -54,7 +55,8 @@ struct Course
 
   void archive(ByteArchive& archive)
   {
-    archive(time_)(latest_step_)(frequency_squared_)(latest_seen_)(wary_)(assembled_share_)(assembled_at_step_);
+    archive(time_)(latest_step_)(
+        frequency_squared_)(latest_seen_)(wary_)(restless_)(assembled_share_)(assembled_at_step_);
     archive(assembled_at_frequency_)(assembled_at_activation_)(assembled_good_for_)(assembled_mode_);
     archive(failed_)(controls_.activation)(controls_.bone)(bone_before_)(bone_seconds_)(activation_)(ledger_)(initial_);
   }

@@ -44,10 +44,11 @@ double hourglass_energy(const Discretisation& d, const VoxelProperties& voxel, c
 
 }  // namespace
 
-double stiffness_now(const VoxelProperties& voxel, const Kinematics& k, const double* weight)
+double stiffness_now(const Discretisation& d, const VoxelProperties& voxel, const Kinematics& k)
 {
   const physics::NeoHookean<double> material{ voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume };
-  double stiffness = physics::voxel_stiffness_now(voxel.stiffness, material, k, weight);
+  double stiffness =
+      physics::voxel_stiffness_now(voxel.stiffness, material, k, d.stretch_weight.data(), d.stretch_half_sum);
   for (const auto& part : voxel.laws)
     stiffness += law_stiffening(part.law, part.parameters.data(), part.stiffness_at_rest, part.per_tangent, k);
   return stiffness;
@@ -73,7 +74,6 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
 {
   const auto& h = model.spacing;
   const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
-  const double* const weight = d.stretch_weight.data();
   std::vector<double> stiffness(model.voxels.size(), 0);
   PlaneMonitor sum;
   for (std::size_t n = 0; n < v.size(); ++n)
@@ -101,7 +101,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
         physics::at_gauss_point(point, mode, moved);
         const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
         own.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
-        stiffness[e] = larger(stiffness[e], stiffness_now(voxel, at_point, weight));
+        stiffness[e] = larger(stiffness[e], stiffness_now(d, voxel, at_point));
         own.worst_jacobian = std::min(own.worst_jacobian, at_point.J);
       }
     }
@@ -109,7 +109,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     {
       own.internal = voxel.tissue_volume * elastic_energy(voxel, voxel.kappa, k);
       own.hourglass = hourglass_energy(d, voxel, k, mode);
-      stiffness[e] = stiffness_now(voxel, k, weight);
+      stiffness[e] = stiffness_now(d, voxel, k);
     }
     own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
     sum.add(own);

@@ -11,8 +11,8 @@ namespace frontalis
 {
 
 /// Bound of the largest eigenvalue of a voxel's stiffness [N/m] at a deformation, NaN where that is not finite.
-/// weight[j]: 1/h_j^2 over the sum of the three.
-double stiffness_now(const VoxelProperties& voxel, const physics::Kinematics<double>& k, const double* weight);
+double stiffness_now(const Discretisation& discretisation, const VoxelProperties& voxel,
+                     const physics::Kinematics<double>& k);
 
 /// Energies and the worst voxel at given nodal displacements [m] and velocities [m/s].
 Monitor monitor_voxels(const Model& model, const Discretisation& discretisation,

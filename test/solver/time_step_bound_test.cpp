@@ -93,12 +93,13 @@ double largest_eigenvalue(const std::vector<std::vector<double>>& K)
   return value - shift;
 }
 
-// square of the true highest frequency at given displacements, over the bound's. Node masses [kg]; rows: unknowns that
-// are free.
+// square of the true highest frequency at given displacements, every muscle at full activation, over the bound's. Node
+// masses [kg]; rows: unknowns that are free.
 double true_over_bound(const Model& model, const Vectors& u, const std::vector<double>& mass,
                        const std::vector<std::size_t>& free)
 {
   const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 });
+  solver->advance(1e-12, { std::vector<float>(model.muscles.size(), 1), {} });
   solver->set_displacements(u);
   const double critical = solver->monitor().critical_time_step;
   Vectors moved, plus, minus;
@@ -167,6 +168,31 @@ TEST_P(TimeStepBound, holds_for_a_deformed_voxel)
     worst = std::max(worst, true_over_bound(model, random_gradient(random, i % 2 == 0 ? 1.3 : 2, i)));
   EXPECT_LT(worst, tissue.allowed);
   EXPECT_GT(worst, 0.9) << "far too careful";
+}
+
+TEST(FibreBound, holds_for_fibres_that_are_stretched_and_pressed)
+{
+  std::mt19937 random(7);
+  for (const double tension : { 0.3e6, 5e6 })
+    for (const bool passive : { false, true })
+      for (const bool with_length : { false, true })
+      {
+        test::BlockSettings settings;
+        settings.voxels = { { 1, 1, 1 } };
+        settings.young = 0.5e6;
+        Model model = test::block_model(settings);
+        Muscle muscle;
+        muscle.name = "muscle";
+        muscle.stress_reference = tension;
+        muscle.passive = passive;
+        muscle.tension_length = with_length;
+        test::add_muscle(model, { { 0.6f, 0, 0.8f } }, muscle);
+        double worst = 0;
+        for (int i = 0; i < 120; ++i)
+          worst = std::max(worst, true_over_bound(model, random_gradient(random, i % 2 == 0 ? 1.3 : 2.5, i)));
+        EXPECT_LT(worst, 1.01) << tension << " Pa, " << passive << with_length;
+        EXPECT_GT(worst, 0.3) << "far too careful";
+      }
 }
 
 INSTANTIATE_TEST_SUITE_P(

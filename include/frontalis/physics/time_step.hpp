@@ -30,12 +30,17 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
-/// How much a neo-Hookean element has stiffened by deformation, 1 at rest. The second derivatives of the energy
-/// (physics/neo_hookean.hpp) are bounded term by term, the volumetric part's and the isochoric part's each by itself,
-/// and what these bounds have grown since rest counts over the element's true stiffness at rest, kappa + mu (2 weight -
-/// 2/3). weight[j] = (1/h_j^2) over the sum of the three.
+/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, but for what laws beyond neo-Hookean
+/// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
+/// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
+///
+/// Second derivatives of the neo-Hookean energy (physics/neo_hookean.hpp) are bounded term by term, the volumetric
+/// part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. What fibres
+/// add is J f(l) in nominal stress, f its tension over length l at full activation: its derivatives by l grow with J,
+/// those by J with |cof F|, which is at most I1 / sqrt(3).
 template <class T, class S>
-FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight)
+FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
+                                    S half_sum)
 {
   using N = Number<T>;
   T along = N::of(0);
@@ -52,20 +57,12 @@ FRONTALIS_LAW T stiffening(const NeoHookean<T>& material, const Kinematics<T>& k
   const T isochoric = N::of(0.5) * k.I1 * bend * along - N::of(2) * g.slope * N::sqrt(k.I1 * along * largest) +
                       N::of(2) * g.value * largest - N::of(0.5) * g.slope * k.I1 * turning;
   // the same at F = 1: I1 = 3, cof F = 1, g' = -2/3
-  const T at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
-  const T stiffness = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
-  return N::of(1) + (material.kappa * volumetric + material.mu * N::max(isochoric - at_rest, N::of(0))) /
-                        N::max(stiffness, N::of(1e-30));
-}
-
-/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, but for what laws beyond neo-Hookean
-/// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness().
-template <class T, class S>
-FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight)
-{
-  using N = Number<T>;
-  const T growth = stiffening(material, k, weight);
-  return at_rest * N::max(growth, N::of(1)) + (growth - growth);
+  const T isochoric_at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
+  const T grown = material.kappa * volumetric + material.mu * N::max(isochoric - isochoric_at_rest, N::of(0));
+  const T elastic = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
+  const T others = N::max(at_rest - T(half_sum) * elastic, N::of(0));
+  const T stretched = N::max(N::max(k.J, N::of(1.0 / 3) * k.I1) - N::of(1), N::of(0));
+  return at_rest + T(half_sum) * N::max(grown, N::of(0)) + others * stretched + (grown - grown);
 }
 
 }  // namespace physics
