@@ -35,22 +35,20 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
   }
   Mode& m = *mode_;
   const auto nodes = static_cast<std::uint32_t>(device_.nodes());
-  const double amplitude = mode_amplitude(*model_);
+  double step = mode_amplitude(*model_);
   const float4* const u = u_[present_].data();
   const float* const mobility = device_.arguments().mobility;
   const DeviceArray<float> activation(felt_activation());
+  queue_forces(u_[present_].data(), activation.data(), m.present.data());
   std::vector<double2> seen;
   double squared = 0;
-  for (int iteration = 0; iteration < most_iterations; ++iteration)
+  for (int iteration = 0; iteration < most_iterations; ++iteration, step = -step)
   {
-    for (const double sign : { 1.0, -1.0 })
-    {
-      require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(sign * amplitude / m.largest),
-                              m.moved.data(), stream_),
-              "displacing nodes");
-      queue_forces(m.moved.data(), activation.data(), (sign > 0 ? m.plus : m.minus).data());
-    }
-    require(launch_product(nodes, mobility, u, m.plus.data(), m.minus.data(), static_cast<float>(0.5 / amplitude),
+    require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(step / m.largest), m.moved.data(),
+                            stream_),
+            "displacing nodes");
+    queue_forces(m.moved.data(), activation.data(), m.forces.data());
+    require(launch_product(nodes, mobility, u, m.forces.data(), m.present.data(), static_cast<float>(1 / step),
                            m.mode.data(), m.seen.data(), stream_),
             "a product with the stiffness");
     synchronise();

@@ -11,15 +11,15 @@ namespace cuda
 /// products are taken of it divided by `largest`.
 struct CudaSolver::Mode
 {
-  DeviceArray<float4> mode, moved, plus, minus;
+  DeviceArray<float4> mode, moved, forces, present;
   DeviceArray<double2> seen;
   double largest, length;
 
   explicit Mode(std::size_t nodes)
-      : mode(nodes), moved(nodes), plus(nodes), minus(nodes), seen(product_blocks), largest(0), length(0)
+      : mode(nodes), moved(nodes), forces(nodes), present(nodes), seen(product_blocks), largest(0), length(0)
   {
-    for (const auto* forces : { &plus, &minus })
-      require(cudaMemset(forces->data(), 0, forces->bytes()), "clearing forces");
+    for (const auto* field : { &forces, &present })
+      require(cudaMemset(field->data(), 0, field->bytes()), "clearing forces");
   }
 };
 

@@ -124,14 +124,14 @@ __global__ void __launch_bounds__(block)
 }
 
 __global__ void __launch_bounds__(block)
-    product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus, const float4* minus,
+    product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces, const float4* present,
             float factor, float4* mode, double2* seen)
 {
   __shared__ double2 own[block];
   double2 sum{ 0, 0 };
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < nodes; n += product_blocks * block)
   {
-    const float4 p = plus[n], m = minus[n];
+    const float4 p = forces[n], m = present[n];
     const float root = sqrtf(mobility == nullptr ? u[n].w : mobility[n]), share = factor * root;
     const float4 now = make_float4(share * (p.x - m.x), share * (p.y - m.y), share * (p.z - m.z), 0);
     mode[n] = now;
@@ -190,10 +190,10 @@ cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const fl
   return cudaGetLastError();
 }
 
-cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus,
-                           const float4* minus, float factor, float4* mode, double2* seen, cudaStream_t stream)
+cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
+                           const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream)
 {
-  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, mobility, u, plus, minus, factor, mode, seen);
+  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, mobility, u, forces, present, factor, mode, seen);
   return cudaGetLastError();
 }
 

@@ -66,8 +66,8 @@ cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const fl
 /// sum of squares.
 constexpr int product_blocks = 128;
 
-/// mode = (plus - minus) times factor over the root of the mass, 0 of held nodes, and what there is to say of it.
-cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* plus,
-                           const float4* minus, float factor, float4* mode, double2* seen, cudaStream_t stream);
+/// mode = (forces - present) times factor over the root of the mass, 0 of held nodes, and what there is to say of it.
+cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
+                           const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream);
 
 }  // namespace frontalis

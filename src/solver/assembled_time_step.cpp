@@ -18,13 +18,17 @@ constexpr std::int64_t shortest_good_for = 200;
 constexpr float activation_allowed = 0.1F;  // of a muscle since the estimate
 constexpr double growth_allowed = 1.02;     // of the element bound since the estimate
 
-double length(const Vectors& x)
+// of a mode: its length, and the largest of its components over the root of the mass
+struct ModeSize
 {
-  double sum = 0;
-  for (const auto& p : x)
-    sum += p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-  return std::sqrt(sum);
-}
+  double squared_length = 0, largest = 0;
+
+  void add(double x, double root)
+  {
+    squared_length += x * x;
+    largest = std::max(largest, std::abs(x) * root);
+  }
+};
 
 }  // namespace
 
@@ -77,52 +81,55 @@ void random_mode(SteppingSolver::Vectors& mode)
       x = static_cast<double>(random()) / 2147483648.0 - 1;
 }
 
-// products with K are differences of internal forces, so that every law and fibre is in them
+// Products with K are differences of internal forces, so that every law and fibre is in them: one-sided ones, to either
+// side in turn, whose curvature takes from one product what it gives to the next.
 double SteppingSolver::assembled_frequency_squared(int most_iterations)
 {
-  const auto& mass = discretisation_.node_mass;
-  if (assembled_mode_.empty())
-  {
-    assembled_mode_.resize(mass.size());
-    random_mode(assembled_mode_);
-  }
   std::vector<double> root;  // of the inverse mass; 0: held
-  for (const double m : mass)
-    root.push_back(1 / std::sqrt(m));
+  for (const double mass : discretisation_.node_mass)
+    root.push_back(1 / std::sqrt(mass));
   for (const auto n : discretisation_.held)
     root[n] = 0;
-  Vectors u, moved, plus, minus;
-  displacements(u);
-  const double amplitude = mode_amplitude(*model_);
-  double squared = 0;
-  for (int iteration = 0; iteration < most_iterations; ++iteration)
+  Vectors& mode = assembled_mode_;
+  if (mode.empty())
   {
-    double largest = 0;
-    for (std::size_t n = 0; n < mass.size(); ++n)
-      for (const double x : assembled_mode_[n])
-        largest = std::max(largest, std::abs(x) * root[n]);
-    const double scale = amplitude / largest;
-    for (const double sign : { 1.0, -1.0 })
-    {
-      moved = u;
-      for (std::size_t n = 0; n < mass.size(); ++n)
-        for (int axis = 0; axis < 3; ++axis)
-          moved[n][axis] += sign * scale * assembled_mode_[n][axis] * root[n];
-      forces_at(moved, sign > 0 ? plus : minus);
-    }
-    const double before = length(assembled_mode_);
-    for (std::size_t n = 0; n < mass.size(); ++n)
+    mode.resize(root.size());
+    random_mode(mode);
+  }
+  ModeSize size;
+  for (std::size_t n = 0; n < root.size(); ++n)
+    for (const double x : mode[n])
+      size.add(x, root[n]);
+  Vectors u, moved(root.size()), present, forces;
+  displacements(u);
+  forces_at(u, present);
+  double step = mode_amplitude(*model_);
+  double squared = 0;
+  for (int iteration = 0; iteration < most_iterations; ++iteration, step = -step)
+  {
+    const double scale = step / size.largest, length = std::sqrt(size.squared_length);
+    for (std::size_t n = 0; n < root.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
-        assembled_mode_[n][axis] = (plus[n][axis] - minus[n][axis]) * root[n] / (2 * scale);
-    const double now = length(assembled_mode_) / before;
-    for (auto& p : assembled_mode_)
-      for (double& x : p)
-        x /= now * before;
+        moved[n][axis] = u[n][axis] + scale * root[n] * mode[n][axis];
+    forces_at(moved, forces);
+    size = {};
+    for (std::size_t n = 0; n < root.size(); ++n)
+    {
+      const double share = root[n] / (scale * length);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        mode[n][axis] = share * (forces[n][axis] - present[n][axis]);
+        size.add(mode[n][axis], root[n]);
+      }
+    }
+    const double now = std::sqrt(size.squared_length);
     const bool settled = mode_has_settled(iteration, squared, now);
     squared = now;
-    if (settled)
+    if (settled || !std::isfinite(now))
       break;
   }
+  if (!std::isfinite(squared))
+    mode.clear();
   return squared;
 }
 

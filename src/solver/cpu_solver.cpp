@@ -86,6 +86,7 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
       list.add(Effect::elasticity, "motion", (*field)[axis]);
     list.add(Effect::elasticity, "rounding errors", rounding_[axis]);
     list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
+    list.add(Effect::elasticity, "displaced nodes", moved_[axis]);
   }
   for (const auto& buffer : buffers_)
     list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);

@@ -79,6 +79,7 @@ private:
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;
   std::array<std::vector<double>, 3> wide_;  // displacements for the monitor; empty until it is asked for
+  Components moved_;                         // displacements that are not the state's; likewise
 };
 
 }  // namespace frontalis

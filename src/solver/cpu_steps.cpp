@@ -80,9 +80,10 @@ void CpuSolver<Real>::forces(const Components& at, Vectors& out)
 template <class Real>
 void CpuSolver<Real>::forces_at(const Vectors& at, Vectors& out)
 {
-  Components moved = u_;
-  separate(at, moved);
-  forces(moved, out);
+  for (auto& component : moved_)
+    component.resize(u_[0].size());
+  separate(at, moved_);
+  forces(moved_, out);
 }
 
 template <class Real>

@@ -19,15 +19,16 @@ namespace
 // stiffness that the fibres of a voxel can add along one direction, every muscle at full activation
 double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
 {
-  const double active = running.has(Effect::contraction) ? 1 : 0;
-  const double passive = running.has(Effect::fibre_stiffness) ? physics::passive_slope_bound : 0;
   double sum = 0;
   for (auto f = model.fibre_begin[voxel]; f < model.fibre_begin[voxel + 1]; ++f)
   {
     const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
-    const double slope =
-        active * (muscle.tension_length ? physics::active_slope_bound : 1.0) + (muscle.passive ? passive : 0.0);
-    sum += slope * muscle.stress_reference * model.fibre_weight[f];
+    const double active = muscle.tension_length ? physics::active_slope_bound : 1.0;
+    const double bound = muscle.passive && running.has(Effect::fibre_stiffness)
+                             ? physics::active_slope_bound + physics::passive_slope_bound
+                         : running.has(Effect::contraction) ? active
+                                                            : 0.0;
+    sum += bound * muscle.stress_reference * model.fibre_weight[f];
   }
   return sum;
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace frontalis::physics;
 
@@ -53,6 +55,34 @@ TEST(MuscleFibre, SlopeBoundsOfTheNominalStressHoldAndAreReached)
   EXPECT_GE(active, 0.99 * active_slope_bound);
   EXPECT_LE(passive, passive_slope_bound);
   EXPECT_GE(passive, 0.99 * passive_slope_bound);
+}
+
+// quadratic form of the second derivatives of J f(l) in dF, per |dF|^2, at full activation
+TEST(MuscleFibre, WhatTheTimeStepAllowsForHoldsForAnyStretchesUpToTwoAndAHalf)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> exponent(-1, 1);
+  for (const bool passive : { false, true })
+  {
+    double worst = 0;
+    for (int i = 0; i < 200000; ++i)
+    {
+      const double most = i % 2 == 0 ? 1.5 : 2.5;
+      const double a = std::pow(most, exponent(random)), b = std::pow(most, exponent(random));
+      const double c = i % 3 == 0 ? std::pow(most, exponent(random)) : 1 / (a * b);
+      const double J = a * b * c, step = 1e-5;  // the fibre lies along a
+      const auto f = [&](double l) { return active_tension(l) + (passive ? passive_tension(l) : 0); };
+      const double slope = (f(a + step) - f(a - step)) / (2 * step);
+      const double cofactor = std::sqrt(b * b * c * c + a * a * c * c + a * a * b * b);
+      const double I1 = a * a + b * b + c * c;
+      const double counted = std::max({ 1.0, J, std::sqrt(cofactor * cofactor / 3 * I1 / 3) });
+      const double form = J * std::max(slope, f(a) / a) + 0.5 * f(a) * (cofactor + J / a);
+      worst = std::max(worst, form / counted);
+    }
+    const double allowed = active_slope_bound + (passive ? passive_slope_bound : 0);
+    EXPECT_LE(worst, allowed) << passive;
+    EXPECT_GE(worst, 0.8 * allowed) << passive;
+  }
 }
 
 TEST(MuscleFibre, FinitePastInversion)

@@ -58,9 +58,11 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   return stress_reference * fade * (active + passive);
 }
 
-/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation: what a time
-/// step has to allow for. The nominal stress is S times stretch, J f(l) at these constants: the active curve is
-/// steepest at l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)).
+/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation and no
+/// change of volume. The nominal stress is S times stretch, J f(l) at these constants: the active curve is steepest at
+/// l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)). A time step has to allow for the first where
+/// there is no passive part, else for the sum: times how far the element is deformed (physics/time_step.hpp) it holds
+/// what f |cof F| adds, up to stretches of 2.5.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

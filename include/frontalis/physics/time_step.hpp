@@ -35,9 +35,10 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
 /// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
 ///
 /// Second derivatives of the neo-Hookean energy (physics/neo_hookean.hpp) are bounded term by term, the volumetric
-/// part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. What fibres
-/// add is J f(l) in nominal stress, f its tension over length l at full activation: its derivatives by l grow with J,
-/// those by J with |cof F|, which is at most I1 / sqrt(3).
+/// part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. The nominal
+/// stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J with f
+/// and |cof F| = sqrt(3 along). At full activation they stay below what is counted at rest (muscle_fibre.hpp) times the
+/// larger of J and sqrt(along I1 / 3).
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)
@@ -61,7 +62,7 @@ FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, co
   const T grown = material.kappa * volumetric + material.mu * N::max(isochoric - isochoric_at_rest, N::of(0));
   const T elastic = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
   const T others = N::max(at_rest - T(half_sum) * elastic, N::of(0));
-  const T stretched = N::max(N::max(k.J, N::of(1.0 / 3) * k.I1) - N::of(1), N::of(0));
+  const T stretched = N::max(N::max(k.J, N::sqrt(N::of(1.0 / 3) * along * k.I1)) - N::of(1), N::of(0));
   return at_rest + T(half_sum) * N::max(grown, N::of(0)) + others * stretched + (grown - grown);
 }
 
