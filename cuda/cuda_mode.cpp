@@ -42,6 +42,7 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
   queue_forces(u_[present_].data(), activation.data(), m.present.data());
   std::vector<double2> seen;
   double squared = 0;
+  ModeSearch search;
   for (int iteration = 0; iteration < most_iterations; ++iteration, step = -step)
   {
     require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(step / m.largest), m.moved.data(),
@@ -59,12 +60,10 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
       largest = std::max(largest, s.x);
       sum += s.y;
     }
-    const double now = std::sqrt(sum) * m.largest / m.length;
+    squared = std::sqrt(sum) * m.largest / m.length;
     m.largest = largest;
     m.length = std::sqrt(sum);
-    const bool settled = mode_has_settled(iteration, squared, now);
-    squared = now;
-    if (settled || !std::isfinite(now))
+    if (search.settled(squared) || !std::isfinite(squared))
       break;
   }
   if (!std::isfinite(squared))

@@ -68,9 +68,12 @@ double mode_amplitude(const Model& model)
   return 1e-3 * *std::min_element(model.spacing.begin(), model.spacing.end());
 }
 
-bool mode_has_settled(int iteration, double before, double now)
+bool ModeSearch::settled(double now)
 {
-  return iteration >= 8 && std::abs(now - before) < 1e-4 * now;
+  const bool result = ++iterations_ > 8 && std::abs(now - seen_[1]) < 2e-4 * now;
+  seen_[1] = seen_[0];
+  seen_[0] = now;
+  return result;
 }
 
 void random_mode(SteppingSolver::Vectors& mode)
@@ -103,8 +106,8 @@ double SteppingSolver::assembled_frequency_squared(int most_iterations)
   Vectors u, moved(root.size()), present, forces;
   displacements(u);
   forces_at(u, present);
-  double step = mode_amplitude(*model_);
-  double squared = 0;
+  double step = mode_amplitude(*model_), squared = 0;
+  ModeSearch search;
   for (int iteration = 0; iteration < most_iterations; ++iteration, step = -step)
   {
     const double scale = step / size.largest, length = std::sqrt(size.squared_length);
@@ -122,10 +125,8 @@ double SteppingSolver::assembled_frequency_squared(int most_iterations)
         size.add(mode[n][axis], root[n]);
       }
     }
-    const double now = std::sqrt(size.squared_length);
-    const bool settled = mode_has_settled(iteration, squared, now);
-    squared = now;
-    if (settled || !std::isfinite(now))
+    squared = std::sqrt(size.squared_length);
+    if (search.settled(squared) || !std::isfinite(squared))
       break;
   }
   if (!std::isfinite(squared))

@@ -185,10 +185,20 @@ private:
 };
 
 /// Of the power iteration: what it begins with; how far nodes move for a product with K, large for float and small for
-/// the curvature of the laws [m]; whether the eigenvalue is known.
+/// the curvature of the laws [m].
 void random_mode(SteppingSolver::Vectors& mode);
 double mode_amplitude(const Model& model);
-bool mode_has_settled(int iteration, double before, double now);
+
+/// Whether the eigenvalue is known: estimates are compared with the latest but one, whose product is to the same side.
+class ModeSearch
+{
+public:
+  bool settled(double now);
+
+private:
+  int iterations_ = 0;
+  double seen_[2] = {};
+};
 
 /// Controls at rest: no activation, bones in place.
 Controls rest_controls(const Model& model);
