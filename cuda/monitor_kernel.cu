@@ -102,8 +102,7 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
       const Kinematics there = physics::kinematics(moved[0], moved[1], moved[2], voxels.scale);
       own.internal += 0.125 * elastic_energy(g, voxel.palette, { entry.x, 0 }, there);
       own.worst_jacobian = fmin(own.worst_jacobian, there.J);
-      const double at_point = stiffness_now(g, voxel.palette, there);
-      stiffness = at_point <= stiffness || stiffness != stiffness ? stiffness : at_point;
+      stiffness = physics::larger_or_none(stiffness, stiffness_now(g, voxel.palette, there));
     }
   }
   own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
@@ -157,9 +156,7 @@ __global__ void __launch_bounds__(block)
     for (const std::uint32_t n : voxels.voxels[e].node)
     {
       const float squared = voxels.node_stiffness[n] * (g.mobility == nullptr ? u[n].w : g.mobility[n]);
-      own.frequency_squared = squared <= own.frequency_squared || own.frequency_squared != own.frequency_squared
-                                  ? own.frequency_squared
-                                  : squared;
+      own.frequency_squared = physics::larger_or_none(own.frequency_squared, squared);
     }
     most.add(own);
   }

@@ -16,7 +16,7 @@ constexpr double wide_margin = 1.25;     // soon after activations changed
 constexpr std::int64_t good_for = 2000;  // steps; fewer after activations changed
 constexpr std::int64_t shortest_good_for = 200;
 constexpr float activation_allowed = 0.1F;  // of a muscle since the estimate
-constexpr double growth_allowed = 1.02;     // of the element bound since the estimate
+constexpr double growth_allowed = 1.02;     // of the bound at nodes since the estimate
 
 // of a mode: its length, and the largest of its components over the root of the mass
 struct ModeSize
@@ -35,8 +35,8 @@ struct ModeSize
 // held nodes stay; without the other constraints, which only lower it
 void SteppingSolver::renew_assembled_bound(const std::vector<float>& target)
 {
-  // fibres stiffen as they are activated, and what they move stiffens after that: until it has moved, the stiffest
-  // voxel by itself counts
+  // fibres stiffen as they are activated, and what they move stiffens after that: until it has moved, the bound at
+  // nodes counts
   bool changed = false;
   assembled_at_activation_.resize(target.size());
   for (std::size_t m = 0; m < target.size(); ++m)

@@ -269,9 +269,6 @@ struct CpuElement
     return now;
   }
 
-  /// The larger one, NaN for good where one is.
-  static FRONTALIS_LAW Batch larger(const Batch& a, const Batch& b) { return N::max(a, b) + (a - a) + (b - b); }
-
   // isochoric stress at eight points: modes to the forces on them
   static __attribute__((noinline)) void gauss_points(const Arguments& g, const Place& at, Batch (&mode)[3][8],
                                                      Batch& stiffest)
@@ -289,7 +286,7 @@ struct CpuElement
       const auto k = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
       physics::add_gauss_forces(point, elastic(g, at, material, k), g.scale, force);
       if (at.look)
-        stiffest = larger(stiffest, stiffness_now(g, at, k));
+        stiffest = physics::larger_or_none(stiffest, stiffness_now(g, at, k));
     }
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)

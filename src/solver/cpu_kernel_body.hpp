@@ -60,7 +60,7 @@ struct CpuKernelBody
       take(n, 0);
     Real result = 0;
     for (int lane = 0; lane < lanes; ++lane)
-      result = larger(result, most[lane] + odd[lane]);
+      result = physics::larger_or_none(result, most[lane] + odd[lane]);
     return result;
   }
 
@@ -105,9 +105,6 @@ struct CpuKernelBody
       gravity ? update<false, true>(g, plane, force) : update<false, false>(g, plane, force);
   }
 
-  // the larger one; NaN once one was NaN
-  static Real larger(Real a, Real b) { return (a >= b ? a : b) + (a - a) + (b - b); }
-
   static void clear(Real* p, std::int32_t count)
   {
     for (std::int32_t i = 0; i < count; ++i)
@@ -133,7 +130,8 @@ struct CpuKernelBody
       if (k >= first)
       {
         if (look)
-          frequency_squared = larger(frequency_squared, plane_frequency(g, k, below + 3 * g.buffer_stride));
+          frequency_squared =
+              physics::larger_or_none(frequency_squared, plane_frequency(g, k, below + 3 * g.buffer_stride));
         if (task == KernelTask::forces)
           for (int c = 0; c < 3; ++c)
             for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)

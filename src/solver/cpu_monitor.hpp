@@ -79,7 +79,7 @@ struct CpuMonitor
       const auto there = physics::kinematics(moved[0], moved[1], moved[2], g.scale);
       found.internal = found.internal + N::of(0.125) * elastic_energy(g, at, material, there);
       found.jacobian = N::min(found.jacobian, there.J);
-      found.stiffness = Element::larger(found.stiffness, Element::stiffness_now(g, at, there));
+      found.stiffness = physics::larger_or_none(found.stiffness, Element::stiffness_now(g, at, there));
     }
     return found;
   }

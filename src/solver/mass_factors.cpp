@@ -7,7 +7,8 @@ namespace frontalis
 namespace
 {
 
-// frequency squared that the voxels that are not chosen allow at nodes that only they have [1/s2]
+// frequency squared that the voxels that are not chosen allow by themselves [1/s2], as if there were no others; held
+// nodes count only where all of theirs are held
 double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
                          const std::vector<std::int32_t>& held)
 {
@@ -19,13 +20,19 @@ double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& vox
         stiffness[n] += voxels[e].stiffness;
         mass[n] += voxels[e].mass / 8;
       }
+  const auto largest = [&]
+  {
+    double squared = 0;
+    for (std::size_t n = 0; n < mass.size(); ++n)
+      if (stiffness[n] > 0)
+        squared = std::max(squared, stiffness[n] / mass[n]);
+    return squared;
+  };
+  const double of_all = largest();
   for (const auto n : held)
     stiffness[n] = 0;
-  double allowed = 0;
-  for (std::size_t n = 0; n < mass.size(); ++n)
-    if (stiffness[n] > 0)
-      allowed = std::max(allowed, stiffness[n] / mass[n]);
-  return allowed;
+  const double of_free = largest();
+  return of_free > 0 ? of_free : of_all;
 }
 
 }  // namespace

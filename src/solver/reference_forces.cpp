@@ -1,5 +1,6 @@
 #include "frontalis/physics/assumed_strain.hpp"
 #include "reference_solver.hpp"
+#include "frontalis/physics/time_step.hpp"
 #include "step_bound.hpp"
 #include "voxel_monitor.hpp"
 #include "voxel_stress.hpp"
@@ -105,7 +106,7 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
 
 void ReferenceSolver::look(std::size_t e, const Kinematics& k)
 {
-  stiffness_[e] = larger(stiffness_[e], stiffness_now(discretisation_, voxels_[e], k));
+  stiffness_[e] = physics::larger_or_none(stiffness_[e], stiffness_now(discretisation_, voxels_[e], k));
 }
 
 void ReferenceSolver::add_element(std::size_t e, const Components& u, const std::vector<float>& activation)

@@ -1,6 +1,7 @@
 #include "reference_solver.hpp"
 
 #include "bound_points.hpp"
+#include "frontalis/physics/time_step.hpp"
 #include "step_bound.hpp"
 
 #include <algorithm>
@@ -208,7 +209,7 @@ double ReferenceSolver::run(const StepPlan& plan)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
     const Components before = u_;
     if (plan.closely || step + 1 == plan.steps)
-      worst = larger(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
+      worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
     if (account_)
       account_->before(0, count, v);
     for (int axis = 0; axis < 3; ++axis)

@@ -19,9 +19,6 @@ struct StepBound
   }
 };
 
-/// The larger one; NaN once one was NaN.
-inline double larger(double a, double b) { return b <= a || a != a ? a : b; }
-
 /// Indices [first, last).
 struct IndexRange
 {

@@ -66,16 +66,19 @@ double SteppingSolver::steady_step(const std::vector<RigidTransform>& to, double
                      : std::numeric_limits<double>::infinity();
 }
 
-// by how much the velocity of a bone changes where its new motion begins, in the shortest edge of a voxel [1/s]
+// by how much the velocity of a bone changes where its new motion begins, in the shortest edge of a voxel [1/s]: over a
+// time in which ways are straight
 double SteppingSolver::jerk_of_bones(const std::vector<RigidTransform>& to, double seconds) const
 {
+  const double time = (bone_seconds_ > 0 ? std::min(seconds, bone_seconds_) : seconds) / 64;
   double farthest = 0;
-  for (std::size_t b = 0; b < to.size() && seconds > 0; ++b)
+  for (std::size_t b = 0; b < to.size() && time > 0; ++b)
   {
     const RigidTransform& from = controls_.bone[b];
     const RigidTransform onwards =
-        bone_seconds_ > 0 ? interpolate(bone_before_[b], from, 1 + seconds / bone_seconds_) : from;
-    farthest = std::max(farthest, farthest_way(onwards, to[b], far_corner(*model_)) / seconds);
+        bone_seconds_ > 0 ? interpolate(bone_before_[b], from, 1 + time / bone_seconds_) : from;
+    farthest =
+        std::max(farthest, farthest_way(onwards, interpolate(from, to[b], time / seconds), far_corner(*model_)) / time);
   }
   return farthest / shortest_edge(*model_);
 }

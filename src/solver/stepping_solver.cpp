@@ -77,7 +77,7 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
 
 double SteppingSolver::critical_frequency_squared() const
 {
-  // what softens in the stiffest voxel need not soften in the assembled model
+  // what softens where the bound is set need not soften in the assembled model
   if (assembled_share_ < 1)
     return assembled_share_ * std::max(frequency_squared_, assembled_at_frequency_);
   return frequency_squared_;
@@ -206,8 +206,11 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   const double steady = steady_step(target.bone, seconds);
   if (jerk_of_bones(target.bone, seconds) * safe_time_step() > jerk_felt)
     wary_ = std::max(wary_, steps_after_a_jerk);
-  bone_before_ = from.bone;
-  bone_seconds_ = seconds;
+  if (seconds > 0)
+  {
+    bone_before_ = from.bone;
+    bone_seconds_ = seconds;
+  }
   while (time_ < end)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)

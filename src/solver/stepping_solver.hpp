@@ -35,7 +35,7 @@ struct Course
 {
   double time_ = 0;
   double latest_step_ = 0;        // [s]
-  double frequency_squared_ = 0;  // of the stiffest voxel, as it is believed
+  double frequency_squared_ = 0;  // bound of the highest, as it is believed
   double latest_seen_ = 0;        // of it
   int wary_ = 0;                  // steps to be taken with care yet
   int restless_ = 0;              // the same, but for close looks

@@ -101,7 +101,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
         physics::at_gauss_point(point, mode, moved);
         const auto at_point = physics::kinematics(moved[0], moved[1], moved[2], scale);
         own.internal += 0.125 * voxel.tissue_volume * elastic_energy(voxel, 0, at_point);
-        stiffness[e] = larger(stiffness[e], stiffness_now(d, voxel, at_point));
+        stiffness[e] = physics::larger_or_none(stiffness[e], stiffness_now(d, voxel, at_point));
         own.worst_jacobian = std::min(own.worst_jacobian, at_point.J);
       }
     }

@@ -30,6 +30,13 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
+/// The larger one; NaN, for good, where one is NaN or infinite.
+template <class T>
+FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
+{
+  return Number<T>::max(a, b) + (a - a) + (b - b);
+}
+
 /// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, but for what laws beyond neo-Hookean
 /// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
 /// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
