@@ -1,3 +1,4 @@
+#include "bone_pose.cuh"
 #include "node_tasks.cuh"
 
 namespace frontalis
@@ -10,11 +11,8 @@ namespace cuda
 
 constexpr int block = 64;
 
-__global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ StepArguments g)
+static __device__ void renew_sliding(const StepArguments& g, std::uint32_t index)
 {
-  const std::uint32_t index = blockIdx.x * block + threadIdx.x;
-  if (index >= g.sliding_count || g.sliding[index].glides)
-    return;
   SlidingContact& s = g.sliding[index];
   const std::uint32_t node = s.node;
   const float4 now = g.u[g.first][node];
@@ -60,6 +58,57 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
       g.v[i][node] = v[i];
 }
 
+template <class Frame>
+static __device__ __forceinline__ void renew_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
+                                                     const Frame& then)
+{
+  using Point = SurfaceContact::Point;
+  GlidingContact& s = g.gliding[index];
+  GlidingSearch& search = g.gliding_searches[index];
+  const float4 u = g.u[g.first][search.node];
+  const Point at = Point{ s.rest[0], s.rest[1], s.rest[2] } + Point{ u.x, u.y, u.z };
+  const Point v{ g.v[0][search.node], g.v[1][search.node], g.v[2][search.node] };
+  const Point p = now.inwards(at), way = then.inwards(at + (g.steps * g.dt_exact) * v) - p;
+  if (search.state >= 0 && !search.renewed)
+  {
+    search.searching.stay_on(search.contact);
+    search.contact = search.searching;
+    s.plane = search.found;
+    s.reference = search.ahead;
+  }
+  const double slipped = norm(p - s.reference), speed = norm(way);
+  const auto reached = [&](double plans, double more)
+  { return fmax(norm(p + plans * way - s.reference), slipped) + more * plans * speed; };
+  search.state = nothing_ahead;
+  if (s.plane.slip < 0 || reached(1, 0.1) > s.plane.slip)
+  {
+    s.plane = search.contact.renew(p);
+    s.reference = p;
+  }
+  else if (reached(2, 0.5) > s.plane.slip || slipped * slipped > 0.5 * s.plane.slip * s.plane.slip)
+  {
+    search.state = wanted_ahead;
+    search.searching = search.contact;
+  }
+  search.renewed = false;
+  search.ahead = p + 1.5 * way;
+}
+
+__global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ StepArguments g)
+{
+  const std::uint32_t index = blockIdx.x * block + threadIdx.x, gliding = index - g.sliding_count;
+  if (index < g.sliding_count)
+    renew_sliding(g, index);
+  else if (gliding < g.gliding_count)
+  {
+    const std::int32_t bone = g.gliding[gliding].bone;
+    if (bone < 0)
+      renew_gliding(g, gliding, Still(), Still());
+    else
+      renew_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+  }
+}
+
 // one warp a block, and registers that a patch leaves
 constexpr int block_ahead = 32;
 
@@ -69,15 +118,28 @@ __global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_cons
   std::uint32_t count = 0;
   const auto find = [&](std::uint32_t index)
   {
+    if (index >= g.sliding_count)
+    {
+      GlidingSearch& search = g.gliding_searches[index - g.sliding_count];
+      search.found = search.searching.renew(search.ahead);
+      search.state = 0;
+      return;
+    }
     const float4 at = g.planes_ahead[index].reference;
     const float u[3] = { at.x, at.y, at.z };
     g.planes_ahead[index] = contact_plane(g.sliding[index], g.sliding[index].searching, u);
   };
+  const std::uint32_t all = g.sliding_count + g.gliding_count;
+  const auto state = [&](std::uint32_t index)
+  {
+    return index < g.sliding_count ? g.planes_ahead[index].reference.w
+                                   : g.gliding_searches[index - g.sliding_count].state;
+  };
   // those that ask are few: they are listed first, so that all lanes work at once
-  for (std::uint32_t first = blockIdx.x * block_ahead; first < g.sliding_count; first += gridDim.x * block_ahead)
+  for (std::uint32_t first = blockIdx.x * block_ahead; first < all; first += gridDim.x * block_ahead)
   {
     const std::uint32_t index = first + threadIdx.x;
-    const bool asks = index < g.sliding_count && g.planes_ahead[index].reference.w == wanted_ahead;
+    const bool asks = index < all && state(index) == wanted_ahead;
     const std::uint32_t asking = __ballot_sync(0xffffffffu, asks);
     if (asks)
       listed[count + __popc(asking & ((1u << threadIdx.x) - 1))] = index;
@@ -98,16 +160,17 @@ __global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_cons
 
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
 {
-  if (arguments.sliding_count > 0)
-    cuda::renew_contacts<<<(arguments.sliding_count + cuda::block - 1) / cuda::block, cuda::block, 0, stream>>>(
-        arguments);
+  const std::uint32_t all = arguments.sliding_count + arguments.gliding_count;
+  if (all > 0)
+    cuda::renew_contacts<<<(all + cuda::block - 1) / cuda::block, cuda::block, 0, stream>>>(arguments);
   return cudaGetLastError();
 }
 
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream)
 {
   // about one block a multiprocessor
-  const std::uint32_t all = (arguments.sliding_count + cuda::block_ahead - 1) / cuda::block_ahead;
+  const std::uint32_t all =
+      (arguments.sliding_count + arguments.gliding_count + cuda::block_ahead - 1) / cuda::block_ahead;
   const std::uint32_t blocks = all > 132 ? 132 : all;
   if (blocks > 0)
     cuda::renew_ahead<<<blocks, cuda::block_ahead, 0, stream>>>(arguments);

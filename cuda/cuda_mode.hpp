@@ -21,6 +21,8 @@ struct CudaSolver::Mode
     for (const auto* field : { &forces, &present })
       require(cudaMemset(field->data(), 0, field->bytes()), "clearing forces");
   }
+
+  std::size_t bytes() const { return mode.bytes() + moved.bytes() + forces.bytes() + present.bytes() + seen.bytes(); }
 };
 
 }  // namespace cuda

@@ -1,6 +1,7 @@
 #include "cuda_solver.hpp"
 
 #include "cuda_backend.hpp"
+#include "cuda_mode.hpp"
 #include "launch_choice.hpp"
 
 #include <cmath>
@@ -126,6 +127,14 @@ void CudaSolver::list_allocations(AllocationList& list) const
   list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
+  if (account_)
+    account_->list_allocations(effect_of_fibres(), list);
+  if (monitor_)
+    list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
+  if (mode_)
+    list.add(Effect::elasticity, "mode of the highest frequency", mode_->bytes());
+  if (loads_)
+    loads_->list_allocations(list);
 }
 
 void CudaSolver::set_displacements(const Vectors& in)
@@ -209,9 +218,10 @@ std::string CudaSolver::description() const
   cudaDeviceProp device{};
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
   return std::string("cuda (float, ") + device.name + ", " +
-         (launch_.patches ? std::to_string(device_.patches()) + " patches)"
+         (launch_.patches ? std::to_string(device_.patches()) + " patches"
                           : std::to_string(device_.strips()) + " strips, " +
-                                std::to_string(std::lround(100 * device_.filled())) + " % filled)");
+                                std::to_string(std::lround(100 * device_.filled())) + " % filled") +
+         computes_all() + ")";
 }
 
 }  // namespace cuda

@@ -1,5 +1,7 @@
 #include "cuda_solver.hpp"
 
+#include "frontalis/physics/sliding.hpp"
+
 #include <algorithm>
 #include <cstring>
 
@@ -29,6 +31,8 @@ StepArguments CudaSolver::arguments(double dt) const
   g.first = present_;
   g.dt = static_cast<float>(dt);
   g.dt_exact = dt;
+  g.rate = 1 / dt;
+  g.friction_response = physics::friction_response(dt);
   kick(g, dt);
   return g;
 }

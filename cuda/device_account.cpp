@@ -43,7 +43,7 @@ DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
   book_.damping = DeviceArray<double>(device.nodes());
   book_.constraint = DeviceArray<double>(device.nodes());
   book_.beside = DeviceArray<double>(3 * device.nodes());
-  book_.friction = DeviceArray<double>(device.contacts());
+  book_.friction = DeviceArray<double>(device.gliding());
   for (int axis = 0; axis < 3; ++axis)
   {
     before_[axis] = DeviceArray<float>(device.nodes());
@@ -121,6 +121,16 @@ void DeviceAccount::after_step(const StepArguments& g, double damping, int step,
                              loaded_.data(),
                              book_.load.data() };
   require(launch_node_account(g, account, damping, step, stream), "work on nodes");
+}
+
+void DeviceAccount::list_allocations(Effect of_fibres, AllocationList& list) const
+{
+  for (const auto* const values : { &book_.damping, &book_.constraint, &book_.beside, &book_.friction, &book_.load })
+    list.add(Effect::elasticity, "account of energies", values->bytes());
+  for (int axis = 0; axis < 3; ++axis)
+    list.add(Effect::elasticity, "account of energies", before_[axis].bytes() + free_[axis].bytes());
+  list.add(Effect::elasticity, "account of energies", loaded_.bytes());
+  list.add(of_fibres, "work of fibres", book_.fibre_work.bytes() + book_.memory.bytes() + fibre_voxels_.bytes());
 }
 
 Work DeviceAccount::work() const

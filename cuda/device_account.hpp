@@ -38,6 +38,7 @@ public:
   void restore(const DeviceBook& book, cudaStream_t stream) { book_.assign(book, stream); }
   /// All work but that of viscous stresses; the stream must be idle.
   Work work() const;
+  void list_allocations(Effect of_fibres, AllocationList& list) const;
 
 private:
   FibreVoxels fibres() const;

@@ -80,12 +80,7 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (std::size_t t = 0; t < tasks.size(); ++t)
   {
     const NodeTask& task = tasks[t];
-    const std::int32_t sliding = task.of[node_sliding];
-    const bool slides_only = sliding >= 0 && glides_[sliding] == 0 && task.of[node_load] < 0 &&
-                             task.of[node_prescribed] < 0 && task.of[node_rigid] < 0;
-    if (slides_only)
-      most_effects_ = most_effects_ | Effects::sliding;
-    task_of[task.node] = slides_only ? sliding : patch_task::other - static_cast<std::int32_t>(t);
+    task_of[task.node] = slides_only(task) ? task.of[node_sliding] : patch_task::other - static_cast<std::int32_t>(t);
   }
   const auto words = [](const std::vector<std::array<std::uint16_t, 8>>& from)
   {

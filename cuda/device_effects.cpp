@@ -78,29 +78,54 @@ void DeviceModel::run_tasks(EffectSet running)
     if (loads_.idle())
       task.of[node_load] = -1;
     if (!slides)
-      task.of[node_sliding] = -1;
+      task.of[node_sliding] = task.of[node_gliding] = -1;
   }
   tasks_.upload(tasks.data(), tasks.size());
+  effects_ = voxel_part(effects_) | node_part(tasks);
   auto words = whole_.patch_tasks;
   for (std::int32_t& word : words)
     if (!slides && word >= 0)
       word = patch_task::none;
   patch_tasks_.upload(words.data(), words.size());
   constants_.sliding_count = slides ? static_cast<std::uint32_t>(sliding_.size()) : 0;
+  constants_.gliding_count = slides ? static_cast<std::uint32_t>(gliding_.size()) : 0;
+}
+
+bool slides_only(const NodeTask& task)
+{
+  for (int effect = 0; effect < node_effects; ++effect)
+    if ((task.of[effect] >= 0) != (effect == node_sliding))
+      return false;
+  return true;
+}
+
+// what the kernels must know of what nodes do
+Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
+{
+  Effects part = Effects::none;
+  for (const NodeTask& task : tasks)
+  {
+    if (task.of[node_sliding] >= 0 || task.of[node_gliding] >= 0)
+      part = part | Effects::sliding;
+    const bool any = std::any_of(std::begin(task.of), std::end(task.of), [](std::int32_t index) { return index >= 0; });
+    if (any && !(launch_.patches && slides_only(task)))
+      part = part | Effects::tasks;
+  }
+  return part;
 }
 
 void DeviceModel::run_friction(const Model& model, EffectSet running)
 {
-  if (sliding_.size() == 0)
+  if (gliding_.size() == 0)
     return;
-  std::vector<SlidingContact> contacts;
-  sliding_.download(contacts);
+  std::vector<GlidingContact> contacts;
+  gliding_.download(contacts);
   for (std::size_t c = 0; c < contacts.size(); ++c)
   {
-    const auto& surface = model.constraint_surfaces[contact_surface_[c]];
+    const auto& surface = model.constraint_surfaces[gliding_surface_[c]];
     contacts[c].friction = running.has(Effect::friction) ? surface.friction : 0;
   }
-  sliding_.upload(contacts.data(), contacts.size());
+  gliding_.upload(contacts.data(), contacts.size());
 }
 
 // the least of the kernels that does what runs, among those that walk the strips as they are cut
@@ -111,9 +136,9 @@ void DeviceModel::choose_effects(EffectSet running)
     least = least | (most_effects_ & Effects::fibres);
   if (running.has(Effect::viscosity))
     least = least | (most_effects_ & Effects::viscosity);
-  if (running.has(Effect::sliding))
-    least = least | (most_effects_ & Effects::sliding);
-  effects_ = launch_.patches || strip_rows(least) == strip_rows(most_effects_) ? least : Effects::fibres;
+  if (!launch_.patches && strip_rows(least) != strip_rows(most_effects_))
+    least = Effects::fibres;
+  effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
   launch_.effects = effects_;
 }
 
@@ -129,6 +154,7 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
+  add(Effect::sliding, "nodes that glide", gliding_, gliding_searches_);
   for (const auto& boxes : boxes_)
     add(Effect::sliding, "surfaces", boxes);
   for (const auto& triangles : triangles_)

@@ -1,7 +1,5 @@
 #include "device_model.hpp"
 
-#include "archive_contacts.hpp"
-#include "device_archive.hpp"
 #include "step_bound.hpp"
 #include "surface_tree.hpp"
 
@@ -101,6 +99,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
     add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
+  most_effects_ = most_effects_ | node_part(tasks);
   launch_.effects = effects_ = most_effects_;
   tasks_ = DeviceArray<NodeTask>(tasks);
 
@@ -134,6 +133,9 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.contact_planes = contact_planes_.data();
   g.planes_ahead = planes_ahead_.data();
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
+  g.gliding = gliding_.data();
+  g.gliding_searches = gliding_searches_.data();
+  g.gliding_count = static_cast<std::uint32_t>(gliding_.size());
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
@@ -254,65 +256,37 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
             [&](const SlidingNode& a, const SlidingNode& b) { return device_node_[a.node] < device_node_[b.node]; });
-  std::vector<SlidingContact> contacts;
+  std::vector<SlidingContact> sliding;
+  std::vector<GlidingContact> gliding;
+  std::vector<GlidingSearch> searches;
   for (const auto& node : nodes)
   {
-    SlidingContact contact{};
     const auto rest = rest_position(model, node.node);
-    std::copy(rest.begin(), rest.end(), contact.rest);
-    contact.contact = SurfaceContact(surfaces[node.surface], node.distance);
-    contact.node = device_node_[node.node];
+    const SurfaceContact contact(surfaces[node.surface], node.distance);
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    contact.glides = surface.bone >= 0 || surface.friction > 0;
-    contact.bone = surface.bone;
-    contact.friction = surface.friction;
-    glides_.push_back(contact.glides ? 1 : 0);
-    contact_surface_.push_back(node.surface);
-    task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(contacts.size());
-    contacts.push_back(contact);
+    if (surface.bone < 0 && !(surface.friction > 0))
+    {
+      task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
+      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, contact, device_node_[node.node], false });
+      continue;
+    }
+    task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
+    gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
+    searches.push_back({ contact, contact, device_node_[node.node], false, nothing_ahead, {}, {} });
+    gliding_surface_.push_back(node.surface);
   }
-  sliding_ = DeviceArray<SlidingContact>(contacts);
-  contact_planes_ = DeviceArray<TangentPlane>(contacts.size());
-  planes_ahead_ = DeviceArray<TangentPlane>(contacts.size());
+  sliding_ = DeviceArray<SlidingContact>(sliding);
+  contact_planes_ = DeviceArray<TangentPlane>(sliding.size());
+  planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
+  gliding_ = DeviceArray<GlidingContact>(gliding);
+  gliding_searches_ = DeviceArray<GlidingSearch>(searches);
   reset_contacts();
-}
-
-void DeviceModel::Contacts::archive(ByteArchive& archive)
-{
-  std::vector<SlidingContact> entries;
-  sliding.download(entries);
-  archive_contacts(entries, archive);
-  sliding.upload(entries.data(), entries.size());
-  to_host(planes, archive);
-  to_host(ahead, archive);
-}
-
-void DeviceModel::save(Contacts& to, cudaStream_t stream) const
-{
-  to.sliding.assign(sliding_, stream);
-  to.planes.assign(contact_planes_, stream);
-  to.ahead.assign(planes_ahead_, stream);
-}
-
-void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
-{
-  sliding_.assign(from.sliding, stream);
-  contact_planes_.assign(from.planes, stream);
-  planes_ahead_.assign(from.ahead, stream);
-}
-
-void DeviceModel::reset_contacts()
-{
-  const std::vector<TangentPlane> unknown(contact_planes_.size(), TangentPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, -1 } });
-  static_assert(nothing_ahead == -1, "a plane that is not known is none ahead either");
-  contact_planes_.upload(unknown.data(), unknown.size());
-  planes_ahead_.upload(unknown.data(), unknown.size());
 }
 
 // what holds or moves nodes, by device node; those that never move are not stepped at all
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
-  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1 } });
+  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
   add_sliding(model, task_of);
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
     task_of[loads_.nodes()[l]].of[node_load] = static_cast<std::int32_t>(l);

@@ -21,6 +21,9 @@ std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
+/// Whether a node slides on a surface that is still and has no friction, and has nothing else.
+bool slides_only(const NodeTask& task);
+
 /// Patches where there are any, else strips.
 struct CutChoice
 {
@@ -60,6 +63,8 @@ public:
   {
     DeviceArray<SlidingContact> sliding;
     DeviceArray<TangentPlane> planes, ahead;
+    DeviceArray<GlidingContact> gliding;
+    DeviceArray<GlidingSearch> searches;
 
     void archive(ByteArchive& archive);
   };
@@ -76,7 +81,8 @@ public:
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
-  std::size_t contacts() const { return sliding_.size(); }
+  std::size_t contacts() const { return sliding_.size() + gliding_.size(); }
+  std::size_t gliding() const { return gliding_.size(); }  ///< those that follow bones or have friction
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -93,6 +99,7 @@ private:
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   void run_friction(const Model& model, EffectSet running);
+  Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
 
   /// What arrays hold where every effect runs; kept from the first switch on.
@@ -111,7 +118,7 @@ private:
   std::vector<std::uint32_t> palette_of_voxel_;
   StepArguments constants_{};
   Whole whole_;
-  std::vector<std::int32_t> contact_surface_;  // of each contact
+  std::vector<std::int32_t> gliding_surface_;  // of each gliding node
 
   DeviceArray<Patch> patches_;
   DeviceArray<uint4> patch_corners_, node_voxels_;
@@ -130,7 +137,8 @@ private:
   DeviceArray<NodeTask> tasks_;
   DeviceArray<SlidingContact> sliding_;
   DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
-  std::vector<char> glides_;  // contacts
+  DeviceArray<GlidingContact> gliding_;
+  DeviceArray<GlidingSearch> gliding_searches_;
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
   DeviceArray<PrescribedMotion> prescribed_;

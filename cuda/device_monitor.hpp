@@ -17,6 +17,7 @@ public:
 
   /// Energies and the worst voxel at displacements u, velocities g.v; waits for the stream.
   Monitor look(const StepArguments& g, const float4* u, cudaStream_t stream);
+  std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< of the device's memory
 
 private:
   DeviceArray<MonitorVoxel> voxels_;

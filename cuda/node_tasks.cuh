@@ -1,9 +1,9 @@
 #pragma once
 
+#include "bone_pose.cuh"
 #include "built_effects.hpp"
 #include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/sliding.hpp"
-#include "step_kernel.hpp"
 
 namespace frontalis
 {
@@ -70,90 +70,6 @@ __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index
   n = { { u.x, u.y, u.z }, { v.x, v.y, v.z } };
 }
 
-struct Pose
-{
-  using Point = SurfaceContact::Point;
-
-  double r[9], t[3];
-
-  __device__ Point rotated(const Point& p) const
-  {
-    return { r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
-             r[6] * p.x + r[7] * p.y + r[8] * p.z };
-  }
-  __device__ Point rotated_back(const Point& p) const
-  {
-    return { r[0] * p.x + r[3] * p.y + r[6] * p.z, r[1] * p.x + r[4] * p.y + r[7] * p.z,
-             r[2] * p.x + r[5] * p.y + r[8] * p.z };
-  }
-  __device__ Point translation() const { return { t[0], t[1], t[2] }; }
-};
-
-// `when`: 0 before the plan's first step, n after its n-th
-__device__ __forceinline__ Pose pose_at(const StepArguments& g, int when, std::int32_t bone)
-{
-  Pose pose{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { 0, 0, 0 } };
-  if (bone < 0)
-    return pose;
-  const double* const from = g.poses + 12 * (static_cast<std::size_t>(when) * g.bones + bone);
-  for (int i = 0; i < 9; ++i)
-    pose.r[i] = from[i];
-  for (int i = 0; i < 3; ++i)
-    pose.t[i] = from[9 + i];
-  return pose;
-}
-
-/// Sliding on a surface that follows a bone or has friction, in double (see gliding_nodes.cpp).
-static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, int step, float inverse_mass,
-                                          NodeState& n)
-{
-  using Point = SurfaceContact::Point;
-  SlidingContact& s = g.sliding[index];
-  if (g.contact_planes[index].reference.w < 0)
-  {
-    s.contact.forget();
-    s.plane = {};
-    s.plane.slip = -1;
-    s.pressing = 0;
-    g.contact_planes[index].reference.w = 0;
-  }
-  const Pose now = pose_at(g, step + 1, s.bone), before = pose_at(g, step, s.bone);
-  const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
-  Point p = now.rotated_back(rest + Point{ n.u[0], n.u[1], n.u[2] } - now.translation());
-  const Point surface_velocity =
-      (1 / g.dt_exact) * (now.rotated(p) + now.translation() - before.rotated(p) - before.translation());
-  Point w = now.rotated_back(free - surface_velocity);
-  double taken = 0;
-  if (s.plane.slip < 0 || norm(p - s.reference) > s.plane.slip)
-  {
-    const Point normal = s.plane.normal;
-    s.plane = s.contact.renew(p);
-    s.reference = p;
-    // what turns it is a part of the reaction
-    taken = dot(s.plane.normal, w);
-    w = physics::turned_with_normal(normal, s.plane.normal, w);
-    taken -= dot(s.plane.normal, w);
-  }
-  taken += physics::slide(s.plane.normal, s.plane.height, p, w);
-  if (s.friction > 0)
-  {
-    s.pressing += physics::friction_response(g.dt_exact) * (taken / g.dt_exact - s.pressing);
-    const Point lost = physics::friction_loss(s.friction, g.dt_exact * s.pressing, norm(w)) * w;
-    w = w - lost;
-    p = p - g.dt_exact * lost;
-  }
-  const Point moved = now.rotated(p) + now.translation() - rest, v = now.rotated(w) + surface_velocity;
-  if (g.friction_work != nullptr && s.friction > 0)
-  {
-    const Point normal = now.rotated(s.plane.normal), change = v - free;
-    const Point along = change - dot(change, normal) * normal;
-    const Point old{ g.velocity_before[0][s.node], g.velocity_before[1][s.node], g.velocity_before[2][s.node] };
-    g.friction_work[index] -= dot(along, 0.5 * (old + v) - surface_velocity) / double(inverse_mass);
-  }
-  n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
-        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
-}
-
 /// Velocities for the account of work, where one is kept.
 __device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t node, const float* v)
 {
@@ -192,13 +108,81 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
   keep_velocity(g.velocity_free, at.node, n.v);
 }
 
-static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep& at,
+static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep&,
                                                   NodeState& n)
 {
-  if (g.sliding[index].glides)
-    glide(g, index, at.step, at.before.w, n);
+  slide(g, index, g.contact_planes[index], n);
+}
+
+static __device__ __noinline__ void renew_gliding(const StepArguments& g, std::int32_t index,
+                                                  const SurfaceContact::Point& p)
+{
+  g.gliding[index].plane = g.gliding_searches[index].contact.renew(p);
+  g.gliding[index].reference = p;
+  g.gliding_searches[index].renewed = true;
+}
+
+// a variable, which code for the device can use too
+constexpr bool rubs = built_with(Effect::friction);
+
+/// Sliding on a surface that follows a bone or has friction, in double (see gliding_nodes.cpp).
+template <class Frame>
+static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int32_t index, const Frame& now,
+                                                const Frame& before, const NodeStep& at, NodeState& n)
+{
+  using Point = SurfaceContact::Point;
+  GlidingContact& s = g.gliding[index];
+  const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
+  Point p = now.inwards(rest + Point{ n.u[0], n.u[1], n.u[2] });
+  const Point surface_velocity = g.rate * (now.outwards(p) - before.outwards(p));
+  Point w = now.turned_back(free - surface_velocity);
+  const Point slipped = p - s.reference;
+  if (dot(slipped, slipped) > s.plane.slip * s.plane.slip)
+    renew_gliding(g, index, p);
+  const Point& normal = s.plane.normal;
+  double taken = 0;
+  if (normal.x != s.turned_to.x || normal.y != s.turned_to.y || normal.z != s.turned_to.z)
+  {
+    // what turns it is a part of the reaction
+    taken = dot(normal, w);
+    w = physics::turned_with_normal(s.turned_to, normal, w);
+    taken -= dot(normal, w);
+    s.turned_to = normal;
+  }
+  taken += physics::slide(normal, s.plane.height, p, w);
+  if (rubs && s.friction > 0)
+  {
+    const double pressing = s.pressing + g.friction_response * (taken * g.rate - s.pressing);
+    s.pressing = pressing;
+    const Point lost = physics::friction_loss(s.friction, g.dt_exact * pressing, norm(w)) * w;
+    w = w - lost;
+    p = p - g.dt_exact * lost;
+  }
+  const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
+  if (rubs && g.friction_work != nullptr && s.friction > 0)
+  {
+    const Point out = now.turned(normal), change = v - free;
+    const Point along = change - dot(change, out) * out;
+    const Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node], g.velocity_before[2][at.node] };
+    g.friction_work[index] -= dot(along, 0.5 * (old + v) - surface_velocity) / double(at.before.w);
+  }
+  n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
+        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
+}
+
+static __device__ __noinline__ void glide_on_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                  NodeState& n)
+{
+  const std::int32_t bone = g.gliding[index].bone;
+  glide_on(g, index, pose_at(g, at.step + 1, bone), pose_at(g, at.step, bone), at, n);
+}
+
+static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
+{
+  if (g.gliding[index].bone >= 0)
+    glide_on_bone(g, index, at, n);
   else
-    slide(g, index, g.contact_planes[index], n);
+    glide_on(g, index, Still(), Still(), at, n);
 }
 
 static __device__ __noinline__ void follow_path(const StepArguments& g, std::int32_t index, const NodeStep& at,
@@ -218,29 +202,33 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
 static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                                 NodeState& n)
 {
+  using Point = SurfaceContact::Point;
   const RigidMotion& motion = g.rigid[index];
-  const double* pose = g.poses + 12 * ((at.step + std::size_t(1)) * g.bones + motion.bone);
+  const Point rest{ motion.rest[0], motion.rest[1], motion.rest[2] };
+  const Point moved = pose_at(g, at.step + 1, motion.bone).outwards(rest) - rest;
+  const double to[3] = { moved.x, moved.y, moved.z };
   const float old[3] = { at.before.x, at.before.y, at.before.z };
   for (int i = 0; i < 3; ++i)
   {
-    double x = pose[9 + i] - motion.rest[i];
-    for (int j = 0; j < 3; ++j)
-      x += pose[3 * i + j] * motion.rest[j];
-    n.u[i] = static_cast<float>(x);
+    n.u[i] = static_cast<float>(to[i]);
     n.v[i] = (n.u[i] - old[i]) / g.dt;
   }
 }
 
-/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' code.
+/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' own code. `Slides`:
+/// with those that slide or glide.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
+template <bool Slides>
 static __device__ const NodeFunction node_functions[node_effects] = {
   built_with(Effect::surface_loads) ? add_load : nullptr,
-  built_with(Effect::sliding) ? keep_distance : nullptr,
+  built_with(Effect::sliding) && Slides ? keep_distance : nullptr,
+  built_with(Effect::sliding) && Slides ? glide : nullptr,
   built_with(Effect::prescribed_displacement) ? follow_path : nullptr,
   built_with(Effect::rigid_nodes) ? follow_bone : nullptr,
 };
 
 /// What one node has, after its update.
+template <bool Slides>
 static __device__ __noinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float4& before,
                                                int step, NodeState& n)
 {
@@ -248,10 +236,11 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
 #pragma unroll 1
   for (int effect = 0; effect < node_effects; ++effect)
     if (task.of[effect] >= 0)
-      node_functions[effect](g, task.of[effect], at, n);
+      node_functions<Slides>[effect](g, task.of[effect], at, n);
 }
 
-/// The same for a node that has been written already.
+/// What a node has that has been written already.
+template <bool Slides>
 __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask& task, const float4* u, float4* next,
                                          int step)
 {
@@ -259,7 +248,7 @@ __device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask&
   const float4 now = next[task.node];
   NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
   // the inverse mass of what is written: a buffer that was never stepped holds none
-  apply_task(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
+  apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
   for (int i = 0; i < 3; ++i)
     g.v[i][task.node] = n.v[i];
   next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);

@@ -183,11 +183,11 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
     n = updated(g, node, fetch, force);
     if (has<With, Effects::sliding> && task >= 0)
       slide(g, task, plane, n);
-    else if (task != patch_task::none)
+    else if (has<With, Effects::tasks> && task != patch_task::none)
     {
       // a copy, so that the others' numbers stay in registers
       NodeState held = n;
-      apply_task(g, g.tasks[patch_task::other - task], fetch.own, step, held);
+      apply_task<has<With, Effects::sliding>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
       n = held;
     }
 #pragma unroll
@@ -294,7 +294,7 @@ namespace
 template <int... Sets>
 const void* kernel(Effects effects, std::integer_sequence<int, Sets...>)
 {
-  const void* const kernels[] = { reinterpret_cast<const void*>(patch_kernel<Sets>)... };
+  const void* const kernels[] = { reinterpret_cast<const void*>(patch_kernel<kernel_set(Sets)>)... };
   return kernels[static_cast<int>(effects)];
 }
 

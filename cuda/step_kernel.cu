@@ -28,7 +28,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   if (s >= g.strip_count)
     return;
   const Strip strip = g.strips[s];
-  const bool tasks = strip.task_begin < strip.task_end && !g.forces_only;
+  const bool tasks = has<With, Effects::tasks> && strip.task_begin < strip.task_end && !g.forces_only;
   const std::uint32_t* words = nullptr;
   const std::uint32_t* viscous = nullptr;
   if (has<With, Effects::fibres> && strip.fibre_begin != Strip::none)
@@ -42,7 +42,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   {
     __syncwarp();
     for (std::uint32_t t = strip.task_begin + lane; t < strip.task_end; t += 32)
-      run_task(g, g.tasks[t], u, next, step);
+      run_task<has<With, Effects::sliding>>(g, g.tasks[t], u, next, step);
   }
   if (Look)
   {
@@ -56,13 +56,12 @@ namespace
 {
 
 using StepKernel = void (*)(StepArguments);
-// strips have no kernels for sliding nodes
-using Sets = std::make_integer_sequence<int, int(Effects::sliding)>;
+using Sets = std::make_integer_sequence<int, effect_sets>;
 
 template <bool Look, int... Set>
 StepKernel kernel(Effects effects, std::integer_sequence<int, Set...>)
 {
-  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Set)), Look, Set>... };
+  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Set)), Look, kernel_set(Set)>... };
   return kernels[static_cast<int>(effects)];
 }
 

@@ -18,6 +18,7 @@ enum NodeEffect : std::uint8_t
 {
   node_load,        ///< into StepArguments::load_begin
   node_sliding,     ///< into StepArguments::sliding
+  node_gliding,     ///< into StepArguments::gliding
   node_prescribed,  ///< into StepArguments::prescribed
   node_rigid,       ///< into StepArguments::rigid
   node_effects      ///< how many there are
@@ -51,7 +52,7 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// A node on a surface: what an exact closest point needs.
+/// A node on a still surface without friction: what an exact closest point needs.
 struct SlidingContact
 {
   double rest[3];  ///< [m]
@@ -59,18 +60,34 @@ struct SlidingContact
   SurfaceContact searching;  ///< the one with which a plane is found beside the steps
   std::uint32_t node;
   bool renewed;  ///< the node left its plane within the plan, and has another: what was found ahead is of no use
-
-  // where the surface follows a bone or has friction: all in the frame of the bone, plane and point in double
-  bool glides;
-  std::int32_t bone;  ///< -1: still
-  double friction;
-  ContactPlane plane;
-  SurfaceContact::Point reference;  ///< where the plane was found
-  double pressing;                  ///< reaction over mass that friction knows of [m/s2]
 };
 
-/// What a step needs of it: the tangent plane of the offset surface at the latest exact closest point. A displacement u
-/// keeps its distance where normal . u + offset = 0.
+/// A node on a surface that follows a bone or has friction: what each step needs of it, in the frame of the bone.
+struct GlidingContact
+{
+  double rest[3];     ///< [m]
+  std::int32_t bone;  ///< -1: still
+  double friction;
+  double pressing;  ///< reaction over mass that friction knows of [m/s2]
+  ContactPlane plane;
+  SurfaceContact::Point reference;  ///< where the plane was found
+  SurfaceContact::Point turned_to;  ///< normal of the plane that its velocity is parallel to
+};
+
+/// What an exact closest point of it needs, and the plane that is found beside a plan's steps for the next plan.
+struct GlidingSearch
+{
+  SurfaceContact contact;
+  SurfaceContact searching;  ///< as SlidingContact::searching
+  std::uint32_t node;
+  bool renewed;  ///< as SlidingContact::renewed
+  float state;   ///< nothing_ahead, wanted_ahead, or 0: found
+  SurfaceContact::Point ahead;
+  ContactPlane found;
+};
+
+/// What a step needs of a sliding node: the tangent plane of the offset surface at the latest exact closest point. A
+/// displacement u keeps its distance where normal . u + offset = 0.
 struct TangentPlane
 {
   float4 normal_offset;
@@ -141,6 +158,9 @@ struct StepArguments
   TangentPlane* contact_planes;
   TangentPlane* planes_ahead;  ///< for the next plan; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
+  GlidingContact* gliding;
+  GlidingSearch* gliding_searches;
+  std::uint32_t gliding_count;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
   const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
@@ -153,6 +173,7 @@ struct StepArguments
   float dt, keep, gain;       ///< v = keep v - gain f / m + impulse
   float impulse[3];
   double time, dt_exact;
+  double rate, friction_response;            ///< 1 / dt_exact; physics::friction_response
   double kick;                               ///< for how long forces change velocities in these steps [s]
   std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
   std::uint32_t* look;         ///< bits of the bound of the highest frequency squared at the plan's last step, or all
@@ -160,7 +181,7 @@ struct StepArguments
   bool forces_only;            ///< internal forces into u[1 - first], nothing updated
   float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
   float* velocity_free[3];     ///< after it and the loads, before constraints
-  double* friction_work;       ///< lost to friction, one a contact [J]; null: no account of work is kept
+  double* friction_work;       ///< lost to friction, one a gliding node [J]; null: no account of work is kept
   std::uint32_t steps_before;  ///< that this solver's launches have done before this one
 };
 
@@ -188,23 +209,24 @@ constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
 /// What a kernel has within its loops over voxels and nodes. There is one for each set, so that what a model does not
-/// have takes neither registers nor instructions; what few nodes have is called through a table (node_tasks.cuh) and
-/// needs none.
+/// have takes neither registers nor instructions. What few nodes have is called through a table (node_tasks.cuh), in
+/// kernels of their own.
 enum class Effects : std::uint8_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
   fibres = 1,
   viscosity = 2,
-  forms = 4,   ///< other laws, hourglass controls and integrations
-  sliding = 8  ///< of nodes that do nothing else; where there are patches
+  forms = 4,    ///< other laws, hourglass controls and integrations
+  sliding = 8,  ///< on surfaces
+  tasks = 16    ///< what node_tasks.cuh has; goes with sliding, whose rare search is better called than compiled in
 };
-constexpr int effect_sets = 16;
+constexpr int effect_sets = 32;
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
 // variables, which code for the device can use too
 inline constexpr Effects built_effects =
     (built_with(Effect::fibre_stiffness) || built_with(Effect::contraction) ? Effects::fibres : Effects::none) |
-    (built_with(Effect::viscosity) ? Effects::viscosity : Effects::none) | Effects::forms |
+    (built_with(Effect::viscosity) ? Effects::viscosity : Effects::none) | Effects::forms | Effects::tasks |
     (built_with(Effect::sliding) ? Effects::sliding : Effects::none);
 template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & built_effects & Part) == Part;
@@ -212,7 +234,11 @@ template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
 /// What voxels that have neither fibres nor viscosity need of a kernel.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::forms | Effects::sliding);
+inline constexpr Effects plain_part = Set&(Effects::forms | Effects::sliding | Effects::tasks);
+/// The kernel that stands for a set: none slides without tasks.
+constexpr int kernel_set(int set) { return (set & int(Effects::sliding)) != 0 ? set | int(Effects::tasks) : set; }
+/// What voxels need of one.
+constexpr Effects voxel_part(Effects set) { return set & (Effects::fibres | Effects::viscosity | Effects::forms); }
 
 /// How the step kernel is launched for a model.
 struct StepLaunch
@@ -227,7 +253,7 @@ struct StepLaunch
 
 /// Rows of a strip that the strip kernel takes, and blocks of it that a multiprocessor holds. Three rows leave room for
 /// 16 warps a multiprocessor where four would for 12; with fibres it is two.
-constexpr int strip_rows(Effects effects) { return effects == Effects::none ? 3 : 2; }
+constexpr int strip_rows(Effects effects) { return voxel_part(effects) == Effects::none ? 3 : 2; }
 constexpr int strip_blocks(Effects effects)
 {
   return (effects & (Effects::viscosity | Effects::forms)) == Effects::none ? 4 : 3;
@@ -248,8 +274,8 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before a plan: sliding nodes take the planes that were found for them, those that would leave theirs in this plan
-/// find new ones at once, and those that would in the next one ask for new ones.
+/// Before a plan: sliding and gliding nodes take the planes that were found for them, those that would leave theirs in
+/// this plan find new ones at once, and those that would in the next one ask for new ones.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 /// What was asked for; runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);

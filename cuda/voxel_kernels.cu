@@ -1,4 +1,5 @@
 #include "element_stress.cuh"
+#include "frontalis/physics/ramp.hpp"
 #include "node_tasks.cuh"
 #include "voxel_kernels.hpp"
 

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "model_source.hpp"
+#include "plot_path.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"
@@ -176,6 +177,7 @@ void bench_effects(const BenchOptions& options)
   const SolverSettings settings{ backend_from_name(options.backend), options.threads, 0 };
   const double seconds = options.quick ? 1.0 : 4.0;
   // before minutes are spent
+  const std::string plot = plot_path(options.plot);
   std::shared_ptr<const Model> model;
   if (!options.source.path.empty())
     model = std::make_shared<const Model>(obtain_model(options.source));
@@ -195,8 +197,8 @@ void bench_effects(const BenchOptions& options)
                 tenths(100 * cost.step / whole) });
   }
   std::printf("%s", table.text().c_str());
-  if (!options.plot.empty())
-    draw(costs, options.backend, options.plot);
+  if (!plot.empty())
+    draw(costs, options.backend, plot);
   if (!model)
     return;
   const ActivationCost cost = measure_activation(model, settings, seconds);
@@ -241,7 +243,7 @@ void add_bench_command(CLI::App& app, Action& action)
   command->add_flag(
       "--effects", options->effects,
       "what effects cost where a share of the voxels has them; of SCENE_OR_MODEL, one muscle against all");
-  command->add_option("--plot", options->plot, "of --effects: FILE.png and FILE.svg, given without extension");
+  command->add_option("--plot", options->plot, "of --effects: FILE.png, and FILE.svg beside it");
   command->callback([options, &action] { action = [options] { bench(*options); }; });
 }
 

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "model_source.hpp"
+#include "plot_path.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/effect_costs.hpp"
@@ -99,15 +100,6 @@ void show_arrays(const EffectsOptions& options)
   std::printf("%s", (options.json ? table.json() : table.text()).c_str());
 }
 
-// what write_plot wants of FILE.png
-std::string without_extension(const std::string& path)
-{
-  const std::string extension = ".png";
-  if (path.size() <= extension.size() || path.compare(path.size() - extension.size(), extension.size(), extension) != 0)
-    throw WrongUsage("--plot: '" + path + "' must end in .png");
-  return path.substr(0, path.size() - extension.size());
-}
-
 void print(const Model& model, const EffectCosts& costs)
 {
   std::printf("%s", table_of(costs).text().c_str());
@@ -120,7 +112,7 @@ void print(const Model& model, const EffectCosts& costs)
 
 void show_effects(const EffectsOptions& options)
 {
-  const std::string plot = options.plot.empty() ? "" : without_extension(options.plot);
+  const std::string plot = plot_path(options.plot);
   if (options.arrays)
     return show_arrays(options);
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))

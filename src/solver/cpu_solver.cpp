@@ -5,6 +5,7 @@
 #include "step_bound.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <type_traits>
 
 namespace frontalis
@@ -30,7 +31,7 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
       restricted_(*model_, slide(choice_, Real(0))),
       loads_(*model_, discretisation_),
       team_(settings.threads),
-      remark_(remark)
+      remark_(remark.empty() ? "" : "; " + remark)
 {
   for (const double mass : discretisation_.node_mass)
     inverse_mass_.push_back(static_cast<float>(1 / mass));
@@ -42,7 +43,15 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
   for (std::int32_t k = 0; k < rows_.planes; ++k)
     largest = std::max(largest, rows_.plane_nodes[k + 1] - rows_.plane_nodes[k]);
   buffer_stride_ = largest + 2 * Tile::width;
-  share_planes();
+  buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
+  share_planes(rows_.plane_tiles);
+  if (settings.sleep > 0)
+  {
+    std::ostringstream text;
+    text << "; what is at rest sleeps, within " << settings.sleep << " m";
+    remark_ += text.str();
+    sleep_ = std::make_unique<SleepingTiles>(*model_, rows_, settings.sleep);
+  }
   if (wants_ledger_)
   {
     account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
@@ -72,6 +81,14 @@ void CpuSolver<Real>::effect_switched(Effect effect)
   if (effect == Effect::sliding || effect == Effect::friction)
     restricted_.run(effects());
   loads_.run(effects());
+  wake();
+}
+
+template <class Real>
+void CpuSolver<Real>::wake()
+{
+  if (sleep_)
+    sleep_->wake(time());
 }
 
 template <class Real>
@@ -96,24 +113,25 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
   loads_.list_allocations(list);
   if (account_)
     account_->list_allocations(list);
+  if (sleep_)
+    sleep_->list_allocations(list);
 }
 
 // slabs of about equal numbers of tiles
 template <class Real>
-void CpuSolver<Real>::share_planes()
+void CpuSolver<Real>::share_planes(const std::vector<std::int32_t>& plane_tiles)
 {
   const int threads = team_.size();
-  const auto total = static_cast<std::int64_t>(rows_.tiles.size());
+  const auto total = static_cast<std::int64_t>(plane_tiles.back());
   slab_.assign(1, 0);
   for (int t = 1; t < threads; ++t)
   {
-    const auto end = std::lower_bound(rows_.plane_tiles.begin(), rows_.plane_tiles.end(),
-                                      static_cast<std::int32_t>(total * t / threads));
-    const auto plane = static_cast<std::int32_t>(end - rows_.plane_tiles.begin());
+    const auto end =
+        std::lower_bound(plane_tiles.begin(), plane_tiles.end(), static_cast<std::int32_t>(total * t / threads));
+    const auto plane = static_cast<std::int32_t>(end - plane_tiles.begin());
     slab_.push_back(std::clamp(plane, slab_.back(), rows_.planes));
   }
   slab_.push_back(rows_.planes);
-  buffers_.assign(threads, std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
 }
 
 template <class Real>
@@ -127,6 +145,7 @@ void CpuSolver<Real>::rest()
       component.assign(model_->nodes.size(), 0);
   relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
   restricted_.reset();
+  wake();
 }
 
 template <class Real>
@@ -137,12 +156,14 @@ struct CpuSolver<Real>::Kept : SteppingSolver::Fields
   std::vector<float> relaxed;
   typename EnergyAccount<Real>::Book book;
   std::vector<FibreMemory> fibre_memory;
+  SleepingTiles::State sleep;
 
   void archive(ByteArchive& archive) override
   {
     archive(u)(v)(rounding)(relaxed)(fibre_memory);
     contacts.archive(archive);
     book.archive(archive);
+    sleep.archive(archive);
   }
 };
 
@@ -160,6 +181,8 @@ void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
   kept.fibre_memory = fibre_memory_;
   if (account_)
     kept.book = account_->book();
+  if (sleep_)
+    kept.sleep = sleep_->state();
 }
 
 template <class Real>
@@ -174,6 +197,8 @@ void CpuSolver<Real>::restore_fields(const Fields& from)
   fibre_memory_ = kept.fibre_memory;
   if (account_)
     account_->restore(kept.book);
+  if (sleep_)
+    sleep_->restore(kept.sleep);
 }
 
 template <class Real>
@@ -204,6 +229,7 @@ template <class Real>
 void CpuSolver<Real>::set_velocities(const Vectors& in)
 {
   separate(in, v_);
+  wake();
   velocities_were_set();
 }
 
@@ -214,7 +240,7 @@ std::string CpuSolver<Real>::description() const
                               : rounding_[0].empty()            ? "float"
                                                                 : "float, compensated";
   return std::string("cpu (") + numbers + ", " + choice_.name + ", " + std::to_string(team_.size()) +
-         (team_.size() == 1 ? " thread" : " threads") + (remark_.empty() ? "" : "; " + remark_) + ")";
+         (team_.size() == 1 ? " thread" : " threads") + remark_ + ")";
 }
 
 template <class Real>

@@ -64,6 +64,9 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
   for (Node* node = nodes_.data() + (nodes.first - nodes_.data()); node != nodes.second; ++node)
   {
     const auto n = node->node;
+    // what friction knows of the pressure stays too
+    if (drive.held != nullptr && drive.held[n] != 0)
+      continue;
     const RigidTransform& now = node->bone < 0 ? still : drive.bone[node->bone];
     const RigidTransform& before = node->bone < 0 ? still : drive.bone_before[node->bone];
     // in the frame of the bone, relative to it

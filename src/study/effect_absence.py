@@ -176,7 +176,8 @@ def compare_on_gpu(build):
         with tempfile.TemporaryDirectory() as folder:
             without = cubins(entries, effects, folder)
         # the last number in a kernel's name is its set of effects
-        chosen = [name for name in whole if not int(re.findall(r"Li(\d+)E", name)[-1]) & bits]
+        sets = {name: re.findall(r"Li(\d+)E", name) for name in whole}
+        chosen = [name for name in whole if sets[name] and not int(sets[name][-1]) & bits]
         same = [name for name in chosen if whole[name] == without[name]]
         print("%-28s %16d %16d %10d" % (", ".join(effects), len(chosen), len(same),
                                         sum(len(whole[name]) for name in same)), flush=True)

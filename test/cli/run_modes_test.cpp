@@ -79,6 +79,9 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
   EXPECT_GT(number_in(json.output, "plain_step_us"), 0);
   EXPECT_GE(number_in(json.output, "step_us"), 0);
   EXPECT_EQ(run_program({ "effects", model, "--plot", "bars.svg" }).code, 2);
+  const auto bench = run_program({ "bench", "--effects", model, "--plot", "shares" });
+  EXPECT_EQ(bench.code, 2);
+  EXPECT_NE(bench.errors.find("--plot: 'shares' must end in .png"), std::string::npos) << bench.errors;
 }
 
 TEST_F(RunModes, a_time_step_is_taken_or_refused)

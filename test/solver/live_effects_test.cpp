@@ -267,6 +267,29 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   EXPECT_EQ(without_fibres, never);
 }
 
+// nothing that a solver keeps on request is left out of its list
+TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
+{
+  SolverSettings settings{ GetParam(), 2, dt };
+  settings.ledger = true;
+  const auto model = std::make_shared<const Model>(scene_of(everything));
+  const auto booked = make_solver(model, settings);
+  auto with = bytes_of(*booked), without = bytes_of(*make(*model));
+  EXPECT_EQ(without.count("elasticity: account of energies"), 0u);
+  // velocities before and after the update of each node at least
+  EXPECT_GE(with["elasticity: account of energies"], 6 * sizeof(float) * model->nodes.size());
+  if (GetParam() != Backend::cuda)
+    return;
+  booked->monitor();
+  EXPECT_GE(bytes_of(*booked)["elasticity: what the monitor looks at"], 36 * model->voxels.size());
+  Model estimated = *model;
+  estimated.time_step_estimate = TimeStepEstimate::assembled;
+  const auto assembled = make(estimated, 0);
+  assembled->advance(8e-4, assembled->controls());
+  EXPECT_GE(bytes_of(*assembled)["elasticity: mode of the highest frequency"],
+            4 * 4 * sizeof(float) * model->nodes.size());
+}
+
 FRONTALIS_EVERY_BACKEND(LiveEffects);
 
 }  // namespace

@@ -40,6 +40,9 @@ struct SolverSettings
   int threads = 0;       ///< CPU threads; 0: one a core
   double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
   bool ledger = false;   ///< keep account of energies (Solver::ledger); costs a part of a step
+  /// Backend cpu: what is at rest is not computed, so that no node errs by more than about so much [m]; 0: all is.
+  /// Other backends compute all and say so in their description.
+  double sleep = 0;
 };
 
 /// What drives the model from outside.
