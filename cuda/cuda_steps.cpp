@@ -180,7 +180,7 @@ double CudaSolver::run(const StepPlan& plan)
     return double(squared);
   };
   // the plan before, so that the device is never without work; its own where there is none or motion changes fast
-  if (plans_ == 1 || plan.closely)
+  if (plans_ == 1 || plan.awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
   return before > plan.alarm ? seen(plans_ - 1) : before;

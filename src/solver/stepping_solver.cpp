@@ -19,6 +19,7 @@ namespace
 {
 
 constexpr int close_steps = 8;              // between looks that follow closely
+constexpr int restless_steps = 32;          // between looks at what vibrates
 constexpr double alert_share = 0.55;        // of the critical time step
 constexpr double much_stiffer = 4;          // than at rest, of the frequency squared
 constexpr double stiffening_allowed = 1.1;  // of the frequency squared from look to look
@@ -221,7 +222,10 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     const double steps_left = std::ceil(remaining / longest * (1 - 1e-9));
     StepPlan plan;
     plan.closely = wary_ > 0 || longest == steady;
-    const int most_steps = plan.closely ? close_steps : steps_a_plan();
+    plan.awaited = plan.closely || restless_ > 0;
+    const int most_steps = plan.closely    ? close_steps
+                           : restless_ > 0 ? std::min(restless_steps, steps_a_plan())
+                                           : steps_a_plan();
     plan.steps = static_cast<int>(std::min<double>(steps_left, most_steps));
     plan.dt = remaining / steps_left;
     plan.first_kick = latest_step_ > 0 ? 0.5 * (latest_step_ + plan.dt) : plan.dt;
@@ -236,7 +240,7 @@ void SteppingSolver::advance(double seconds, const Controls& target)
     for (std::size_t m = 0; m < plan.end.activation.size(); ++m)
       if (std::abs(plan.end.activation[m] - plan.begin.activation[m]) > activation_a_plan)
       {
-        plan.closely = true;
+        plan.closely = plan.awaited = true;
         wary_ = std::max(wary_, steps_after_a_switch);
       }
     plan.alarm = stiffening_allowed * frequency_squared_;

@@ -21,8 +21,9 @@ struct StepPlan
   /// velocities stand half a step before displacements.
   double first_kick = 0;
   double time = 0;       ///< at its begin
-  bool closely = false;  ///< frequency bounds are looked at in every step, and waited for
-  double alarm = 0;      ///< frequency bound squared above which they are waited for too [1/s2]
+  bool closely = false;  ///< frequency bounds are looked at in every step
+  bool awaited = false;  ///< what is seen in this plan rules the next, not a later one
+  double alarm = 0;      ///< frequency bound squared above which it does in any case [1/s2]
   Controls begin, end;   ///< activations are those of the muscles, not those asked for
 
   double fraction(int step) const { return (step + 1.0) / steps; }

@@ -61,8 +61,8 @@ struct StabilityCase
   std::function<void(const StabilitySettings&, Trial&)> run;
 };
 
-/// All cases, in the document's order; their words, sizes, times and bounds are read from FOLDER/NAME.yaml. Throws Error
-/// where one is missing or wrong.
+/// All cases, in the document's order; their words, sizes, times and bounds are read from FOLDER/NAME.yaml. Throws
+/// Error where one is missing or wrong.
 std::vector<StabilityCase> stability_cases(const std::string& folder);
 
 /// Runs one; what it throws, but what `watch` throws, becomes a failure.
