@@ -1,10 +1,14 @@
+#include "activation_list.hpp"
 #include "command.hpp"
+#include "interrupt.hpp"
 #include "model_source.hpp"
 #include "plot_path.hpp"
+#include "progress.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/effect_costs.hpp"
 #include "frontalis/study/plot.hpp"
+#include "frontalis/study/sleep_error.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <CLI/CLI.hpp>
@@ -27,6 +31,9 @@ struct EffectsOptions
   bool json = false;
   bool arrays = false;
   std::string plot;
+  std::vector<double> sleep;  ///< [m]
+  std::string activation;
+  double ramp = 0.3;  ///< [s]
 };
 
 std::string why(const EffectCost& cost, double field)
@@ -110,9 +117,35 @@ void print(const Model& model, const EffectCosts& costs)
   std::printf("on %s; every muscle at activation 0.75\n", costs.backend.c_str());
 }
 
+// what sleeping saves, and what it errs
+void show_sleep(const EffectsOptions& options)
+{
+  const SleepHistory history{ parse_activation_list(options.activation), options.ramp };
+  const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  Progress progress(Progress::OffTerminal::silent);
+  const auto errors = measure_sleep(model, options.sleep, history,
+                                    [&](double done)
+                                    {
+                                      progress.update("muscles rise and are let go", done);
+                                      return !interrupt_requested();
+                                    });
+  progress.clear();
+  if (interrupt_requested())
+    throw Interrupted();
+  const auto tenths = [](double metres) { return std::round(1e7 * metres) / 10; };
+  const auto hundredths = [](double x) { return std::round(100 * x) / 100; };
+  Table table({ "tolerance [um]", "seconds", "of those without", "error [um]", "undetermined [um]" });
+  for (const SleepError& one : errors)
+    table.add({ tenths(one.tolerance), hundredths(one.seconds), hundredths(one.seconds / one.awake_seconds),
+                tenths(one.error), tenths(one.apart) });
+  std::printf("%s", (options.json ? table.json() : table.text()).c_str());
+}
+
 void show_effects(const EffectsOptions& options)
 {
   const std::string plot = plot_path(options.plot);
+  if (!options.sleep.empty())
+    return show_sleep(options);
   if (options.arrays)
     return show_arrays(options);
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))
@@ -147,6 +180,18 @@ void add_effects_command(CLI::App& app, Action& action)
   command->add_flag("--arrays", options->arrays, "instead of timing, the bytes of each of the solver's arrays")
       ->excludes(
           command->add_option("--plot", options->plot, "draws the costs as bars: FILE.png, and FILE.svg beside it"));
+  CLI::Option* const sleep =
+      command->add_option("--sleep", options->sleep,
+                          "instead of timing, what letting sleep what is at rest saves and errs within each of these "
+                          "tolerances [m] (run --sleep), while muscles rise, are held, and are let go");
+  sleep->delimiter(',')->check(CLI::PositiveNumber)->excludes("--arrays")->excludes("--plot");
+  CLI::Option* const raised =
+      command->add_option("--activate", options->activation, "those that rise: MUSCLE=VALUE,MUSCLE=VALUE,...");
+  raised->needs(sleep);
+  sleep->needs(raised);
+  command->add_option("--ramp", options->ramp, "within which they rise and are let go [s] (0.3)")
+      ->check(CLI::Range(0.0, 1.2))
+      ->needs(sleep);
   command->callback([options, &action] { action = [options] { show_effects(*options); }; });
 }
 

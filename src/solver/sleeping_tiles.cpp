@@ -10,17 +10,30 @@ namespace frontalis
 namespace
 {
 
-constexpr double stir_share = 1.0 / 16;  // of the tolerance
-constexpr double quiet_time = 0.05;      // [s]
-constexpr int rings = 2;                 // around what has stirred
+constexpr double stir_share = 1.0 / 16;                                  // of the tolerance
+constexpr double quiet_time = 0.05;                                      // [s]
+constexpr int rings = 2;                                                 // around what has stirred
+constexpr double first_nap = 0.1, longest_nap = 0.8, trial_time = 0.02;  // [s]
 constexpr float activation_that_stirs = 1e-4F;
+
+template <class Real>
+double way_squared(const std::array<const Real*, 3>& u, const std::array<std::vector<float>, 3>& from, std::size_t node)
+{
+  double way = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double x = double(u[axis][node]) - double(from[axis][node]);
+    way += x * x;
+  }
+  return way;
+}
 
 }  // namespace
 
 SleepingTiles::SleepingTiles(const Model& model, const VoxelRows& rows, double tolerance)
     : model_(model),
       rows_(rows),
-      stir_squared_(stir_share * stir_share * tolerance * tolerance),
+      stir_(stir_share * tolerance),
       node_touched_(model.nodes.size(), 0),
       touched_(rows.tiles.size(), 0)
 {
@@ -36,6 +49,7 @@ SleepingTiles::SleepingTiles(const Model& model, const VoxelRows& rows, double t
 void SleepingTiles::State::archive(ByteArchive& archive)
 {
   archive(anchor)(stirred)(asleep)(activation)(pose)(frequency_squared)(latest_frequency_squared);
+  archive(before)(nap)(turn)(trial);
 }
 
 void SleepingTiles::restore(const State& state)
@@ -49,6 +63,8 @@ void SleepingTiles::wake(double time)
   std::fill(state_.stirred.begin(), state_.stirred.end(), time);
   std::fill(state_.asleep.begin(), state_.asleep.end(), 0);
   state_.frequency_squared = 0;
+  state_.nap = 0;
+  state_.trial = false;
   sort();
 }
 
@@ -60,6 +76,35 @@ void SleepingTiles::each_node(std::size_t tile, const Visit& visit) const
   for (int strip = 0; strip < Tile::strips && t.count[strip] > 0; ++strip)
     for (const std::int32_t first : t.node[strip])
       visit(first, t.count[strip] + 1);
+}
+
+// whether a nap or a trial ends now
+template <class Real>
+void SleepingTiles::nap_or_try(const std::array<const Real*, 3>& u, double time)
+{
+  if (state_.nap == 0 || time < state_.turn)
+    return;
+  auto& before = state_.before;
+  state_.trial = !state_.trial;
+  if (state_.trial)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+      before[axis].assign(u[axis], u[axis] + model_.nodes.size());
+    state_.turn = time + trial_time;
+    return;
+  }
+  double farthest = 0;
+  for (std::size_t t = 0; t < state_.stirred.size(); ++t)
+    if (time - state_.stirred[t] >= quiet_time)
+      each_node(t,
+                [&](std::int32_t first, std::int32_t count)
+                {
+                  for (auto n = first; n < first + count; ++n)
+                    farthest = std::max(farthest, way_squared(u, before, n));
+                });
+  const double most = std::sqrt(farthest) > 0 ? stir_ / std::sqrt(farthest) : 2;
+  state_.nap = std::clamp(state_.nap * std::min(2.0, most), first_nap, longest_nap);
+  state_.turn = time + state_.nap;
 }
 
 template <class Real>
@@ -86,13 +131,7 @@ void SleepingTiles::look(const std::array<const Real*, 3>& u, const StepPlan& pl
   auto& anchor = state_.anchor;
   for (std::size_t n = 0; n < node_touched_.size(); ++n)
   {
-    double way = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double x = double(u[axis][n]) - double(anchor[axis][n]);
-      way += x * x;
-    }
-    node_touched_[n] = way > stir_squared_;
+    node_touched_[n] = way_squared(u, anchor, n) > stir_ * stir_;
     for (int axis = 0; axis < 3 && node_touched_[n] != 0; ++axis)
       anchor[axis][n] = static_cast<float>(u[axis][n]);
   }
@@ -119,12 +158,14 @@ void SleepingTiles::look(const std::array<const Real*, 3>& u, const StepPlan& pl
             t, [&](std::int32_t first, std::int32_t count) { std::fill_n(node_touched_.begin() + first, count, 1); });
     touch_tiles();
   }
+  for (std::size_t t = 0; t < tiles; ++t)
+    if (touched_[t] != 0)
+      state_.stirred[t] = plan.time;
+  nap_or_try(u, plan.time);
   bool changed = false;
   for (std::size_t t = 0; t < tiles; ++t)
   {
-    if (touched_[t] != 0)
-      state_.stirred[t] = plan.time;
-    const char asleep = plan.time - state_.stirred[t] >= quiet_time ? 1 : 0;
+    const char asleep = !state_.trial && plan.time - state_.stirred[t] >= quiet_time ? 1 : 0;
     changed = changed || asleep != state_.asleep[t];
     if (asleep > state_.asleep[t])
       state_.frequency_squared = std::max(state_.frequency_squared, state_.latest_frequency_squared);
@@ -132,8 +173,16 @@ void SleepingTiles::look(const std::array<const Real*, 3>& u, const StepPlan& pl
   }
   if (changed)
     sort();
-  if (!any())
-    state_.frequency_squared = 0;
+  if (any() && state_.nap == 0)
+  {
+    state_.nap = first_nap;
+    state_.turn = plan.time + first_nap;
+  }
+  if (any())
+    return;
+  state_.frequency_squared = 0;
+  if (!state_.trial)
+    state_.nap = 0;
 }
 
 double SleepingTiles::frequency(double computed)
@@ -203,8 +252,9 @@ void SleepingTiles::sort()
 
 void SleepingTiles::list_allocations(AllocationList& list) const
 {
-  for (const auto& component : state_.anchor)
-    list.add(Effect::elasticity, "what sleeps", component);
+  for (const auto* field : { &state_.anchor, &state_.before })
+    for (const auto& component : *field)
+      list.add(Effect::elasticity, "what sleeps", component);
   list.add(Effect::elasticity, "what sleeps", state_.stirred);
   list.add(Effect::elasticity, "what sleeps", state_.asleep);
   list.add(Effect::elasticity, "what sleeps", node_touched_);

@@ -16,10 +16,10 @@ using Vectors = std::vector<std::array<double, 3>>;
 constexpr double tolerance = 20e-6, frame = 0.02;
 
 // A layer of tissue on a bone, with a muscle along one end of it: what it does ends a few of its depths away.
-Model layer_on_bone()
+Model layer_on_bone(std::int32_t length = 160)
 {
   test::BlockSettings settings;
-  settings.voxels = { { 160, 3, 3 } };
+  settings.voxels = { { length, 3, 3 } };
   settings.poisson = 0.45;
   settings.density = 11000;
   settings.damping = 40;
@@ -32,8 +32,13 @@ Model layer_on_bone()
   muscle.name = "end";
   muscle.stress_reference = 20e3;
   test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  // in the first voxels, and nowhere else
+  std::int32_t fibres = 0;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
-    model.fibre_weight[e] = model.voxels[e][0] < 8 ? 1.0f : 0.0f;
+    model.fibre_begin[e + 1] = fibres += model.voxels[e][0] < 8 ? 1 : 0;
+  model.fibre_muscle.resize(fibres);
+  model.fibre_weight.resize(fibres);
+  model.fibre_direction.resize(fibres);
   return model;
 }
 
@@ -106,6 +111,49 @@ TEST(Sleep, errors_stay_within_the_tolerance_while_it_falls_asleep_and_wakes)
   EXPECT_LT(worst, tolerance);
   EXPECT_GT(worst, 0);
   EXPECT_LT(fewest, 3 * bytes_of(*awake, "tiles") / 4) << "bytes";
+}
+
+// the farthest that a sleeper is from where it is awake, while the muscle goes up within a time and is held; and the
+// least that is awake, as a share
+std::pair<double, double> error_and_awake(const Model& model, double within, double ramp, double seconds)
+{
+  const auto awake = solver_of(model, 0), sleeper = solver_of(model, within);
+  double worst = 0, least = 1;
+  for (int f = 1; f * frame <= seconds; ++f)
+  {
+    Controls controls = awake->controls();
+    controls.activation[0] = static_cast<float>(std::min(0.75, 0.75 * f * frame / ramp));
+    awake->advance(frame, controls);
+    sleeper->advance(frame, controls);
+    worst = std::max(worst, farthest(displacements(*awake), displacements(*sleeper)));
+    const auto bytes = [&](const char* what) { return static_cast<double>(bytes_of(*sleeper, what)); };
+    if (bytes("tiles that are awake") > 0)
+      least = std::min(least, bytes("tiles that are awake") / bytes("tiles"));
+    else if (sleeper->monitor().kinetic == 0)
+      least = 0;
+  }
+  return { worst, least };
+}
+
+// tissue that creeps at less than the speed at which it falls asleep went a third of a millimetre unseen
+TEST(Sleep, what_creeps_is_followed)
+{
+  Model model = layer_on_bone(80);
+  model.materials[0].viscous_share[0] = 0.6;
+  model.materials[0].viscous_time[0] = 5;
+  const double within = 3e-4;
+  const auto [error, awake] = error_and_awake(model, within, 0.1, 4);
+  EXPECT_LT(error, 0.5 * within);
+  EXPECT_LT(awake, 0.5);
+}
+
+TEST(Sleep, what_is_ramped_slowly_is_followed)
+{
+  Model model = layer_on_bone();
+  const double within = 1e-4;
+  const auto [error, awake] = error_and_awake(model, within, 2, 2.2);
+  EXPECT_LT(error, 0.5 * within);
+  EXPECT_LT(awake, 0.9);
 }
 
 TEST(Sleep, all_of_it_rests_at_last_and_is_woken_by_muscles_and_bones)
