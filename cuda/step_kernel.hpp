@@ -220,7 +220,7 @@ enum class Effects : std::uint8_t
   sliding = 8,  ///< on surfaces
   tasks = 16    ///< what node_tasks.cuh has; goes with sliding, whose rare search is better called than compiled in
 };
-constexpr int effect_sets = 32;
+constexpr int voxel_sets = 8;  ///< of the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
 // variables, which code for the device can use too
@@ -235,8 +235,6 @@ inline constexpr Effects part = Set& Of;
 /// What voxels that have neither fibres nor viscosity need of a kernel.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::forms | Effects::sliding | Effects::tasks);
-/// The kernel that stands for a set: none slides without tasks.
-constexpr int kernel_set(int set) { return (set & int(Effects::sliding)) != 0 ? set | int(Effects::tasks) : set; }
 /// What voxels need of one.
 constexpr Effects voxel_part(Effects set) { return set & (Effects::fibres | Effects::viscosity | Effects::forms); }
 

@@ -18,7 +18,7 @@ import tempfile
 EFFECTS = (("viscosity",), ("contraction", "fibre_stiffness"), ("gravity",), ("surface_loads",),
            ("prescribed_displacement",), ("rigid_nodes",), ("sliding", "friction"), ("friction",))
 STEPS = "frontalis::SteppingSolver::advance*"
-KERNELS = ("patch_kernel.cu", "step_kernel.cu")
+KERNELS = ("patch_kernel.cu", "patch_kernel_sliding.cu", "step_kernel.cu", "step_kernel_sliding.cu")
 # bits of Effects (cuda/step_kernel.hpp)
 KERNEL_BITS = {"contraction": 1, "fibre_stiffness": 1, "viscosity": 2, "sliding": 8}
 
@@ -166,7 +166,7 @@ def compare_on_gpu(build):
     if not entries:
         print("no nvcc: kernels of the GPU are not compared")
         return
-    print("%-28s %16s %16s %10s" % ("absent", "kernels for it", "the same code", "bytes"))
+    print("%-28s %16s %16s %24s" % ("absent", "kernels for it", "the same code", "as many instructions"))
     with tempfile.TemporaryDirectory() as folder:
         whole = cubins(entries, (), folder)
     for effects in EFFECTS:
@@ -178,9 +178,9 @@ def compare_on_gpu(build):
         # the last number in a kernel's name is its set of effects
         sets = {name: re.findall(r"Li(\d+)E", name) for name in whole}
         chosen = [name for name in whole if sets[name] and not int(sets[name][-1]) & bits]
-        same = [name for name in chosen if whole[name] == without[name]]
-        print("%-28s %16d %16d %10d" % (", ".join(effects), len(chosen), len(same),
-                                        sum(len(whole[name]) for name in same)), flush=True)
+        same = sum(whole[name] == without[name] for name in chosen)
+        as_many = sum(len(whole[name]) == len(without[name]) for name in chosen)
+        print("%-28s %16d %16d %24d" % (", ".join(effects), len(chosen), same, as_many), flush=True)
 
 
 def main():
