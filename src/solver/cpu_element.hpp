@@ -253,7 +253,7 @@ struct CpuElement
         Lane::store(sum.a[n], relaxed_of(g, at, 2) + n * Tile::width);
   }
 
-  /// Share of the bound of the stiffness now [N/m] that its nodes get, NaN where motion is not finite.
+  /// Bound of the largest eigenvalue of the stiffness now [N/m], NaN where motion is not finite.
   static __attribute__((noinline)) Batch stiffness_now(const Arguments& g, const Place& at, const Kinematics& k)
   {
     const Batch at_rest = Lane::load(g.stiffness[at.index].bound + at.offset);
@@ -266,8 +266,6 @@ struct CpuElement
       now = now + law_stiffening(slot.law, parameters, Lane::load(slot.at_rest + at.offset),
                                  Lane::load(slot.per_tangent + at.offset), k);
     }
-    if (g.share != nullptr)
-      now = now * Lane::load(g.share + at.index * Tile::width + at.offset);
     return now;
   }
 

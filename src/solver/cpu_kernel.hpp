@@ -24,8 +24,7 @@ struct CpuKernelArguments
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< what the sums of displacements have lost [m]; null: not kept
   const float* inverse_mass;  ///< [1/kg]
-  const float* mobility;      ///< the same over the node's weight (time_step.hpp), 0 where it is held [1/kg]
-  const float* share;         ///< of the stiffness of a tile's voxels (weighted_share()); null: 1
+  const float* mobility;      ///< the same, 0 where a node is held [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;

@@ -97,8 +97,6 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
   rows_.list_allocations(effect_of_fibres(), list);
   list.add(Effect::elasticity, "inverse masses", inverse_mass_);
   list.add(Effect::elasticity, "inverse masses", mobility_);
-  list.add(Effect::elasticity, "weights of nodes", weighted_mobility_);
-  list.add(Effect::elasticity, "weights of nodes", share_);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     for (const auto* field : { &u_, &next_, &v_ })

@@ -2,9 +2,7 @@
 
 #include "cpu_kernel.hpp"
 #include "nodal_loads.hpp"
-#include "plane_monitor.hpp"
 #include "sleeping_tiles.hpp"
-#include "step_bound.hpp"
 #include "stepping_solver.hpp"
 #include "thread_team.hpp"
 #include "voxel_rows.hpp"
@@ -44,8 +42,6 @@ protected:
   void open_account() override;
   Work work() override;
   Monitor measure() override;
-  double find_weights(NodeWeights& weights) override;
-  void weights_changed() override;
 
 private:
   using Components = std::array<std::vector<Real>, 3>;
@@ -72,14 +68,10 @@ private:
   bool relaxes() const { return built_with(Effect::viscosity) && !relaxed_.empty() && runs(Effect::viscosity); }
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
-  CpuKernelArguments<double> monitor_arguments();
-  std::vector<ModelPart> parts() const;
-  std::vector<PlaneMonitor> look(std::vector<double>& stiffness);
 
   struct Kept;
 
   VoxelRows rows_;
-  std::vector<float> weighted_mobility_, share_;  // of nodes, and of the lanes of tiles; empty where weights are
   std::vector<float> inverse_mass_, mobility_, with_length_, with_passive_, relaxed_;
   Components u_, next_, v_, rounding_;
   std::vector<FibreMemory> fibre_memory_;

@@ -44,10 +44,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   }
   g.stretch_half_sum = static_cast<Real>(discretisation_.stretch_half_sum);
   g.inverse_mass = inverse_mass_.data();
-  g.mobility = !weighted_mobility_.empty() ? weighted_mobility_.data()
-               : mobility_.empty()         ? g.inverse_mass
-                                           : mobility_.data();
-  g.share = share_.empty() ? nullptr : share_.data();
+  g.mobility = mobility_.empty() ? g.inverse_mass : mobility_.data();
   compute(rows_, g);
   g.plane_nodes = rows_.plane_nodes.data();
   g.planes = rows_.planes;

@@ -246,13 +246,11 @@ void Discretisation::bound(EffectSet running)
 void Discretisation::bound_at_rest()
 {
   std::vector<double> stiffness(model_->voxels.size());
-  hourglass_share = 0;
   VoxelProperties v;
   for (std::size_t e = 0; e < stiffness.size(); ++e)
   {
     mix(e, v);
     stiffness[e] = v.stiffness;
-    hourglass_share = std::max(hourglass_share, 8 * v.hourglass / v.stiffness);
   }
   frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
 }

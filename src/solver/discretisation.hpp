@@ -64,7 +64,6 @@ public:
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes that move as they are told in every direction, ascending
-  double hourglass_share = 0;                ///< of a voxel's stiffness at rest its hourglass control has at most
   double frequency_squared_max = 0;          ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

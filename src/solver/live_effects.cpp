@@ -70,8 +70,6 @@ std::vector<Allocation> SteppingSolver::allocations() const
     skin_values_->list_allocations(list);
   discretisation_.list_allocations(list);
   list.add(Effect::elasticity, "mode of the highest frequency", assembled_mode_);
-  list.add(Effect::elasticity, "weights of nodes", weights_.of_node);
-  list.add(Effect::elasticity, "weights of nodes", weights_.share);
   list_allocations(list);
   return list.take();
 }

@@ -3,7 +3,6 @@
 #include "bound_points.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "step_bound.hpp"
-#include "thread_team.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -189,14 +188,6 @@ Work ReferenceSolver::work()
   return account_->work();
 }
 
-double ReferenceSolver::find_weights(NodeWeights& weights)
-{
-  accounting_ = false;
-  forces(u_, felt_activation());
-  ThreadTeam alone(1);
-  return frontalis::find_weights(discretisation_, *model_, stiffness_, { whole(*model_) }, alone, weights);
-}
-
 double ReferenceSolver::run(const StepPlan& plan)
 {
   std::vector<float> activation(model_->muscles.size(), 0);
@@ -218,8 +209,7 @@ double ReferenceSolver::run(const StepPlan& plan)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
     const Components before = u_;
     if (plan.closely || step + 1 == plan.steps)
-      worst =
-          physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_, weights()).frequency_squared);
+      worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
     if (account_)
       account_->before(0, count, v);
     for (int axis = 0; axis < 3; ++axis)

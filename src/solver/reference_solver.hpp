@@ -27,7 +27,6 @@ protected:
   void restore_fields(const Fields& from) override;
   void rest() override;
   void effect_switched(Effect effect) override;
-  double find_weights(NodeWeights& weights) override;
   void list_allocations(AllocationList& list) const override;
   void velocities(Vectors& out) const override { interleave(v_, out); }
   void forces_at(const Vectors& at, Vectors& out) override;

@@ -42,9 +42,7 @@ void SteppingSolver::restore(const Snapshot& snapshot)
   static_cast<Course&>(*this) = motion->course;
   // steps are counted as they are taken, those given up too
   assembled_at_step_ += profile_.steps - motion->steps;
-  weighted_at_step_ += profile_.steps - motion->steps;
   restore_fields(*motion->fields);
-  weights_changed();
   // effects stay as they are now
   if (motion->effects == effects_)
     return;

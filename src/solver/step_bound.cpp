@@ -7,46 +7,28 @@ namespace frontalis
 {
 
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
-                         const NodeWeights& weights, const ModelPart& part, double* squared)
+                         IndexRange voxels, IndexRange nodes, double* sum)
 {
-  const IndexRange nodes = part.nodes;
-  const bool weighted = !weights.of_node.empty();
-  std::fill(squared + nodes.first, squared + nodes.last, 0.0);
-  for (auto e = part.touching.first; e < part.touching.last; ++e)
-  {
-    const double share = weighted ? double(weights.share[e]) * stiffness[e] : stiffness[e];
+  std::fill(sum + nodes.first, sum + nodes.last, 0.0);
+  for (auto e = voxels.first; e < voxels.last; ++e)
     for (const auto node : model.voxel_nodes[e])
       if (node >= nodes.first && node < nodes.last)
-        squared[node] += share;
-  }
+        sum[node] += stiffness[e];
   StepBound bound;
   auto held = std::lower_bound(discretisation.held.begin(), discretisation.held.end(), nodes.first);
   for (auto n = nodes.first; n < nodes.last; ++n)
     if (held != discretisation.held.end() && *held == n)
-    {
-      squared[n] = 0;
       ++held;
-    }
     else
-    {
-      squared[n] /= weighted ? discretisation.node_mass[n] * double(weights.of_node[n]) : discretisation.node_mass[n];
-      bound.add({ squared[n], n });
-    }
+      bound.add({ sum[n] / discretisation.node_mass[n], n });
   return bound;
 }
 
-ModelPart whole(const Model& model)
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness)
 {
-  const IndexRange nodes{ 0, static_cast<std::int32_t>(model.nodes.size()) };
-  const IndexRange voxels{ 0, static_cast<std::int32_t>(model.voxels.size()) };
-  return { nodes, voxels, voxels };
-}
-
-StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness,
-                     const NodeWeights& weights)
-{
-  std::vector<double> squared(model.nodes.size());
-  return bound_of_nodes(discretisation, model, stiffness.data(), weights, whole(model), squared.data());
+  std::vector<double> sum(model.nodes.size());
+  return bound_of_nodes(discretisation, model, stiffness.data(), { 0, static_cast<std::int32_t>(stiffness.size()) },
+                        { 0, static_cast<std::int32_t>(sum.size()) }, sum.data());
 }
 
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness)

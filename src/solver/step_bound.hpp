@@ -1,7 +1,6 @@
 #pragma once
 
 #include "discretisation.hpp"
-#include "node_weights.hpp"
 
 namespace frontalis
 {
@@ -26,23 +25,13 @@ struct IndexRange
   std::int32_t first, last;
 };
 
-/// What a thread looks at: nodes, the voxels that can touch them (and more), and those among these that are its own.
-struct ModelPart
-{
-  IndexRange nodes, touching, voxels;
-};
-
-/// Of some nodes, from the stiffness bound [N/m] of every voxel. squared: room for a number a node of the model, of
-/// which these nodes' become their bounds of the frequency squared [1/s2], 0 where a node is held.
+/// Of some nodes, from the stiffness bound [N/m] of every voxel. `voxels`: those that can touch the nodes, and more;
+/// sum: room for a number a node of the model, of which these nodes' are used.
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
-                         const NodeWeights& weights, const ModelPart& part, double* squared);
+                         IndexRange voxels, IndexRange nodes, double* sum);
 
 /// Of the whole model.
-StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness,
-                     const NodeWeights& weights = {});
-
-/// The whole model as one part.
-ModelPart whole(const Model& model);
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
 
 /// The stiffest of the voxels at a node; -1 for node -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);

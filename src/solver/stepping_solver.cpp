@@ -113,16 +113,12 @@ void SteppingSolver::velocities_were_set()
 
 void SteppingSolver::displacements_were_set()
 {
-  drop_weights();
   const double critical = monitor().critical_time_step;
   const double squared = 4 / (critical * critical);
   frequency_squared_ = discretisation_.frequency_squared_max;
   latest_step_ = 0;
   if (std::isfinite(squared))
     frequency_squared_ = std::max(squared, frequency_squared_);
-  if (stiffened())
-    if (const double weighted = weigh_nodes(); weighted > 0)
-      frequency_squared_ = std::max(weighted, discretisation_.frequency_squared_max);
   wary_ = steps_after_stiffening;
   assembled_share_ = 1;
   assembled_at_frequency_ = 0;
@@ -133,7 +129,6 @@ void SteppingSolver::reset()
 {
   rest();
   static_cast<Course&>(*this) = {};
-  weights_changed();
   frequency_squared_ = discretisation_.frequency_squared_max;
   controls_ = rest_controls(*model_);
   activation_ = controls_.activation;
@@ -190,12 +185,10 @@ void SteppingSolver::respond(const std::vector<float>& from, const std::vector<f
 void SteppingSolver::watch(double squared, const StepPlan& plan)
 {
   const bool changes = std::abs(squared - latest_seen_) > restless_change * latest_seen_;
-  const bool restless = changes && squared * weights_.gain > much_stiffer * discretisation_.frequency_squared_max;
+  const bool restless = changes && squared > much_stiffer * discretisation_.frequency_squared_max;
   latest_seen_ = squared;
   wary_ = std::max(squared > plan.alarm ? steps_after_stiffening : 0, wary_ - plan.steps);
   restless_ = std::max(restless ? steps_after_restlessness : 0, restless_ - plan.steps);
-  if (restless)
-    drop_weights();
 }
 
 // what softens is believed slowly: it may stiffen again before the next look, and each change of the time step costs
@@ -224,8 +217,6 @@ void SteppingSolver::advance(double seconds, const Controls& target)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_bound(target.activation);
-    else if (weights_due())
-      expect_weighted(weigh_nodes());
     const double remaining = end - time_;
     const double longest = std::min(careful_time_step(), steady);
     const double steps_left = std::ceil(remaining / longest * (1 - 1e-9));
@@ -276,7 +267,7 @@ Monitor SteppingSolver::measure()
   Vectors u, v;
   displacements(u);
   velocities(v);
-  return monitor_voxels(*model_, discretisation_, weights_, u, v);
+  return monitor_voxels(*model_, discretisation_, u, v);
 }
 
 Monitor SteppingSolver::monitor()

@@ -4,7 +4,6 @@
 #include "frontalis/byte_archive.hpp"
 #include "energy_account.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "node_weights.hpp"
 #include "restricted_nodes.hpp"
 #include "skin_values.hpp"
 
@@ -47,9 +46,6 @@ struct Course
   std::vector<float> assembled_at_activation_;
   std::int64_t assembled_good_for_ = 0;  // steps
   std::vector<std::array<double, 3>> assembled_mode_;
-  NodeWeights weights_;
-  std::int64_t weighted_at_step_ = 0;
-  double weighted_at_frequency_ = 0;
   bool failed_ = false;
   Controls controls_;
   std::vector<RigidTransform> bone_before_;  // an advance ago
@@ -63,7 +59,6 @@ struct Course
     archive(time_)(latest_step_)(
         frequency_squared_)(latest_seen_)(wary_)(restless_)(assembled_share_)(assembled_at_step_);
     archive(assembled_at_frequency_)(assembled_at_activation_)(assembled_good_for_)(assembled_mode_);
-    archive(weights_.of_node)(weights_.share)(weights_.gain)(weighted_at_step_)(weighted_at_frequency_);
     archive(failed_)(controls_.activation)(controls_.bone)(bone_before_)(bone_seconds_)(activation_)(ledger_)(initial_);
   }
 };
@@ -125,11 +120,6 @@ protected:
   /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present state without constraints, by power iteration from
   /// where the latest one ended.
   virtual double assembled_frequency_squared(int most_iterations);
-  /// Finds weights for the present state and returns the bound with them [1/s2]; 0, with none, where it keeps none.
-  virtual double find_weights(NodeWeights&) { return 0; }
-  /// Afterwards, and when they come from a snapshot or are dropped.
-  virtual void weights_changed() {}
-  const NodeWeights& weights() const { return weights_; }
   /// Loads and, where mass scaling is not uniform, what gravity is less on scaled nodes [N], at the present state.
   virtual void external_forces(Vectors& out);
   /// Energies and the worst voxel now.
@@ -180,11 +170,6 @@ private:
   double steady_step(const std::vector<RigidTransform>& to, double seconds) const;
   double jerk_of_bones(const std::vector<RigidTransform>& to, double seconds) const;
   void respond(const std::vector<float>& from, const std::vector<float>& to, double seconds);
-  bool stiffened() const;
-  bool weights_due() const;
-  double weigh_nodes();
-  void drop_weights();
-  void expect_weighted(double squared);
   void renew_assembled_bound(const std::vector<float>& target);
   void expect_frequency(double squared);
   void watch(double squared, const StepPlan& plan);

@@ -69,8 +69,8 @@ Monitor monitor_of(const PlaneMonitor& sum, double frequency_squared, std::int32
   return result;
 }
 
-Monitor monitor_voxels(const Model& model, const Discretisation& d, const NodeWeights& weights,
-                       const std::vector<std::array<double, 3>>& u, const std::vector<std::array<double, 3>>& v)
+Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::vector<std::array<double, 3>>& u,
+                       const std::vector<std::array<double, 3>>& v)
 {
   const auto& h = model.spacing;
   const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
@@ -114,7 +114,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const NodeWe
     own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
     sum.add(own);
   }
-  const StepBound bound = step_bound(d, model, stiffness, weights);
+  const StepBound bound = step_bound(d, model, stiffness);
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(model, bound.node, stiffness.data()));
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "discretisation.hpp"
-#include "node_weights.hpp"
 #include "frontalis/physics/voxel_element.hpp"
 #include "frontalis/solver/solver.hpp"
 
@@ -16,7 +15,7 @@ double stiffness_now(const Discretisation& discretisation, const VoxelProperties
                      const physics::Kinematics<double>& k);
 
 /// Energies and the worst voxel at given nodal displacements [m] and velocities [m/s].
-Monitor monitor_voxels(const Model& model, const Discretisation& discretisation, const NodeWeights& weights,
+Monitor monitor_voxels(const Model& model, const Discretisation& discretisation,
                        const std::vector<std::array<double, 3>>& u, const std::vector<std::array<double, 3>>& v);
 
 }  // namespace frontalis

@@ -46,10 +46,8 @@ std::vector<Effect> live_effects()
 std::map<std::string, std::size_t> bytes_of(const Solver& solver)
 {
   std::map<std::string, std::size_t> bytes;
-  // weights of nodes come and go with what is stiff
   for (const Allocation& a : solver.allocations())
-    if (a.what != "weights of nodes")
-      bytes[name_of(a.effect) + ": " + a.what] += a.bytes;
+    bytes[name_of(a.effect) + ": " + a.what] += a.bytes;
   return bytes;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "frontalis/physics/neo_hookean.hpp"
-#include "frontalis/physics/voxel_element.hpp"
 
 namespace frontalis
 {
@@ -29,41 +28,6 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   const T largest = N::max(dx, N::max(dy, dz));
   const T lambda = kappa - N::of(2.0 / 3.0) * mu;
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
-}
-
-/// What a voxel's bound k_e of stiffness is multiplied by where its corners' nodes have weights d > 0, so that
-///   omega^2 <= max_n (sum of share_e k_e over the voxels at n) / (d_n m_n).
-/// The weights may be any: they are good where they follow the motion of the highest frequency, large at light nodes
-/// beside a stiff voxel and small at those that hardly take part (Collatz & Wielandt's bound of a largest eigenvalue).
-///
-/// Proof: with one-point quadrature and scalar hourglass control K_e is at most k_e along the gradient modes, at most a
-/// part `hourglass_share` of k_e along the hourglass modes, and 0 along translations, P_g and P_h being the projectors
-/// on these: K_e <= (k_e - k_h) P_g + k_h (P_g + P_h). The row of P_g for axis j has s_bj / sqrt(8) at corner b, s_bj =
-/// 1 or -1 after the side where it lies. By Cauchy & Schwarz x^T P_g x <= g sum_b |x_b|^2 / d_b with g the largest
-/// eigenvalue of the 3 x 3 matrix 1/8 sum_b d_b s_b s_b^T, which is bounded by its rows' sums: the Walsh-Hadamard
-/// transform of d has them. x^T (P_g + P_h) x <= |x|^2 <= (max d) sum_b |x_b|^2 / d_b. So K_e <= share_e k_e diag(1 /
-/// d_b) with share_e = g + hourglass_share (max d - g), and the sum over voxels is as in voxel_stiffness(). Equal
-/// weights give the bound there.
-template <class T>
-FRONTALIS_LAW T weighted_share(const T (&weight)[8], T hourglass_share)
-{
-  using N = Number<T>;
-  T mode[8], largest = weight[0];
-  for (int b = 0; b < 8; ++b)
-  {
-    mode[b] = weight[b];
-    largest = N::max(largest, weight[b]);
-  }
-  walsh_hadamard(mode);
-  T product[3];  // of the sides along two axes: xy, xz, yz
-  for (int i = 0; i < 3; ++i)
-  {
-    const T sum = mode[i == 0 ? 3 : i + 4];
-    product[i] = N::max(sum, -sum);
-  }
-  const T beside = product[0] + product[1] + product[2] - N::min(product[0], N::min(product[1], product[2]));
-  const T gradient = N::min(N::of(0.125) * (mode[0] + beside), largest);
-  return gradient + hourglass_share * (largest - gradient);
 }
 
 /// The larger one; NaN, for good, where one is NaN or infinite.
