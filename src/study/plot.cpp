@@ -94,8 +94,10 @@ std::string script(const Plot& plot, const std::string& path)
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
       << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (below ? "" : " opaque")
       << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
-      << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
-      << quoted(plot.y_label) << '\n';
+      << "set title " << quoted(plot.title)
+      << "\nset xlabel "
+      // an empty line keeps a legend below at a distance
+      << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, from, to] :
        { std::tuple{ 'x', plot.x_log, plot.x_from, plot.x_to }, std::tuple{ 'y', plot.y_log, plot.y_from, plot.y_to } })
   {
