@@ -171,11 +171,13 @@ void add_effects_command(CLI::App& app, Action& action)
   CLI::App* command = app.add_subcommand("effects", "which effects a scene or a baked model has, and what each costs");
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   add_scene_options(*command, options->source);
-  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
-      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
-  command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
-  command->add_option("--seconds", options->seconds, "wall seconds to time each effect (2)")
-      ->check(CLI::PositiveNumber);
+  CLI::Option* const backend = command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
+                                   ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  CLI::Option* const threads =
+      command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
+  CLI::Option* const seconds =
+      command->add_option("--seconds", options->seconds, "wall seconds to time each effect (2)")
+          ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "JSON instead of a table");
   command->add_flag("--arrays", options->arrays, "instead of timing, the bytes of each of the solver's arrays")
       ->excludes(
@@ -183,8 +185,9 @@ void add_effects_command(CLI::App& app, Action& action)
   CLI::Option* const sleep =
       command->add_option("--sleep", options->sleep,
                           "instead of timing, what letting sleep what is at rest saves and errs within each of these "
-                          "tolerances [m] (run --sleep), while muscles rise, are held, and are let go");
+                          "tolerances [m] (run --sleep), on one thread, while muscles rise, are held, and are let go");
   sleep->delimiter(',')->check(CLI::PositiveNumber)->excludes("--arrays")->excludes("--plot");
+  sleep->excludes(backend)->excludes(threads)->excludes(seconds);
   CLI::Option* const raised =
       command->add_option("--activate", options->activation, "those that rise: MUSCLE=VALUE,MUSCLE=VALUE,...");
   raised->needs(sleep);

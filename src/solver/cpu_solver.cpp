@@ -145,7 +145,8 @@ void CpuSolver<Real>::rest()
       component.assign(model_->nodes.size(), 0);
   relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
   restricted_.reset();
-  wake();
+  if (sleep_)
+    sleep_->reset();
 }
 
 template <class Real>

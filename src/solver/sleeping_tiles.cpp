@@ -39,11 +39,18 @@ SleepingTiles::SleepingTiles(const Model& model, const VoxelRows& rows, double t
 {
   for (const Load& load : model.loads)
     ramps_ = std::max(ramps_, load.ramp);
-  for (auto& component : state_.anchor)
-    component.assign(model.nodes.size(), 0);
-  state_.stirred.assign(rows.tiles.size(), 0);
-  state_.asleep.assign(rows.tiles.size(), 0);
-  state_.activation.assign(model.muscles.size(), 0);
+  reset();
+}
+
+void SleepingTiles::reset()
+{
+  State fresh;
+  for (auto& component : fresh.anchor)
+    component.assign(model_.nodes.size(), 0);
+  fresh.stirred.assign(rows_.tiles.size(), 0);
+  fresh.asleep.assign(rows_.tiles.size(), 0);
+  fresh.activation.assign(model_.muscles.size(), 0);
+  restore(fresh);
 }
 
 void SleepingTiles::State::archive(ByteArchive& archive)

@@ -33,12 +33,15 @@ struct AwakeTiles
 ///
 /// What is not computed shows no drift, and a viscous layer that fell asleep creeping would have to creep on. So all
 /// are woken after a nap, for a trial of 20 ms. The first nap takes 100 ms, each after it twice the one before and up
-/// to 0.8 s, but no longer than the nodes' ways in the trial let expect a sixteenth of the tolerance for.
+/// to 0.8 s, but, from 100 ms on, no longer than the nodes' ways in the trial let expect a sixteenth of the tolerance
+/// for. What they missed in the nap shows in the trial, since viscous stresses relax in tiles that sleep too.
 class SleepingTiles
 {
 public:
   SleepingTiles(const Model& model, const VoxelRows& rows, double tolerance);
 
+  /// As in the beginning, at time 0.
+  void reset();
   /// All awake, and for as long as tiles that have just stirred.
   void wake(double time);
   /// Before a plan: who falls asleep, who wakes, by how nodes have moved since.

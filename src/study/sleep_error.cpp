@@ -2,16 +2,14 @@
 
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/study/step_time.hpp"
+#include "stability_models.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {
 namespace
 {
-
-using Vectors = std::vector<std::array<double, 3>>;
 
 constexpr int frames = 150;
 constexpr double seconds = 2.5, released = 1.2;
@@ -37,14 +35,6 @@ double share_at(double time, double ramp)
   const double up = ramp > 0 ? std::min(1.0, time / ramp) : 1;
   const double down = time < released ? 0 : ramp > 0 ? std::min(1.0, (time - released) / ramp) : 1;
   return std::max(0.0, up - down);
-}
-
-double farthest(const Vectors& a, const Vectors& b)
-{
-  double most = 0;
-  for (std::size_t n = 0; n < a.size(); ++n)
-    most = std::max(most, std::hypot(a[n][0] - b[n][0], a[n][1] - b[n][1], a[n][2] - b[n][2]));
-  return most;
 }
 
 }  // namespace

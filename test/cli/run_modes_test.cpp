@@ -94,6 +94,7 @@ TEST_F(RunModes, what_sleeping_saves_and_errs_is_listed)
   EXPECT_LT(number_in(json.output, "undetermined [um]"), 20);
   EXPECT_EQ(run_program({ "effects", model, "--sleep", "1e-4" }).code, 2);
   EXPECT_EQ(run_program({ "effects", model, "--sleep", "0", "--activate", "pull=0.5" }).code, 2);
+  EXPECT_EQ(run_program({ "effects", model, "--sleep", "1e-4", "--activate", "pull=0.5", "--threads", "2" }).code, 2);
   const auto unknown = run_program({ "effects", model, "--sleep", "1e-4", "--activate", "push=0.5" });
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.errors.find("push"), std::string::npos) << unknown.errors;

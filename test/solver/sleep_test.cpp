@@ -211,6 +211,21 @@ TEST(Sleep, the_bits_are_the_same_with_any_number_of_threads_and_from_snapshots)
   EXPECT_EQ(end, displacements(*other));
 }
 
+TEST(Sleep, a_reset_leaves_nothing_behind)
+{
+  const Model model = layer_on_bone();
+  const auto used = solver_of(model, tolerance), fresh = solver_of(model, tolerance);
+  for (int at = 1; at <= 20; ++at)
+    go(*used, at);
+  used->reset();
+  for (int at = 1; at <= 20; ++at)
+  {
+    go(*used, at);
+    go(*fresh, at);
+    EXPECT_EQ(displacements(*used), displacements(*fresh)) << "frame " << at;
+  }
+}
+
 TEST(Sleep, energy_that_is_dropped_is_booked)
 {
   const auto solver = solver_of(layer_on_bone(), tolerance, 1, true);

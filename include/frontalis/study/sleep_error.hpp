@@ -15,7 +15,7 @@ namespace frontalis
 struct SleepHistory
 {
   std::map<std::string, double> raised;  ///< activation by muscle, 0..1
-  double ramp = 0.3;                     ///< [s]
+  double ramp = 0.3;                     ///< from 0 to 1.2 [s]
 };
 
 /// What sleeping saves within a tolerance, and what it errs.
@@ -29,8 +29,8 @@ struct SleepError
 };
 
 /// Solvers of the backend cpu, one thread each, go through the history side by side. How far the motion is determined
-/// at all is told by three of them that differ in nothing but rounding: in 64 bits, and with steps that are a
-/// thousandth and two thousandths shorter. `go_on` is told how far they are, from 0 to 1, and ends it with false.
+/// at all is told by three more of them in which nothing sleeps: in 64 bits, and with steps that are a thousandth and
+/// two thousandths shorter. `go_on` is told how far they are, from 0 to 1, and ends it with false.
 /// Throws Error on an unknown muscle, or on tolerances that are no lengths.
 std::vector<SleepError> measure_sleep(const std::shared_ptr<const Model>& model, const std::vector<double>& tolerances,
                                       const SleepHistory& history, const std::function<bool(double)>& go_on);
