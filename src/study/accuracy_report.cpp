@@ -94,7 +94,6 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   plot.x_label = "wall seconds a simulated second";
   plot.y_label = "error of the skin, RMS [mm]";
   plot.x_log = plot.y_log = true;
-  plot.key = "below Left reverse maxrows 10 width -8 font ',12'";
   plot.width = 900;
   plot.height = 680;
   double least = 1e300, most = 0, low = 1e300, high = 0;
@@ -162,6 +161,11 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
                             { "error of the reference" },
                             "left offset 0.7,-0.7" });
   plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
+  std::size_t longest = 0;
+  for (const Plot::Curve& curve : plot.curves)
+    longest = std::max(longest, curve.name.size());
+  // gnuplot takes letters for wider than they are
+  plot.key = "below Left reverse maxrows 10 maxcols 3 width -" + std::to_string(longest > 24 ? 8 : 4) + " font ',12'";
   return plot;
 }
 
