@@ -1,6 +1,6 @@
 #include "frontalis/physics/assumed_strain.hpp"
-#include "reference_solver.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "reference_solver.hpp"
 #include "step_bound.hpp"
 #include "voxel_monitor.hpp"
 #include "voxel_stress.hpp"
