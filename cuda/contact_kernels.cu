@@ -10,8 +10,19 @@ namespace cuda
 // that would leave theirs before the next plan ends.
 
 constexpr int block = 64;
+static_assert(search_group == 32, "a warp shares out the searches of a group");
 
-static __device__ void renew_sliding(const StepArguments& g, std::uint32_t index)
+// goes on with what the search ahead knows of the surface
+template <class Contact>
+static __device__ void take_over(const StepArguments& g, Contact& s)
+{
+  SurfaceContact found = g.searching[s.search];
+  found.stay_on(s.contact);
+  s.contact = found;
+}
+
+// Whether the node wants a plane ahead.
+static __device__ bool renew_sliding(const StepArguments& g, std::uint32_t index)
 {
   SlidingContact& s = g.sliding[index];
   const std::uint32_t node = s.node;
@@ -22,8 +33,7 @@ static __device__ void renew_sliding(const StepArguments& g, std::uint32_t index
   bool changed = false;
   if (found.reference.w >= 0 && !s.renewed)
   {
-    s.searching.stay_on(s.contact);
-    s.contact = s.searching;
+    take_over(g, s);
     turn(g.contact_planes[index].normal_offset, found.normal_offset, v);
     g.contact_planes[index] = found;
     changed = true;
@@ -38,28 +48,26 @@ static __device__ void renew_sliding(const StepArguments& g, std::uint32_t index
     const float far = sqrtf(fmaxf(slip_squared(reference, then), slip_squared(reference, u))) + further;
     return far * far;
   };
-  float asked = nothing_ahead;
+  bool asks = false;
   if (reference.w < 0 || reached(plan, 0.1f) > reference.w)
   {
     renew_contact(g, static_cast<std::int32_t>(index), u, v);
     changed = true;
   }
-  else if (reached(2 * plan, 0.5f) > reference.w || slip_squared(reference, u) > 0.5f * reference.w)
-  {
-    asked = wanted_ahead;
-    s.searching = s.contact;
-  }
+  else
+    asks = reached(2 * plan, 0.5f) > reference.w || slip_squared(reference, u) > 0.5f * reference.w;
   s.renewed = false;
   // where it will be halfway through the next plan
   g.planes_ahead[index].reference =
-      make_float4(u[0] + 1.5f * plan * v[0], u[1] + 1.5f * plan * v[1], u[2] + 1.5f * plan * v[2], asked);
+      make_float4(u[0] + 1.5f * plan * v[0], u[1] + 1.5f * plan * v[1], u[2] + 1.5f * plan * v[2], nothing_ahead);
   if (changed)
     for (int i = 0; i < 3; ++i)
       g.v[i][node] = v[i];
+  return asks;
 }
 
 template <class Frame>
-static __device__ __forceinline__ void renew_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
+static __device__ __forceinline__ bool renew_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
                                                      const Frame& then)
 {
   using Point = SurfaceContact::Point;
@@ -71,8 +79,7 @@ static __device__ __forceinline__ void renew_gliding(const StepArguments& g, std
   const Point p = now.inwards(at), way = then.inwards(at + (g.steps * g.dt_exact) * v) - p;
   if (search.state >= 0 && !search.renewed)
   {
-    search.searching.stay_on(search.contact);
-    search.contact = search.searching;
+    take_over(g, search);
     s.plane = search.found;
     s.reference = search.ahead;
   }
@@ -80,32 +87,49 @@ static __device__ __forceinline__ void renew_gliding(const StepArguments& g, std
   const auto reached = [&](double plans, double more)
   { return fmax(norm(p + plans * way - s.reference), slipped) + more * plans * speed; };
   search.state = nothing_ahead;
+  bool asks = false;
   if (s.plane.slip < 0 || reached(1, 0.1) > s.plane.slip)
   {
     s.plane = search.contact.renew(p);
     s.reference = p;
   }
-  else if (reached(2, 0.5) > s.plane.slip || slipped * slipped > 0.5 * s.plane.slip * s.plane.slip)
-  {
-    search.state = wanted_ahead;
-    search.searching = search.contact;
-  }
+  else
+    asks = reached(2, 0.5) > s.plane.slip || slipped * slipped > 0.5 * s.plane.slip * s.plane.slip;
   search.renewed = false;
   search.ahead = p + 1.5 * way;
+  return asks;
 }
 
 __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ StepArguments g)
 {
   const std::uint32_t index = blockIdx.x * block + threadIdx.x, gliding = index - g.sliding_count;
+  bool asks = false;
   if (index < g.sliding_count)
-    renew_sliding(g, index);
+    asks = renew_sliding(g, index);
   else if (gliding < g.gliding_count)
   {
     const std::int32_t bone = g.gliding[gliding].bone;
-    if (bone < 0)
-      renew_gliding(g, gliding, Still(), Still());
-    else
-      renew_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+    asks = bone < 0 ? renew_gliding(g, gliding, Still(), Still())
+                    : renew_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+  }
+  // all that was found before is taken over first
+  __syncwarp();
+  const std::uint32_t asking = __ballot_sync(0xffffffffu, asks), lane = threadIdx.x % search_group;
+  const std::uint32_t place = __popc(asking & ((1u << lane) - 1));
+  if (!asks || place >= g.searches)
+    return;
+  const std::uint32_t search = index / search_group * g.searches + place;
+  if (index < g.sliding_count)
+  {
+    g.sliding[index].search = static_cast<std::int32_t>(search);
+    g.planes_ahead[index].reference.w = wanted_ahead;
+    g.searching[search] = g.sliding[index].contact;
+  }
+  else
+  {
+    g.gliding_searches[gliding].search = static_cast<std::int32_t>(search);
+    g.gliding_searches[gliding].state = wanted_ahead;
+    g.searching[search] = g.gliding_searches[gliding].contact;
   }
 }
 
@@ -121,13 +145,14 @@ __global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_cons
     if (index >= g.sliding_count)
     {
       GlidingSearch& search = g.gliding_searches[index - g.sliding_count];
-      search.found = search.searching.renew(search.ahead);
+      search.found = g.searching[search.search].renew(search.ahead);
       search.state = 0;
       return;
     }
     const float4 at = g.planes_ahead[index].reference;
     const float u[3] = { at.x, at.y, at.z };
-    g.planes_ahead[index] = contact_plane(g.sliding[index], g.sliding[index].searching, u);
+    const SlidingContact& s = g.sliding[index];
+    g.planes_ahead[index] = contact_plane(s, g.searching[s.search], u);
   };
   const std::uint32_t all = g.sliding_count + g.gliding_count;
   const auto state = [&](std::uint32_t index)

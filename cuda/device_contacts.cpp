@@ -19,7 +19,8 @@ void DeviceModel::Contacts::archive(ByteArchive& archive)
   to_host(planes, archive);
   to_host(ahead, archive);
   to_host(gliding, archive);
-  contacts_to_host(searches, std::vector<GlidingSearch>());
+  contacts_to_host(gliding_searches, std::vector<GlidingSearch>());
+  to_host(searching, archive);
 }
 
 void DeviceModel::save(Contacts& to, cudaStream_t stream) const
@@ -28,7 +29,8 @@ void DeviceModel::save(Contacts& to, cudaStream_t stream) const
   to.planes.assign(contact_planes_, stream);
   to.ahead.assign(planes_ahead_, stream);
   to.gliding.assign(gliding_, stream);
-  to.searches.assign(gliding_searches_, stream);
+  to.gliding_searches.assign(gliding_searches_, stream);
+  to.searching.assign(searching_, stream);
 }
 
 void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
@@ -37,7 +39,8 @@ void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
   contact_planes_.assign(from.planes, stream);
   planes_ahead_.assign(from.ahead, stream);
   gliding_.assign(from.gliding, stream);
-  gliding_searches_.assign(from.searches, stream);
+  gliding_searches_.assign(from.gliding_searches, stream);
+  searching_.assign(from.searching, stream);
 }
 
 void DeviceModel::reset_contacts()

@@ -155,6 +155,7 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
   add(Effect::sliding, "nodes that glide", gliding_, gliding_searches_);
+  add(Effect::sliding, "searches", searching_);
   for (const auto& boxes : boxes_)
     add(Effect::sliding, "surfaces", boxes);
   for (const auto& triangles : triangles_)

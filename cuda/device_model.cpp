@@ -135,6 +135,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
   g.gliding = gliding_.data();
   g.gliding_searches = gliding_searches_.data();
+  g.searching = searching_.data();
   g.gliding_count = static_cast<std::uint32_t>(gliding_.size());
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;
@@ -267,12 +268,12 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     if (surface.bone < 0 && !(surface.friction > 0))
     {
       task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
-      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, contact, device_node_[node.node], false });
+      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, false });
       continue;
     }
     task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
     gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
-    searches.push_back({ contact, contact, device_node_[node.node], false, nothing_ahead, {}, {} });
+    searches.push_back({ contact, device_node_[node.node], -1, false, nothing_ahead, {}, {} });
     gliding_surface_.push_back(node.surface);
   }
   sliding_ = DeviceArray<SlidingContact>(sliding);
@@ -280,6 +281,9 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
   planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
   gliding_ = DeviceArray<GlidingContact>(gliding);
   gliding_searches_ = DeviceArray<GlidingSearch>(searches);
+  const std::size_t groups = (nodes.size() + search_group - 1) / search_group;
+  constants_.searches = nodes.size() > small_model ? group_searches : search_group;
+  searching_ = DeviceArray<SurfaceContact>(std::vector<SurfaceContact>(groups * constants_.searches));
   reset_contacts();
 }
 

@@ -64,7 +64,8 @@ public:
     DeviceArray<SlidingContact> sliding;
     DeviceArray<TangentPlane> planes, ahead;
     DeviceArray<GlidingContact> gliding;
-    DeviceArray<GlidingSearch> searches;
+    DeviceArray<GlidingSearch> gliding_searches;
+    DeviceArray<SurfaceContact> searching;
 
     void archive(ByteArchive& archive);
   };
@@ -139,6 +140,7 @@ private:
   DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
   DeviceArray<GlidingContact> gliding_;
   DeviceArray<GlidingSearch> gliding_searches_;
+  DeviceArray<SurfaceContact> searching_;
   std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
   std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
   DeviceArray<PrescribedMotion> prescribed_;

@@ -16,7 +16,7 @@ struct NodeState
   float v[3];
 };
 
-/// The plane of a node at displacement u, found with `contact`, which is one of its two.
+/// The plane of a node at displacement u, found with its contact or with what searches in its place.
 static __device__ __noinline__ TangentPlane contact_plane(const SlidingContact& s, SurfaceContact& contact,
                                                           const float* u)
 {

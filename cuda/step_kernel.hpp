@@ -52,14 +52,19 @@ struct RigidMotion
   std::int32_t bone;
 };
 
+/// Planes are found beside a plan's steps for so many nodes of each `search_group` that follow one another in
+/// StepArguments::sliding and then ::gliding, in models of up to `small_model` such nodes for all of them: what a
+/// search knows of its surface is larger than all else that a sliding node has.
+constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
+
 /// A node on a still surface without friction: what an exact closest point needs.
 struct SlidingContact
 {
   double rest[3];  ///< [m]
   SurfaceContact contact;
-  SurfaceContact searching;  ///< the one with which a plane is found beside the steps
   std::uint32_t node;
-  bool renewed;  ///< the node left its plane within the plan, and has another: what was found ahead is of no use
+  std::int32_t search;  ///< into StepArguments::searching, where a plane is found beside the steps
+  bool renewed;         ///< the node left its plane within the plan, and has another: what was found ahead is of no use
 };
 
 /// A node on a surface that follows a bone or has friction: what each step needs of it, in the frame of the bone.
@@ -78,10 +83,10 @@ struct GlidingContact
 struct GlidingSearch
 {
   SurfaceContact contact;
-  SurfaceContact searching;  ///< as SlidingContact::searching
   std::uint32_t node;
-  bool renewed;  ///< as SlidingContact::renewed
-  float state;   ///< nothing_ahead, wanted_ahead, or 0: found
+  std::int32_t search;  ///< as SlidingContact::search
+  bool renewed;         ///< as SlidingContact::renewed
+  float state;          ///< nothing_ahead, wanted_ahead, or 0: found
   SurfaceContact::Point ahead;
   ContactPlane found;
 };
@@ -161,6 +166,8 @@ struct StepArguments
   GlidingContact* gliding;
   GlidingSearch* gliding_searches;
   std::uint32_t gliding_count;
+  SurfaceContact* searching;  ///< `searches` for each search_group
+  std::uint32_t searches;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
   const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
