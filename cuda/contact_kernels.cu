@@ -7,7 +7,7 @@ namespace cuda
 {
 
 // A closest point takes a thread some hundred microseconds: planes are found a plan ahead, beside the steps, for nodes
-// that would leave theirs before the next plan ends.
+// that would want another before the next plan ends. Until it is there the old one serves, up to its limit.
 
 constexpr int block = 64;
 static_assert(search_group == 32, "a warp shares out the searches of a group");
@@ -36,6 +36,7 @@ static __device__ bool renew_sliding(const StepArguments& g, std::uint32_t index
     take_over(g, s);
     turn(g.contact_planes[index].normal_offset, found.normal_offset, v);
     g.contact_planes[index] = found;
+    s.serves = s.serves_ahead;
     changed = true;
   }
   const float4 reference = g.contact_planes[index].reference;
@@ -55,7 +56,7 @@ static __device__ bool renew_sliding(const StepArguments& g, std::uint32_t index
     changed = true;
   }
   else
-    asks = reached(2 * plan, 0.5f) > reference.w || slip_squared(reference, u) > 0.5f * reference.w;
+    asks = reached(2 * plan, 0.5f) > s.serves || slip_squared(reference, u) > 0.5f * s.serves;
   s.renewed = false;
   // where it will be halfway through the next plan
   g.planes_ahead[index].reference =
@@ -88,9 +89,9 @@ static __device__ __forceinline__ bool renew_gliding(const StepArguments& g, std
   { return fmax(norm(p + plans * way - s.reference), slipped) + more * plans * speed; };
   search.state = nothing_ahead;
   bool asks = false;
-  if (s.plane.slip < 0 || reached(1, 0.1) > s.plane.slip)
+  if (s.plane.slip < 0 || reached(1, 0.1) > s.plane.limit)
   {
-    s.plane = search.contact.renew(p);
+    s.plane = search.contact.renew<true>(p);
     s.reference = p;
   }
   else
@@ -145,14 +146,14 @@ __global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_cons
     if (index >= g.sliding_count)
     {
       GlidingSearch& search = g.gliding_searches[index - g.sliding_count];
-      search.found = g.searching[search.search].renew(search.ahead);
+      search.found = g.searching[search.search].renew<true>(search.ahead);
       search.state = 0;
       return;
     }
     const float4 at = g.planes_ahead[index].reference;
     const float u[3] = { at.x, at.y, at.z };
-    const SlidingContact& s = g.sliding[index];
-    g.planes_ahead[index] = contact_plane(s, g.searching[s.search], u);
+    SlidingContact& s = g.sliding[index];
+    g.planes_ahead[index] = contact_plane(s, g.searching[s.search], u, s.serves_ahead);
   };
   const std::uint32_t all = g.sliding_count + g.gliding_count;
   const auto state = [&](std::uint32_t index)

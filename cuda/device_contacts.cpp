@@ -55,7 +55,7 @@ void DeviceModel::reset_contacts()
   {
     contact.pressing = 0;
     contact.plane = {};
-    contact.plane.slip = -1;
+    contact.plane.slip = contact.plane.limit = -1;
     contact.turned_to = { 0, 0, 0 };
   }
   gliding_.upload(gliding.data(), gliding.size());

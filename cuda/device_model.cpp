@@ -268,7 +268,7 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     if (surface.bone < 0 && !(surface.friction > 0))
     {
       task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
-      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, false });
+      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0, false });
       continue;
     }
     task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());

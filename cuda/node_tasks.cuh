@@ -18,14 +18,15 @@ struct NodeState
 
 /// The plane of a node at displacement u, found with its contact or with what searches in its place.
 static __device__ __noinline__ TangentPlane contact_plane(const SlidingContact& s, SurfaceContact& contact,
-                                                          const float* u)
+                                                          const float* u, float& serves)
 {
   using Point = SurfaceContact::Point;
   const Point rest{ s.rest[0], s.rest[1], s.rest[2] };
-  const ContactPlane plane = contact.renew(rest + Point{ u[0], u[1], u[2] });
+  const ContactPlane plane = contact.renew<true>(rest + Point{ u[0], u[1], u[2] });
+  serves = plane.slip * plane.slip;
   const Point& n = plane.normal;
   return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
-           make_float4(u[0], u[1], u[2], plane.slip * plane.slip) };
+           make_float4(u[0], u[1], u[2], plane.limit * plane.limit) };
 }
 
 /// A node's velocity turns with its plane.
@@ -44,10 +45,11 @@ static __device__ __noinline__ void renew_contact(const StepArguments& g, std::i
 {
   if (g.contact_planes[index].reference.w < 0)
     g.sliding[index].contact.forget();
-  const TangentPlane plane = contact_plane(g.sliding[index], g.sliding[index].contact, u);
+  SlidingContact& s = g.sliding[index];
+  const TangentPlane plane = contact_plane(s, s.contact, u, s.serves);
   turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
   g.contact_planes[index] = plane;
-  g.sliding[index].renewed = true;
+  s.renewed = true;
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -117,7 +119,7 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
 static __device__ __noinline__ void renew_gliding(const StepArguments& g, std::int32_t index,
                                                   const SurfaceContact::Point& p)
 {
-  g.gliding[index].plane = g.gliding_searches[index].contact.renew(p);
+  g.gliding[index].plane = g.gliding_searches[index].contact.renew<true>(p);
   g.gliding[index].reference = p;
   g.gliding_searches[index].renewed = true;
 }
@@ -137,7 +139,7 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   const Point surface_velocity = g.rate * (now.outwards(p) - before.outwards(p));
   Point w = now.turned_back(free - surface_velocity);
   const Point slipped = p - s.reference;
-  if (dot(slipped, slipped) > s.plane.slip * s.plane.slip)
+  if (dot(slipped, slipped) > s.plane.limit * s.plane.limit)
     renew_gliding(g, index, p);
   const Point& normal = s.plane.normal;
   double taken = 0;

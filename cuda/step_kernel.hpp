@@ -63,8 +63,9 @@ struct SlidingContact
   double rest[3];  ///< [m]
   SurfaceContact contact;
   std::uint32_t node;
-  std::int32_t search;  ///< into StepArguments::searching, where a plane is found beside the steps
-  bool renewed;         ///< the node left its plane within the plan, and has another: what was found ahead is of no use
+  std::int32_t search;         ///< into StepArguments::searching, where a plane is found beside the steps
+  float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
+  bool renewed;  ///< the node left its plane within the plan, and has another: what was found ahead is of no use
 };
 
 /// A node on a surface that follows a bone or has friction: what each step needs of it, in the frame of the bone.
@@ -96,7 +97,7 @@ struct GlidingSearch
 struct TangentPlane
 {
   float4 normal_offset;
-  float4 reference;  ///< displacement there; w: square of how far the plane serves [m2], below 0: there is none yet
+  float4 reference;  ///< displacement there; w: square of ContactPlane::limit [m2], below 0: there is no plane yet
 };
 
 /// In the place of TangentPlane::reference.w of planes that are found beside a plan's steps for the next plan.

@@ -10,7 +10,8 @@ struct ContactPlane
 {
   SurfaceTree::Point normal{ 0, 0, 0 };
   double height = 0;
-  double slip = 0;  ///< how far a point may move before the plane errs by more than SurfaceContact::plane_error [m]
+  double slip = 0;   ///< how far a point may move before the plane errs by more than SurfaceContact::plane_error [m]
+  double limit = 0;  ///< or, where it is known, by more than SurfaceContact::late_error [m]
 };
 
 /// One node on a surface, on the sheet of it that it met first: walls that face it from across are left alone, such as
@@ -21,8 +22,11 @@ class SurfaceContact
 public:
   using Point = SurfaceTree::Point;
 
-  /// Largest error of the plane within its slip [m].
-  static constexpr double plane_error = 9e-6;
+  /// Error of the plane from which another is wanted [m]. It sets off vibrations, each time: with 9e-6, a motion with a
+  /// time step that is 1 % shorter ended four times farther away.
+  static constexpr double plane_error = 0.5e-6;
+  /// Its largest error where planes are found beside the steps, and may come late [m].
+  static constexpr double late_error = 1e-6;
   static constexpr double longest_slip = 0.4e-3;  ///< [m]
 
   SurfaceContact() = default;
@@ -30,7 +34,8 @@ public:
   SurfaceContact(const SurfaceSearch& surface, double distance) : surface_(surface), distance_(distance) {}
   SurfaceContact(const SurfaceTree& tree, double distance) : SurfaceContact(tree.search(), distance) {}
 
-  /// Plane through the exact closest point to p.
+  /// Plane through the exact closest point to p; with its limit, where it may be renewed late.
+  template <bool Late = false>
   FRONTALIS_LAW ContactPlane renew(const Point& p);
   FRONTALIS_LAW void forget()
   {
@@ -46,7 +51,7 @@ private:
   using N = physics::Number<double>;
   using Triangle = SurfaceSearch::Triangle;
 
-  static constexpr double apart = 4 * plane_error;  // from here on a distance keeps its sign
+  static constexpr double apart = 36e-6;  // from here on a distance keeps its sign
 
   struct Sight
   {
@@ -66,7 +71,7 @@ private:
   static FRONTALIS_LAW double size(double x) { return N::max(x, -x); }
   static FRONTALIS_LAW double to_boundary(const Triangle& triangle, const Point& at);
   FRONTALIS_LAW void look(const Point& p, Surroundings& s) const;
-  FRONTALIS_LAW double slip(const Point& p, const Surroundings& s, const Point& normal, double error) const;
+  FRONTALIS_LAW double slip(const Point& p, const Surroundings& s, const Point& normal, double error, double e) const;
 
   SurfaceSearch surface_{ nullptr, nullptr, 0 };
   double distance_ = 0;
@@ -96,7 +101,7 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
   s.outside = near_.beyond - moved;
   for (int k = 0; k < near_.count; ++k)
   {
-    if (near_.distance[k] - moved > closest + longest_slip + 2 * plane_error)
+    if (near_.distance[k] - moved > closest + longest_slip + 2 * late_error)
     {
       s.outside = N::min(s.outside, near_.distance[k] - moved);
       break;
@@ -126,10 +131,9 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
 // - By the gradient, which is a mean of the normals of the faces around the foot: those within e / slip of the plane's
 //   normal do no harm, nor do faces that no foot reaches. A foot is within d + e, so its face has gap - e <= slip; and
 //   sideways it is within slip + r, where r^2 = (d + e)^2 - (d - rise)^2. At a rim the gradient is free.
-FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s, const Point& normal,
-                                          double error) const
+FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s, const Point& normal, double error,
+                                          double e) const
 {
-  constexpr double e = plane_error;
   const Point& foot = s.seen[s.closest].foot;
   const double d = s.seen[s.closest].distance;
   // towards the node
@@ -163,6 +167,7 @@ FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s,
   return N::min(N::max(0.999 * N::max(by_distance, by_gradient), 0.0), longest_slip);
 }
 
+template <bool Late>
 FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
 {
   Surroundings s;
@@ -191,7 +196,10 @@ FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
   if (first)
     look(p, s);
   const double error = size(dot(normal, p - closest.point) - distance_);
-  return { normal, dot(normal, closest.point) + distance_, slip(p, s, normal, error) };
+  ContactPlane plane{ normal, dot(normal, closest.point) + distance_, slip(p, s, normal, error, plane_error), 0 };
+  if (Late)
+    plane.limit = N::max(plane.slip, slip(p, s, normal, error, late_error));
+  return plane;
 }
 
 }  // namespace frontalis

@@ -205,7 +205,7 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
 }
 
 // Nodes that are put back to a surface must not gain by it: not on a plane, nor where a surface is curved and the
-// tangent plane errs by up to 9 um before a new one is found.
+// tangent plane errs before a new one is found.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
