@@ -16,9 +16,8 @@ static_assert(search_group == 32, "a warp shares out the searches of a group");
 template <class Contact>
 static __device__ void take_over(const StepArguments& g, Contact& s)
 {
-  SurfaceContact found = g.searching[s.search];
-  found.stay_on(s.contact);
-  s.contact = found;
+  g.searching[s.search].stay_on(s.contact);
+  s.contact = g.searching[s.search];
 }
 
 // Whether the node wants a plane ahead.

@@ -43,9 +43,9 @@ __device__ __forceinline__ void turn(const float4& from, const float4& to, float
 /// Finds the plane of a node anew and turns its velocity with it.
 static __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, float* v)
 {
-  if (g.contact_planes[index].reference.w < 0)
-    g.sliding[index].contact.forget();
   SlidingContact& s = g.sliding[index];
+  if (g.contact_planes[index].reference.w < 0)
+    s.contact.forget();
   const TangentPlane plane = contact_plane(s, s.contact, u, s.serves);
   turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
   g.contact_planes[index] = plane;

@@ -197,7 +197,7 @@ FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
     look(p, s);
   const double error = size(dot(normal, p - closest.point) - distance_);
   ContactPlane plane{ normal, dot(normal, closest.point) + distance_, slip(p, s, normal, error, plane_error), 0 };
-  if (Late)
+  if constexpr (Late)
     plane.limit = N::max(plane.slip, slip(p, s, normal, error, late_error));
   return plane;
 }
