@@ -6,11 +6,20 @@ namespace frontalis
 namespace cuda
 {
 
-// A closest point takes a thread some hundred microseconds: planes are found a plan ahead, beside the steps, for nodes
-// that would want another before the next plan ends. Until it is there the old one serves, up to its limit.
+// Planes are found a plan ahead, beside the steps, for nodes that would want another before the next plan ends. Until
+// it is there the old one serves, up to its limit.
 
 constexpr int block = 64;
 static_assert(search_group == 32, "a warp shares out the searches of a group");
+
+// What a node wants before a plan.
+struct Wish
+{
+  bool now = false;
+  bool ahead = false;
+  SurfaceContact* contact = nullptr;
+  SurfaceContact::Point at{ 0, 0, 0 };
+};
 
 // goes on with what the search ahead knows of the surface
 template <class Contact>
@@ -20,55 +29,57 @@ static __device__ void take_over(const StepArguments& g, Contact& s)
   s.contact = g.searching[s.search];
 }
 
-// Whether the node wants a plane ahead.
-static __device__ bool renew_sliding(const StepArguments& g, std::uint32_t index)
+// Planes are found where nodes will be if they go on as they do; of those found ahead only what is needed is taken.
+// What vibrates about where it rests would be kicked by each other plane, and would go on for ever: a shell at rest
+// did, by 2 um, where the plane was taken of which less was used up.
+
+// `at`: displacement at which the plane is found that the node wants now
+static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t index, float (&at)[3], float (&v)[3])
 {
   SlidingContact& s = g.sliding[index];
-  const std::uint32_t node = s.node;
-  const float4 now = g.u[g.first][node];
+  const float4 now = g.u[g.first][s.node];
   const float u[3] = { now.x, now.y, now.z };
-  float v[3] = { g.v[0][node], g.v[1][node], g.v[2][node] };
+  for (int i = 0; i < 3; ++i)
+    v[i] = g.v[i][s.node];
+  const float plan = g.steps * g.dt, goes = plan * sqrtf(squared(v));
+  TangentPlane plane = g.contact_planes[index];
+  // squared, after so many plans, and may be with a share of its speed more
+  const auto reached = [&](float plans, float more)
+  {
+    const float seconds = plans * plan;
+    const float then[3] = { u[0] + seconds * v[0], u[1] + seconds * v[1], u[2] + seconds * v[2] };
+    const float far = sqrtf(fmaxf(slip_squared(plane.reference, then), slip_squared(plane.reference, u)));
+    return (far + more * plans * goes) * (far + more * plans * goes);
+  };
   const TangentPlane found = g.planes_ahead[index];
-  bool changed = false;
-  if (found.reference.w >= 0 && !s.renewed)
+  if (slip_squared(found.reference, u) <= found.reference.w &&
+      (slip_squared(plane.reference, u) > s.serves || reached(1, 0.1f) > plane.reference.w))
   {
     take_over(g, s);
-    turn(g.contact_planes[index].normal_offset, found.normal_offset, v);
+    turn(plane.normal_offset, found.normal_offset, v);
+    plane = found;
     g.contact_planes[index] = found;
     s.serves = s.serves_ahead;
-    changed = true;
   }
-  const float4 reference = g.contact_planes[index].reference;
-  // where it will be after so many seconds if it goes on as it does, and may be with a share of its speed more
-  const float plan = g.steps * g.dt;
-  const auto reached = [&](float seconds, float more)
-  {
-    const float then[3] = { u[0] + seconds * v[0], u[1] + seconds * v[1], u[2] + seconds * v[2] };
-    const float further = more * seconds * sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    const float far = sqrtf(fmaxf(slip_squared(reference, then), slip_squared(reference, u))) + further;
-    return far * far;
-  };
-  bool asks = false;
-  if (reference.w < 0 || reached(plan, 0.1f) > reference.w)
-  {
-    renew_contact(g, static_cast<std::int32_t>(index), u, v);
-    changed = true;
-  }
-  else
-    asks = reached(2 * plan, 0.5f) > s.serves || slip_squared(reference, u) > 0.5f * s.serves;
-  s.renewed = false;
-  // where it will be halfway through the next plan
+  const bool first = plane.reference.w < 0;
+  if (first)
+    s.contact.forget();
+  Wish wish;
+  wish.now = slip_squared(plane.reference, u) > plane.reference.w;
+  wish.ahead = !first && (reached(1, 0.1f) > s.serves || reached(2, 0.05f) > plane.reference.w);
+  wish.contact = &s.contact;
+  const float before = plan * share_before(goes, plane.reference.w);
+  for (int i = 0; i < 3; ++i)
+    at[i] = u[i] + before * v[i];
+  wish.at = place_of(s, at);
   g.planes_ahead[index].reference =
-      make_float4(u[0] + 1.5f * plan * v[0], u[1] + 1.5f * plan * v[1], u[2] + 1.5f * plan * v[2], nothing_ahead);
-  if (changed)
-    for (int i = 0; i < 3; ++i)
-      g.v[i][node] = v[i];
-  return asks;
+      make_float4(at[0] + plan * v[0], at[1] + plan * v[1], at[2] + plan * v[2], nothing_ahead);
+  return wish;
 }
 
 template <class Frame>
-static __device__ __forceinline__ bool renew_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
-                                                     const Frame& then)
+static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
+                                                       const Frame& then)
 {
   using Point = SurfaceContact::Point;
   GlidingContact& s = g.gliding[index];
@@ -77,108 +88,112 @@ static __device__ __forceinline__ bool renew_gliding(const StepArguments& g, std
   const Point at = Point{ s.rest[0], s.rest[1], s.rest[2] } + Point{ u.x, u.y, u.z };
   const Point v{ g.v[0][search.node], g.v[1][search.node], g.v[2][search.node] };
   const Point p = now.inwards(at), way = then.inwards(at + (g.steps * g.dt_exact) * v) - p;
-  if (search.state >= 0 && !search.renewed)
+  const auto reached = [&](double plans, double more)
+  { return fmax(norm(p + plans * way - s.reference), norm(p - s.reference)) + more * plans * norm(way); };
+  if (search.state >= 0 && norm(p - search.ahead) <= search.found.limit &&
+      (norm(p - s.reference) > s.plane.slip || reached(1, 0.1) > s.plane.limit))
   {
     take_over(g, search);
     s.plane = search.found;
     s.reference = search.ahead;
   }
-  const double slipped = norm(p - s.reference), speed = norm(way);
-  const auto reached = [&](double plans, double more)
-  { return fmax(norm(p + plans * way - s.reference), slipped) + more * plans * speed; };
+  const auto limit = static_cast<float>(fmax(s.plane.limit, 0.0));
+  Wish wish;
+  wish.now = norm(p - s.reference) > s.plane.limit;
+  wish.ahead = s.plane.limit >= 0 && (reached(1, 0.1) > s.plane.slip || reached(2, 0.05) > s.plane.limit);
+  wish.contact = &search.contact;
+  wish.at = p + double(share_before(static_cast<float>(norm(way)), limit * limit)) * way;
   search.state = nothing_ahead;
-  bool asks = false;
-  if (s.plane.slip < 0 || reached(1, 0.1) > s.plane.limit)
-  {
-    s.plane = search.contact.renew<true>(p);
-    s.reference = p;
-  }
-  else
-    asks = reached(2, 0.5) > s.plane.slip || slipped * slipped > 0.5 * s.plane.slip * s.plane.slip;
-  search.renewed = false;
-  search.ahead = p + 1.5 * way;
-  return asks;
+  search.ahead = wish.at + way;
+  return wish;
 }
 
 __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ StepArguments g)
 {
   const std::uint32_t index = blockIdx.x * block + threadIdx.x, gliding = index - g.sliding_count;
-  bool asks = false;
-  if (index < g.sliding_count)
-    asks = renew_sliding(g, index);
-  else if (gliding < g.gliding_count)
+  const bool slides = index < g.sliding_count, glides = !slides && gliding < g.gliding_count;
+  float at[3] = {}, v[3] = {};
+  Wish wish;
+  if (slides)
+    wish = look_at_sliding(g, index, at, v);
+  else if (glides)
   {
     const std::int32_t bone = g.gliding[gliding].bone;
-    asks = bone < 0 ? renew_gliding(g, gliding, Still(), Still())
-                    : renew_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+    wish = bone < 0 ? look_at_gliding(g, gliding, Still(), Still())
+                    : look_at_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+  }
+  const ContactPlane plane = find_together<block / 32>(wish.now, wish.contact, wish.at);
+  if (slides)
+  {
+    if (wish.now)
+      put_on(g, static_cast<std::int32_t>(index), plane, at, v);
+    for (int i = 0; i < 3; ++i)
+      g.v[i][g.sliding[index].node] = v[i];
+  }
+  else if (glides && wish.now)
+  {
+    g.gliding[gliding].plane = plane;
+    g.gliding[gliding].reference = wish.at;
   }
   // all that was found before is taken over first
   __syncwarp();
-  const std::uint32_t asking = __ballot_sync(0xffffffffu, asks), lane = threadIdx.x % search_group;
-  const std::uint32_t place = __popc(asking & ((1u << lane) - 1));
-  if (!asks || place >= g.searches)
+  const std::uint32_t asking = __ballot_sync(whole_warp, wish.ahead);
+  const std::uint32_t place = __popc(asking & ((1u << (threadIdx.x & 31)) - 1));
+  if (!wish.ahead || place >= g.searches)
     return;
   const std::uint32_t search = index / search_group * g.searches + place;
-  if (index < g.sliding_count)
+  g.searching[search] = *wish.contact;
+  if (slides)
   {
     g.sliding[index].search = static_cast<std::int32_t>(search);
     g.planes_ahead[index].reference.w = wanted_ahead;
-    g.searching[search] = g.sliding[index].contact;
   }
   else
   {
     g.gliding_searches[gliding].search = static_cast<std::int32_t>(search);
     g.gliding_searches[gliding].state = wanted_ahead;
-    g.searching[search] = g.gliding_searches[gliding].contact;
   }
 }
 
-// one warp a block, and registers that a patch leaves
-constexpr int block_ahead = 32;
-
-__global__ void __launch_bounds__(block_ahead, 16) renew_ahead(const __grid_constant__ StepArguments g)
+// in registers that a patch leaves
+__global__ void __launch_bounds__(32, 16) renew_ahead(const __grid_constant__ StepArguments g)
 {
-  __shared__ std::uint32_t listed[2 * block_ahead];
-  std::uint32_t count = 0;
-  const auto find = [&](std::uint32_t index)
-  {
-    if (index >= g.sliding_count)
-    {
-      GlidingSearch& search = g.gliding_searches[index - g.sliding_count];
-      search.found = g.searching[search.search].renew<true>(search.ahead);
-      search.state = 0;
-      return;
-    }
-    const float4 at = g.planes_ahead[index].reference;
-    const float u[3] = { at.x, at.y, at.z };
-    SlidingContact& s = g.sliding[index];
-    g.planes_ahead[index] = contact_plane(s, g.searching[s.search], u, s.serves_ahead);
-  };
   const std::uint32_t all = g.sliding_count + g.gliding_count;
-  const auto state = [&](std::uint32_t index)
+  for (std::uint32_t first = blockIdx.x * 32; first < all; first += gridDim.x * 32)
   {
-    return index < g.sliding_count ? g.planes_ahead[index].reference.w
-                                   : g.gliding_searches[index - g.sliding_count].state;
-  };
-  // those that ask are few: they are listed first, so that all lanes work at once
-  for (std::uint32_t first = blockIdx.x * block_ahead; first < all; first += gridDim.x * block_ahead)
-  {
-    const std::uint32_t index = first + threadIdx.x;
-    const bool asks = index < all && state(index) == wanted_ahead;
-    const std::uint32_t asking = __ballot_sync(0xffffffffu, asks);
-    if (asks)
-      listed[count + __popc(asking & ((1u << threadIdx.x) - 1))] = index;
-    count += __popc(asking);
-    __syncwarp();
-    if (count >= block_ahead)
+    const std::uint32_t index = first + threadIdx.x, gliding = index - g.sliding_count;
+    const bool slides = index < g.sliding_count;
+    bool asks = false;
+    SurfaceContact* contact = nullptr;
+    SurfaceContact::Point at{ 0, 0, 0 };
+    float u[3] = {};
+    if (slides && g.planes_ahead[index].reference.w == wanted_ahead)
     {
-      count -= block_ahead;
-      find(listed[count + threadIdx.x]);
+      const float4 place = g.planes_ahead[index].reference;
+      u[0] = place.x;
+      u[1] = place.y;
+      u[2] = place.z;
+      asks = true;
+      contact = &g.searching[g.sliding[index].search];
+      at = place_of(g.sliding[index], u);
     }
-    __syncwarp();
+    else if (!slides && gliding < g.gliding_count && g.gliding_searches[gliding].state == wanted_ahead)
+    {
+      asks = true;
+      contact = &g.searching[g.gliding_searches[gliding].search];
+      at = g.gliding_searches[gliding].ahead;
+    }
+    const ContactPlane plane = find_together<1>(asks, contact, at);
+    if (!asks)
+      continue;
+    if (slides)
+      g.planes_ahead[index] = tangent_plane(g.sliding[index], plane, u, g.sliding[index].serves_ahead);
+    else
+    {
+      g.gliding_searches[gliding].found = plane;
+      g.gliding_searches[gliding].state = 0;
+    }
   }
-  if (threadIdx.x < count)
-    find(listed[threadIdx.x]);
 }
 
 }  // namespace cuda
@@ -193,12 +208,11 @@ cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
 
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream)
 {
-  // about one block a multiprocessor
-  const std::uint32_t all =
-      (arguments.sliding_count + arguments.gliding_count + cuda::block_ahead - 1) / cuda::block_ahead;
+  // about one a multiprocessor
+  const std::uint32_t all = (arguments.sliding_count + arguments.gliding_count + 32 - 1) / 32;
   const std::uint32_t blocks = all > 132 ? 132 : all;
   if (blocks > 0)
-    cuda::renew_ahead<<<blocks, cuda::block_ahead, 0, stream>>>(arguments);
+    cuda::renew_ahead<<<blocks, 32, 0, stream>>>(arguments);
   return cudaGetLastError();
 }
 

@@ -65,7 +65,6 @@ void DeviceModel::reset_contacts()
   {
     search.contact.forget();
     search.state = nothing_ahead;
-    search.renewed = false;
   }
   gliding_searches_.upload(searches.data(), searches.size());
 }

@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
+VoxelCut::VoxelCut(const Model& model, const CutChoice& choice) : searches(choice.searches)
 {
   if (model.nodes.size() >= StripSlot::node_mask || model.fibre_muscle.size() >= (1u << 28))
     throw Error("backend cuda: " + std::to_string(model.nodes.size()) + " nodes and " +

@@ -85,7 +85,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 {
   palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
-  std::vector<NodeTask> tasks = add_tasks(model);
+  std::vector<NodeTask> tasks = add_tasks(model, cut.searches);
   // nodes that never move have no inverse mass
   if (discretisation.held.size() > still_nodes_.size())
   {
@@ -240,7 +240,7 @@ void DeviceModel::add_fibres(const Model& model, const Discretisation& discretis
   fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
 }
 
-void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of)
+void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of)
 {
   if (model.sliding.empty())
     return;
@@ -259,7 +259,7 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
             [&](const SlidingNode& a, const SlidingNode& b) { return device_node_[a.node] < device_node_[b.node]; });
   std::vector<SlidingContact> sliding;
   std::vector<GlidingContact> gliding;
-  std::vector<GlidingSearch> searches;
+  std::vector<GlidingSearch> gliding_searches;
   for (const auto& node : nodes)
   {
     const auto rest = rest_position(model, node.node);
@@ -268,30 +268,30 @@ void DeviceModel::add_sliding(const Model& model, std::vector<NodeTask>& task_of
     if (surface.bone < 0 && !(surface.friction > 0))
     {
       task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
-      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0, false });
+      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0 });
       continue;
     }
     task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
     gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
-    searches.push_back({ contact, device_node_[node.node], -1, false, nothing_ahead, {}, {} });
+    gliding_searches.push_back({ contact, device_node_[node.node], -1, nothing_ahead, {}, {} });
     gliding_surface_.push_back(node.surface);
   }
   sliding_ = DeviceArray<SlidingContact>(sliding);
   contact_planes_ = DeviceArray<TangentPlane>(sliding.size());
   planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
   gliding_ = DeviceArray<GlidingContact>(gliding);
-  gliding_searches_ = DeviceArray<GlidingSearch>(searches);
+  gliding_searches_ = DeviceArray<GlidingSearch>(gliding_searches);
   const std::size_t groups = (nodes.size() + search_group - 1) / search_group;
-  constants_.searches = nodes.size() > small_model ? group_searches : search_group;
-  searching_ = DeviceArray<SurfaceContact>(std::vector<SurfaceContact>(groups * constants_.searches));
+  constants_.searches = searches;
+  searching_ = DeviceArray<SurfaceContact>(std::vector<SurfaceContact>(groups * searches));
   reset_contacts();
 }
 
 // what holds or moves nodes, by device node; those that never move are not stepped at all
-std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
+std::vector<NodeTask> DeviceModel::add_tasks(const Model& model, std::uint32_t searches)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
-  add_sliding(model, task_of);
+  add_sliding(model, searches, task_of);
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
     task_of[loads_.nodes()[l]].of[node_load] = static_cast<std::int32_t>(l);
   std::vector<PrescribedMotion> prescribed;

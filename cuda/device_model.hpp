@@ -29,6 +29,7 @@ struct CutChoice
 {
   PatchSettings patches{ 0, 0 };
   StripSettings strips;
+  std::uint32_t searches = search_group;  ///< StepArguments::searches
 };
 
 /// A model, cut up.
@@ -38,6 +39,7 @@ struct VoxelCut
 
   std::unique_ptr<VoxelPatches> patches;
   std::unique_ptr<VoxelStrips> strips;  ///< one of both
+  std::uint32_t searches;               ///< as in CutChoice
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
   /// 1 + the model voxel at each place, 0: none.
@@ -92,11 +94,11 @@ private:
   DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut);
   std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
   void add_fibres(const Model& model, const Discretisation& discretisation);
-  std::vector<NodeTask> add_tasks(const Model& model);
+  std::vector<NodeTask> add_tasks(const Model& model, std::uint32_t searches);
   void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
                    const std::vector<std::uint32_t>& palette_entry);
-  void add_sliding(const Model& model, std::vector<NodeTask>& task_of);
+  void add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   void run_friction(const Model& model, EffectSet running);

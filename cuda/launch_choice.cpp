@@ -28,12 +28,14 @@ int from_environment(const char* name, int otherwise, int least, int most)
 int turns(const Model& model, int processors)
 {
   constexpr double uneven = 1.35, with_border = 1.5, halo_share = 0.7;
-  const auto bytes = static_cast<double>(attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin));
+  // what kernels have besides, and what finds planes beside the steps
+  const double taken = 2 * sizeof(float) * most_muscles + (model.sliding.empty() ? 0 : 11 * 1024);
+  const double bytes = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin) - taken;
   const double nodes = uneven * static_cast<double>(model.nodes.size()) / processors,
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
-                    static_cast<std::size_t>(nodes)) < bytes - 2 * sizeof(float) * most_muscles)
+                    static_cast<std::size_t>(nodes)) < bytes)
       return turns;
   return 0;
 }
@@ -45,6 +47,8 @@ CutChoice choose_cut(const Model& model, Effects effects)
   const int processors = attribute(cudaDevAttrMultiProcessorCount);
   CutChoice cut;
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
+  cut.searches = static_cast<std::uint32_t>(from_environment(
+      "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
   const double warps = 1.03 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   cut.strips.planes =

@@ -8,8 +8,6 @@ namespace frontalis
 namespace cuda
 {
 
-constexpr unsigned whole_warp = 0xffffffffu;
-
 /// One row of nodes after the x step of the Walsh-Hadamard transform: sum and difference with the neighbour in x.
 struct RowValues
 {

@@ -4,6 +4,7 @@
 #include "built_effects.hpp"
 #include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/sliding.hpp"
+#include "warp_search.cuh"
 
 namespace frontalis
 {
@@ -14,20 +15,8 @@ struct NodeState
 {
   float u[3];
   float v[3];
+  bool leaves = false;  ///< goes on so that in the next step it would be farther from its plane than that serves
 };
-
-/// The plane of a node at displacement u, found with its contact or with what searches in its place.
-static __device__ __noinline__ TangentPlane contact_plane(const SlidingContact& s, SurfaceContact& contact,
-                                                          const float* u, float& serves)
-{
-  using Point = SurfaceContact::Point;
-  const Point rest{ s.rest[0], s.rest[1], s.rest[2] };
-  const ContactPlane plane = contact.renew<true>(rest + Point{ u[0], u[1], u[2] });
-  serves = plane.slip * plane.slip;
-  const Point& n = plane.normal;
-  return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
-           make_float4(u[0], u[1], u[2], plane.limit * plane.limit) };
-}
 
 /// A node's velocity turns with its plane.
 __device__ __forceinline__ void turn(const float4& from, const float4& to, float* v)
@@ -40,16 +29,41 @@ __device__ __forceinline__ void turn(const float4& from, const float4& to, float
   v[2] = static_cast<float>(turned.z);
 }
 
-/// Finds the plane of a node anew and turns its velocity with it.
-static __device__ __noinline__ void renew_contact(const StepArguments& g, std::int32_t index, const float* u, float* v)
+__device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& s, const float* u)
+{
+  return { s.rest[0] + u[0], s.rest[1] + u[1], s.rest[2] + u[2] };
+}
+
+__device__ __forceinline__ float squared(const float* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+/// By which share of a plan a node that `goes` so far in one [m] is before where its plane is found best: it goes half
+/// of what the plane before served, squared `served` [m2], and half of a plan at most.
+__device__ __forceinline__ float share_before(float goes, float served)
+{
+  // a node without a plane serves nothing, and may not go either
+  const float far = sqrtf(fmaxf(served, 0.0f));
+  return goes > far ? 0.5f * far / goes : 0.5f;
+}
+
+/// What a step needs of the plane of a node that was found at displacement u; `serves`: see SlidingContact.
+__device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
+                                                      const float* u, float& serves)
+{
+  serves = static_cast<float>(plane.slip * plane.slip);
+  const SurfaceContact::Point& n = plane.normal;
+  const SurfaceContact::Point rest{ s.rest[0], s.rest[1], s.rest[2] };
+  return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
+           make_float4(u[0], u[1], u[2], plane.limit * plane.limit) };
+}
+
+/// Gives a node the plane that was found at displacement u, and turns its velocity with it.
+__device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
+                                       const float* u, float* v)
 {
   SlidingContact& s = g.sliding[index];
-  if (g.contact_planes[index].reference.w < 0)
-    s.contact.forget();
-  const TangentPlane plane = contact_plane(s, s.contact, u, s.serves);
+  const TangentPlane plane = tangent_plane(s, found, u, s.serves);
   turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
   g.contact_planes[index] = plane;
-  s.renewed = true;
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -59,17 +73,13 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
 }
 
 /// `plane`: as it was read before the step.
-__device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, TangentPlane plane, NodeState& n)
+__device__ __forceinline__ void slide(const StepArguments& g, const TangentPlane& plane, NodeState& n)
 {
-  if (slip_squared(plane.reference, n.u) > plane.reference.w)
-  {
-    renew_contact(g, index, n.u, n.v);
-    plane = g.contact_planes[index];
-  }
   physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
   const float4& p = plane.normal_offset;
   physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
-  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z } };
+  const float next[3] = { u.x + g.dt * v.x, u.y + g.dt * v.y, u.z + g.dt * v.z };
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, slip_squared(plane.reference, next) > plane.reference.w };
 }
 
 /// Velocities for the account of work, where one is kept.
@@ -113,15 +123,7 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
 static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep&,
                                                   NodeState& n)
 {
-  slide(g, index, g.contact_planes[index], n);
-}
-
-static __device__ __noinline__ void renew_gliding(const StepArguments& g, std::int32_t index,
-                                                  const SurfaceContact::Point& p)
-{
-  g.gliding[index].plane = g.gliding_searches[index].contact.renew<true>(p);
-  g.gliding[index].reference = p;
-  g.gliding_searches[index].renewed = true;
+  slide(g, g.contact_planes[index], n);
 }
 
 // a variable, which code for the device can use too
@@ -138,9 +140,6 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   Point p = now.inwards(rest + Point{ n.u[0], n.u[1], n.u[2] });
   const Point surface_velocity = g.rate * (now.outwards(p) - before.outwards(p));
   Point w = now.turned_back(free - surface_velocity);
-  const Point slipped = p - s.reference;
-  if (dot(slipped, slipped) > s.plane.limit * s.plane.limit)
-    renew_gliding(g, index, p);
   const Point& normal = s.plane.normal;
   double taken = 0;
   if (normal.x != s.turned_to.x || normal.y != s.turned_to.y || normal.z != s.turned_to.z)
@@ -160,6 +159,15 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
     w = w - lost;
     p = p - g.dt_exact * lost;
   }
+  const Point next = p + g.dt_exact * w, slipped = next - s.reference;
+  const bool leaves = dot(slipped, slipped) > s.plane.limit * s.plane.limit;
+  // where it is to have another plane
+  if (leaves)
+  {
+    const double plan = g.steps * g.dt_exact;
+    const auto goes = static_cast<float>(plan * norm(w)), limit = static_cast<float>(s.plane.limit);
+    s.reference = next + plan * share_before(goes, limit * limit) * w;
+  }
   const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
   if (rubs && g.friction_work != nullptr && s.friction > 0)
   {
@@ -169,7 +177,8 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
     g.friction_work[index] -= dot(along, 0.5 * (old + v) - surface_velocity) / double(at.before.w);
   }
   n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
-        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
+        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) },
+        leaves };
 }
 
 static __device__ __noinline__ void glide_on_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
@@ -241,19 +250,82 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<Slides>[effect](g, task.of[effect], at, n);
 }
 
-/// What a node has that has been written already.
-template <bool Slides>
-__device__ __forceinline__ void run_task(const StepArguments& g, const NodeTask& task, const float4* u, float4* next,
-                                         int step)
+/// By whole warps, after a step: those that leave their planes get others before the next. u and v are theirs;
+/// `contact`: into StepArguments::sliding, or -1 - index into ::gliding.
+template <int Warps>
+__device__ __noinline__ void find_others(const StepArguments& g, bool leaves, std::int32_t contact, const float (&u)[3],
+                                         float (&v)[3])
 {
-  const float4 before = u[task.node];
-  const float4 now = next[task.node];
-  NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  // the inverse mass of what is written: a buffer that was never stepped holds none
-  apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
-  for (int i = 0; i < 3; ++i)
-    g.v[i][task.node] = n.v[i];
-  next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
+  using Point = SurfaceContact::Point;
+  const bool slides = contact >= 0;
+  const std::int32_t gliding = -1 - contact;
+  float next[3] = {};
+  SurfaceContact* on = nullptr;
+  Point at{ 0, 0, 0 };
+  if (leaves)
+  {
+    if (slides)
+    {
+      const float plan = g.steps * g.dt;
+      const float share = share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
+      const float seconds = g.dt + share * plan;
+      for (int i = 0; i < 3; ++i)
+        next[i] = u[i] + seconds * v[i];
+    }
+    on = slides ? &g.sliding[contact].contact : &g.gliding_searches[gliding].contact;
+    at = slides ? place_of(g.sliding[contact], next) : g.gliding[gliding].reference;
+  }
+  const ContactPlane plane = find_together<Warps>(leaves, on, at);
+  if (leaves && slides)
+    put_on(g, contact, plane, next, v);
+  else if (leaves)
+    g.gliding[gliding].plane = plane;
+}
+
+/// For what is rare: called through an address that the compiler does not see through, a function keeps to registers of
+/// its own. Seen through, find_others() had the kernels spill 140 bytes a thread, and a step of a forehead took 7 us
+/// and not 5.
+template <class Function>
+__device__ __forceinline__ Function* aside(Function* function)
+{
+  auto address = reinterpret_cast<std::uint64_t>(function);
+  asm volatile("" : "+l"(address));
+  return reinterpret_cast<Function*>(address);
+}
+
+/// As find_others() takes it.
+__device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
+{
+  return task.of[node_sliding] >= 0 ? task.of[node_sliding] : -1 - task.of[node_gliding];
+}
+
+/// What nodes have that have been written already: tasks [begin, end), a whole warp's.
+template <bool Slides>
+__device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
+                                          const float4* u, float4* next, int step)
+{
+  for (std::uint32_t first = begin; first < end; first += 32)
+  {
+    const std::uint32_t t = first + (threadIdx.x & 31);
+    NodeState n{};
+    std::uint32_t node = 0;
+    if (t < end)
+    {
+      const NodeTask& task = g.tasks[t];
+      node = task.node;
+      const float4 before = u[task.node];
+      const float4 now = next[task.node];
+      n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
+      // the inverse mass of what is written: a buffer that was never stepped holds none
+      apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
+      next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
+    }
+    if (Slides && __any_sync(whole_warp, n.leaves))
+      aside(find_others<step_block / 32>)(g, n.leaves, n.leaves ? contact_of(g.tasks[t]) : 0, n.u, n.v);
+    if (t < end)
+      for (int i = 0; i < 3; ++i)
+        g.v[i][node] = n.v[i];
+  }
 }
 
 /// What the update of a node needs, fetched before the stress is computed.

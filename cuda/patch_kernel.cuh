@@ -161,8 +161,9 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
 }
 
 /// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
+/// Whether the node leaves its plane.
 template <Effects With>
-__device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
+__device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, std::uint32_t most_halo, bool on_border, bool last,
                                                 float4* next, int step)
 {
@@ -175,7 +176,7 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
   if (g.forces_only)
   {
     next[node] = make_float4(force[0], force[1], force[2], 0);
-    return;
+    return false;
   }
   float4& place = memory.place[most_halo + own];
   const NodeFetch fetch{ place, { memory.v[0][own], memory.v[1][own], memory.v[2][own] } };
@@ -184,7 +185,7 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
   {
     n = updated(g, node, fetch, force);
     if (has<With, Effects::sliding> && task >= 0)
-      slide(g, task, plane, n);
+      slide(g, plane, n);
     else if (has<With, Effects::tasks> && task != patch_task::none)
     {
       // a copy, so that the others' numbers stay in registers
@@ -206,6 +207,36 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
   }
   else if (on_border)
     send(next + node, n.u, mark(g, step + 1));
+  return n.leaves;
+}
+
+/// By whole warps: nodes that leave their planes get others. Neighbours have what they wait for already. `own` as for
+/// step_patch_node().
+static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
+                                                 std::uint32_t node, std::uint32_t own, bool last)
+{
+  const PatchMemory memory = patch_memory(launch);
+  std::int32_t contact = 0;
+  float u[3] = {}, v[3] = {};
+  if (leaves)
+  {
+    const std::int32_t task = __ldg(g.patch_tasks + node);
+    contact = task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+    const float4 place = memory.place[launch.most_halo + own];
+    u[0] = place.x;
+    u[1] = place.y;
+    u[2] = place.z;
+    for (int i = 0; i < 3; ++i)
+      v[i] = memory.v[i][own];
+  }
+  find_others<most_patch_threads / 32>(g, leaves, contact, u, v);
+  if (leaves)
+    for (int i = 0; i < 3; ++i)
+    {
+      memory.v[i][own] = v[i];
+      if (last)
+        g.v[i][node] = v[i];
+    }
 }
 
 // an int: nvcc does not name the sets of an enumeration
@@ -271,9 +302,22 @@ __global__ void __launch_bounds__(512, 1)
           put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
       }
       __syncthreads();
-      for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
-        step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
-                              step + 1 == g.step_end, g.u[1 - present], step);
+      const bool last = step + 1 == g.step_end;
+      const auto step_node = [&](std::uint32_t n)
+      {
+        return step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
+                                     last, g.u[1 - present], step);
+      };
+      if constexpr (has<With, Effects::sliding>)
+        for (std::uint32_t n = threadIdx.x; n - (threadIdx.x & 31) < patch.nodes; n += blockDim.x)
+        {
+          const bool leaves = n < patch.nodes && step_node(n);
+          if (__any_sync(whole_warp, leaves))
+            aside(leave_planes)(g, launch, leaves, patch.first_node + n, filled + n, last);
+        }
+      else
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+          step_node(n);
       if (look)
         for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
           if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)

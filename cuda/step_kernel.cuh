@@ -43,8 +43,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   if (tasks)
   {
     __syncwarp();
-    for (std::uint32_t t = strip.task_begin + lane; t < strip.task_end; t += 32)
-      run_task<has<With, Effects::sliding>>(g, g.tasks[t], u, next, step);
+    run_tasks<has<With, Effects::sliding>>(g, strip.task_begin, strip.task_end, u, next, step);
   }
   if (Look)
   {

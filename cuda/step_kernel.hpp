@@ -54,7 +54,7 @@ struct RigidMotion
 
 /// Planes are found beside a plan's steps for so many nodes of each `search_group` that follow one another in
 /// StepArguments::sliding and then ::gliding, in models of up to `small_model` such nodes for all of them: what a
-/// search knows of its surface takes 392 bytes.
+/// search knows of its surface takes 296 bytes.
 constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
 
 /// A node on a still surface without friction: what an exact closest point needs.
@@ -65,7 +65,6 @@ struct SlidingContact
   std::uint32_t node;
   std::int32_t search;         ///< into StepArguments::searching, where a plane is found beside the steps
   float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
-  bool renewed;  ///< the node left its plane within the plan, and has another: what was found ahead is of no use
 };
 
 /// A node on a surface that follows a bone or has friction: what each step needs of it, in the frame of the bone.
@@ -86,7 +85,6 @@ struct GlidingSearch
   SurfaceContact contact;
   std::uint32_t node;
   std::int32_t search;  ///< as SlidingContact::search
-  bool renewed;         ///< as SlidingContact::renewed
   float state;          ///< nothing_ahead, wanted_ahead, or 0: found
   SurfaceContact::Point ahead;
   ContactPlane found;

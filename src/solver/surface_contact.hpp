@@ -14,6 +14,25 @@ struct ContactPlane
   double limit = 0;  ///< or, where it is known, by more than SurfaceContact::late_error [m]
 };
 
+/// Who looks for a plane: one thread. On a GPU the lanes of a warp do it together (cuda/warp_search.cuh).
+struct OneThread
+{
+  static constexpr int size = 1;
+  static FRONTALIS_LAW int rank() { return 0; }
+  /// Over the team; all of it calls this and the others.
+  static FRONTALIS_LAW double least(double x) { return x; }
+  /// What the first of those has whose key is least.
+  template <class T>
+  static FRONTALIS_LAW const T& of_least(double, const T& value)
+  {
+    return value;
+  }
+  static FRONTALIS_LAW void near(const SurfaceSearch& surface, const SurfaceSearch::Point& p, NearTriangles& out)
+  {
+    surface.near(p, out);
+  }
+};
+
 /// One node on a surface, on the sheet of it that it met first: walls that face it from across are left alone, such as
 /// the inner table of a thin bone for a node in its outer one. Knows the triangles around it, so that most of its exact
 /// closest points need no search. Runs on host and GPU.
@@ -35,7 +54,7 @@ public:
   SurfaceContact(const SurfaceTree& tree, double distance) : SurfaceContact(tree.search(), distance) {}
 
   /// Plane through the exact closest point to p; with its limit, where it may be renewed late.
-  template <bool Late = false>
+  template <bool Late = false, class Team = OneThread>
   FRONTALIS_LAW ContactPlane renew(const Point& p);
   FRONTALIS_LAW void forget()
   {
@@ -53,6 +72,8 @@ private:
 
   static constexpr double apart = 36e-6;  // from here on a distance keeps its sign
 
+  static constexpr double nowhere = 1e300;
+
   struct Sight
   {
     const SurfaceSearch::Triangle* triangle;
@@ -60,18 +81,24 @@ private:
     double distance;  // to that [m]
   };
   // the triangles listed, as far as they matter
+  template <class Team>
   struct Surroundings
   {
     int count = 0;
-    int closest = 0;
-    double outside = 0;  // all other triangles are at least so far [m]
-    Sight seen[NearTriangles::capacity];
+    Sight seen[(NearTriangles::capacity + Team::size - 1) / Team::size];  // by one of the team
+    Sight closest;                                                        // by the whole team; nowhere: none
+    double outside = 0;  // all triangles that nobody saw are at least so far [m]
+
+    FRONTALIS_LAW bool empty() const { return closest.distance >= nowhere; }
   };
 
   static FRONTALIS_LAW double size(double x) { return N::max(x, -x); }
   static FRONTALIS_LAW double to_boundary(const Triangle& triangle, const Point& at);
-  FRONTALIS_LAW void look(const Point& p, Surroundings& s) const;
-  FRONTALIS_LAW double slip(const Point& p, const Surroundings& s, const Point& normal, double error, double e) const;
+  template <class Team>
+  FRONTALIS_LAW void look(const Point& p, Surroundings<Team>& s) const;
+  template <class Team>
+  FRONTALIS_LAW double slip(const Point& p, const Surroundings<Team>& s, const Point& normal, double error,
+                            double e) const;
 
   SurfaceSearch surface_{ nullptr, nullptr, 0 };
   double distance_ = 0;
@@ -93,15 +120,16 @@ FRONTALIS_LAW double SurfaceContact::to_boundary(const Triangle& triangle, const
   return N::max(shortest, 0.0);
 }
 
-FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
+template <class Team>
+FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings<Team>& s) const
 {
   const double moved = norm(p - near_.at);
-  double closest = 1e300;
   s.count = 0;
+  s.closest = { nullptr, { 0, 0, 0 }, nowhere };
   s.outside = near_.beyond - moved;
-  for (int k = 0; k < near_.count; ++k)
+  for (int k = Team::rank(); k < near_.count; k += Team::size)
   {
-    if (near_.distance[k] - moved > closest + longest_slip + 2 * late_error)
+    if (near_.distance[k] - moved > s.closest.distance + longest_slip + 2 * late_error)
     {
       s.outside = N::min(s.outside, near_.distance[k] - moved);
       break;
@@ -114,13 +142,12 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
     // another sheet, across from this one
     if (seen.distance > apart && dot(p - seen.foot, up_) < -0.5 * seen.distance)
       continue;
-    if (seen.distance < closest)
-    {
-      closest = seen.distance;
-      s.closest = s.count;
-    }
+    if (seen.distance < s.closest.distance)
+      s.closest = seen;
     ++s.count;
   }
+  s.closest = Team::of_least(s.closest.distance, s.closest);
+  s.outside = Team::least(s.outside);
 }
 
 // Within slip of p, on the plane at height d over the tangent plane at p's foot, distance must stay within e of d. Two
@@ -131,17 +158,18 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings& s) const
 // - By the gradient, which is a mean of the normals of the faces around the foot: those within e / slip of the plane's
 //   normal do no harm, nor do faces that no foot reaches. A foot is within d + e, so its face has gap - e <= slip; and
 //   sideways it is within slip + r, where r^2 = (d + e)^2 - (d - rise)^2. At a rim the gradient is free.
-FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s, const Point& normal, double error,
-                                          double e) const
+template <class Team>
+FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings<Team>& s, const Point& normal,
+                                          double error, double e) const
 {
-  const Point& foot = s.seen[s.closest].foot;
-  const double d = s.seen[s.closest].distance;
+  const Point& foot = s.closest.foot;
+  const double d = s.closest.distance;
   // towards the node
   const Point up = dot(p - foot, normal) < 0 ? -1.0 * normal : normal;
   const double gap_outside = s.outside - d - 2 * error;
   double by_gradient = gap_outside - e, by_distance = 0;
   if (d > apart)
-    by_distance = N::min(gap_outside + e, to_boundary(*s.seen[s.closest].triangle, foot) + N::sqrt(e * (e + 2 * d)));
+    by_distance = N::min(gap_outside + e, to_boundary(*s.closest.triangle, foot) + N::sqrt(e * (e + 2 * d)));
   for (int k = 0; k < s.count; ++k)
   {
     const Sight& seen = s.seen[k];
@@ -164,33 +192,35 @@ FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings& s,
     const double reach = sideways - N::sqrt((d + e) * (d + e) - low * low);
     by_gradient = N::min(by_gradient, N::max(N::max(gap - e, reach), e / turn));
   }
+  by_distance = Team::least(by_distance);
+  by_gradient = Team::least(by_gradient);
   return N::min(N::max(0.999 * N::max(by_distance, by_gradient), 0.0), longest_slip);
 }
 
-template <bool Late>
+template <bool Late, class Team>
 FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
 {
-  Surroundings s;
+  const bool first = dot(up_, up_) == 0;
+  Surroundings<Team> s;
   look(p, s);
   // anew where another might be closer, and where so little is left of the list that it allows no slip
-  if (s.count == 0 || s.outside - s.seen[s.closest].distance < 0.2 * (near_.beyond - near_.distance[0]))
+  if (s.empty() || s.outside - s.closest.distance < 0.2 * (near_.beyond - near_.distance[0]))
   {
-    surface_.near(p, near_);
+    Team::near(surface_, p, near_);
     look(p, s);
   }
-  const bool first = dot(up_, up_) == 0;
-  if (s.count == 0 && !first)
+  if (s.empty() && !first)
   {
     up_ = { 0, 0, 0 };
     look(p, s);
   }
   // a surface without triangles holds nothing
-  if (s.count == 0)
+  if (s.empty())
     return {};
   SurfaceSearch::Closest closest{};
-  closest.point = s.seen[s.closest].foot;
-  closest.squared_distance = s.seen[s.closest].distance * s.seen[s.closest].distance;
-  SurfaceSearch::describe(*s.seen[s.closest].triangle, closest);
+  closest.point = s.closest.foot;
+  closest.squared_distance = s.closest.distance * s.closest.distance;
+  SurfaceSearch::describe(*s.closest.triangle, closest);
   const Point normal = SurfaceSearch::offset_normal(closest, p, distance_, turned_);
   up_ = dot(p - closest.point, normal) < 0 ? -1.0 * normal : normal;
   if (first)

@@ -10,6 +10,9 @@ namespace frontalis
 /// The triangles of a surface nearest to a point, nearest first.
 struct NearTriangles
 {
+  /// As distances are kept: a third less memory a contact, and still a lower bound.
+  static FRONTALIS_LAW float kept(double distance) { return static_cast<float>(distance * (1 - 1e-7)); }
+
   static constexpr int capacity = 24;
   static constexpr double reach = 2e-3;  ///< none is listed that is so much farther than the nearest [m]
 
@@ -17,7 +20,7 @@ struct NearTriangles
   double beyond = -1;                   ///< triangles that are not listed are at least so far from it [m]
   int count = 0;
   std::int32_t triangle[capacity] = {};  ///< into SurfaceSearch::triangles
-  double distance[capacity] = {};        ///< [m]
+  float distance[capacity] = {};         ///< at least [m]
 };
 
 /// Exact closest points over the arrays of a SurfaceTree, with the pseudonormal of the face, edge or corner found
@@ -201,7 +204,7 @@ private:
       out.distance[place] = out.distance[place - 1];
     }
     out.triangle[place] = triangle;
-    out.distance[place] = distance;
+    out.distance[place] = NearTriangles::kept(distance);
     out.beyond = out.distance[0] + NearTriangles::reach;
     if (out.count == NearTriangles::capacity)
       out.beyond = physics::Number<double>::min(out.beyond, out.distance[out.count - 1]);
