@@ -241,7 +241,7 @@ static __device__ __noinline__ void leave_planes(const StepArguments& g, const S
 
 // an int: nvcc does not name the sets of an enumeration
 template <int Set>
-__global__ void __launch_bounds__(512, 1)
+__global__ void __launch_bounds__(most_patch_threads, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
 {
   constexpr Effects With = static_cast<Effects>(Set);

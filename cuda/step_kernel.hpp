@@ -197,8 +197,8 @@ constexpr int step_block = 128;
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads of a patch; the registers of a warp are left to kernels beside it.
-constexpr std::uint32_t most_patch_threads = 480;
+/// Most threads of a patch; where nodes slide, the registers of a warp are left to what finds planes beside it.
+constexpr std::uint32_t most_patch_threads = 512;
 /// Most patches that a block takes in turn.
 constexpr int most_turns = 8;
 

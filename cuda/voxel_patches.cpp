@@ -13,7 +13,7 @@ namespace
 {
 
 // what computing costs, in plain voxels; from what blocks took of which all voxels had the effect or none
-constexpr float fibre_cost = 0.45f, viscous_cost = 0.65f, node_cost = 0.8f;
+constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
 
