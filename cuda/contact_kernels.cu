@@ -18,7 +18,8 @@ struct Wish
   bool now = false;
   bool ahead = false;
   SurfaceContact* contact = nullptr;
-  SurfaceContact::Point at{ 0, 0, 0 };
+  SurfaceContact::Point here{ 0, 0, 0 };
+  SurfaceContact::Point at{ 0, 0, 0 };  ///< where the plane is found that it wants now
 };
 
 // goes on with what the search ahead knows of the surface
@@ -33,8 +34,7 @@ static __device__ void take_over(const StepArguments& g, Contact& s)
 // What vibrates about where it rests would be kicked by each other plane, and would go on for ever: a shell at rest
 // did, by 2 um, where the plane was taken of which less was used up.
 
-// `at`: displacement at which the plane is found that the node wants now
-static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t index, float (&at)[3], float (&v)[3])
+static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t index, float (&v)[3])
 {
   SlidingContact& s = g.sliding[index];
   const float4 now = g.u[g.first][s.node];
@@ -69,8 +69,8 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
   wish.ahead = !first && (reached(1, 0.1f) > s.serves || reached(2, 0.05f) > plane.reference.w);
   wish.contact = &s.contact;
   const float before = plan * share_before(goes, plane.reference.w);
-  for (int i = 0; i < 3; ++i)
-    at[i] = u[i] + before * v[i];
+  const float at[3] = { u[0] + before * v[0], u[1] + before * v[1], u[2] + before * v[2] };
+  wish.here = place_of(s, u);
   wish.at = place_of(s, at);
   g.planes_ahead[index].reference =
       make_float4(at[0] + plan * v[0], at[1] + plan * v[1], at[2] + plan * v[2], nothing_ahead);
@@ -102,6 +102,7 @@ static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, s
   wish.now = norm(p - s.reference) > s.plane.limit;
   wish.ahead = s.plane.limit >= 0 && (reached(1, 0.1) > s.plane.slip || reached(2, 0.05) > s.plane.limit);
   wish.contact = &search.contact;
+  wish.here = p;
   wish.at = p + double(share_before(static_cast<float>(norm(way)), limit * limit)) * way;
   search.state = nothing_ahead;
   search.ahead = wish.at + way;
@@ -112,21 +113,21 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
 {
   const std::uint32_t index = blockIdx.x * block + threadIdx.x, gliding = index - g.sliding_count;
   const bool slides = index < g.sliding_count, glides = !slides && gliding < g.gliding_count;
-  float at[3] = {}, v[3] = {};
+  float v[3] = {};
   Wish wish;
   if (slides)
-    wish = look_at_sliding(g, index, at, v);
+    wish = look_at_sliding(g, index, v);
   else if (glides)
   {
     const std::int32_t bone = g.gliding[gliding].bone;
     wish = bone < 0 ? look_at_gliding(g, gliding, Still(), Still())
                     : look_at_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
   }
-  const ContactPlane plane = find_together<block / 32>(wish.now, wish.contact, wish.at);
+  const ContactPlane plane = find_before<block / 32>(wish.now, wish.contact, wish.here, wish.at);
   if (slides)
   {
     if (wish.now)
-      put_on(g, static_cast<std::int32_t>(index), plane, at, v);
+      put_on(g, static_cast<std::int32_t>(index), plane, wish.at, v);
     for (int i = 0; i < 3; ++i)
       g.v[i][g.sliding[index].node] = v[i];
   }
@@ -166,13 +167,10 @@ __global__ void __launch_bounds__(32, 16) renew_ahead(const __grid_constant__ St
     bool asks = false;
     SurfaceContact* contact = nullptr;
     SurfaceContact::Point at{ 0, 0, 0 };
-    float u[3] = {};
     if (slides && g.planes_ahead[index].reference.w == wanted_ahead)
     {
       const float4 place = g.planes_ahead[index].reference;
-      u[0] = place.x;
-      u[1] = place.y;
-      u[2] = place.z;
+      const float u[3] = { place.x, place.y, place.z };
       asks = true;
       contact = &g.searching[g.sliding[index].search];
       at = place_of(g.sliding[index], u);
@@ -187,7 +185,7 @@ __global__ void __launch_bounds__(32, 16) renew_ahead(const __grid_constant__ St
     if (!asks)
       continue;
     if (slides)
-      g.planes_ahead[index] = tangent_plane(g.sliding[index], plane, u, g.sliding[index].serves_ahead);
+      g.planes_ahead[index] = tangent_plane(g.sliding[index], plane, at, g.sliding[index].serves_ahead);
     else
     {
       g.gliding_searches[gliding].found = plane;

@@ -1,6 +1,9 @@
 #include "archive_contacts.hpp"
 #include "device_archive.hpp"
 #include "device_model.hpp"
+#include "frontalis/error.hpp"
+
+#include <string>
 
 namespace frontalis
 {
@@ -20,7 +23,11 @@ void DeviceModel::Contacts::archive(ByteArchive& archive)
   to_host(ahead, archive);
   to_host(gliding, archive);
   contacts_to_host(gliding_searches, std::vector<GlidingSearch>());
+  const std::size_t searches = searching.size();
   to_host(searching, archive);
+  if (searching.size() != searches)
+    throw Error("a motion with " + std::to_string(searching.size()) + " searches of planes ahead: allowed are " +
+                std::to_string(searches));
 }
 
 void DeviceModel::save(Contacts& to, cudaStream_t stream) const

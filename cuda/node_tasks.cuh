@@ -45,23 +45,23 @@ __device__ __forceinline__ float share_before(float goes, float served)
   return goes > far ? 0.5f * far / goes : 0.5f;
 }
 
-/// What a step needs of the plane of a node that was found at displacement u; `serves`: see SlidingContact.
+/// What a step needs of the plane of a node that was found at a place; `serves`: see SlidingContact.
 __device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
-                                                      const float* u, float& serves)
+                                                      const SurfaceContact::Point& at, float& serves)
 {
   serves = static_cast<float>(plane.slip * plane.slip);
   const SurfaceContact::Point& n = plane.normal;
-  const SurfaceContact::Point rest{ s.rest[0], s.rest[1], s.rest[2] };
+  const SurfaceContact::Point rest{ s.rest[0], s.rest[1], s.rest[2] }, u = at - rest;
   return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
-           make_float4(u[0], u[1], u[2], plane.limit * plane.limit) };
+           make_float4(u.x, u.y, u.z, plane.limit * plane.limit) };
 }
 
-/// Gives a node the plane that was found at displacement u, and turns its velocity with it.
+/// Gives a node the plane that was found at a place, and turns its velocity with it.
 __device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
-                                       const float* u, float* v)
+                                       const SurfaceContact::Point& at, float* v)
 {
   SlidingContact& s = g.sliding[index];
-  const TangentPlane plane = tangent_plane(s, found, u, s.serves);
+  const TangentPlane plane = tangent_plane(s, found, at, s.serves);
   turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
   g.contact_planes[index] = plane;
 }
@@ -163,11 +163,7 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   const bool leaves = dot(slipped, slipped) > s.plane.limit * s.plane.limit;
   // where it is to have another plane
   if (leaves)
-  {
-    const double plan = g.steps * g.dt_exact;
-    const auto goes = static_cast<float>(plan * norm(w)), limit = static_cast<float>(s.plane.limit);
-    s.reference = next + plan * share_before(goes, limit * limit) * w;
-  }
+    s.reference = next;
   const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
   if (rubs && g.friction_work != nullptr && s.friction > 0)
   {
@@ -259,32 +255,31 @@ __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, st
   using Point = SurfaceContact::Point;
   const bool slides = contact >= 0;
   const std::int32_t gliding = -1 - contact;
-  float next[3] = {};
   SurfaceContact* on = nullptr;
-  Point at{ 0, 0, 0 };
-  if (leaves)
-  {
-    if (slides)
-    {
-      const float plan = g.steps * g.dt;
-      const float share = share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
-      const float seconds = g.dt + share * plan;
-      for (int i = 0; i < 3; ++i)
-        next[i] = u[i] + seconds * v[i];
-    }
-    on = slides ? &g.sliding[contact].contact : &g.gliding_searches[gliding].contact;
-    at = slides ? place_of(g.sliding[contact], next) : g.gliding[gliding].reference;
-  }
-  const ContactPlane plane = find_together<Warps>(leaves, on, at);
+  Point next{ 0, 0, 0 }, at{ 0, 0, 0 };
   if (leaves && slides)
-    put_on(g, contact, plane, next, v);
+  {
+    const float plan = g.steps * g.dt;
+    const float before = plan * share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
+    const Point velocity{ v[0], v[1], v[2] };
+    on = &g.sliding[contact].contact;
+    next = place_of(g.sliding[contact], u) + g.dt_exact * velocity;
+    at = next + double(before) * velocity;
+  }
+  else if (leaves)
+  {
+    on = &g.gliding_searches[gliding].contact;
+    next = at = g.gliding[gliding].reference;
+  }
+  const ContactPlane plane = find_before<Warps>(leaves, on, next, at);
+  if (leaves && slides)
+    put_on(g, contact, plane, at, v);
   else if (leaves)
     g.gliding[gliding].plane = plane;
 }
 
 /// For what is rare: called through an address that the compiler does not see through, a function keeps to registers of
-/// its own. Seen through, find_others() had the kernels spill 140 bytes a thread, and a step of a forehead took 7 us
-/// and not 5.
+/// its own. Seen through, find_others() had the kernels spill 140 bytes a thread.
 template <class Function>
 __device__ __forceinline__ Function* aside(Function* function)
 {

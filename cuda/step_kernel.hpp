@@ -278,8 +278,8 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before a plan: sliding and gliding nodes take the planes that were found for them, those that would leave theirs in
-/// this plan find new ones at once, and those that would in the next one ask for new ones.
+/// Before a plan: sliding and gliding nodes take the planes that were found for them where they need them, those that
+/// have left theirs find new ones at once, and those that will want another before the next plan ends ask for it.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 /// What was asked for; runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);

@@ -10,7 +10,7 @@ namespace frontalis
 /// The triangles of a surface nearest to a point, nearest first.
 struct NearTriangles
 {
-  /// As distances are kept: a third less memory a contact, and still a lower bound.
+  /// As distances are kept: a quarter less memory a contact, and still a lower bound.
   static FRONTALIS_LAW float kept(double distance) { return static_cast<float>(distance * (1 - 1e-7)); }
 
   static constexpr int capacity = 24;
