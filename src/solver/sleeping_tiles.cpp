@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double stir_share = 1.0 / 16;                                  // of the tolerance
+constexpr double stir_share = 1.0 / 24;                                  // of the tolerance
 constexpr double quiet_time = 0.05;                                      // [s]
 constexpr int rings = 2;                                                 // around what has stirred
 constexpr double first_nap = 0.1, longest_nap = 0.8, trial_time = 0.02;  // [s]

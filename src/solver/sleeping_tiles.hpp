@@ -25,7 +25,7 @@ struct AwakeTiles
 /// Tiles that are at rest and not computed; their nodes stay where they are, and those that they share with tiles that
 /// are awake are a held border.
 ///
-/// A node has stirred when it is farther from its anchor than a sixteenth of the tolerance, and its anchor is then
+/// A node has stirred when it is farther from its anchor than a twenty-fourth of the tolerance, and its anchor is then
 /// where it is. Tiles fall asleep when nothing has stirred in them and two tiles around for 50 ms. They wake when a
 /// node stirs two tiles away or nearer, when the activation of a muscle in them changes, and all of them when a bone
 /// moves or somebody sets the motion or switches an effect. Anchors stay while a tile sleeps, so that a slow drift
@@ -33,8 +33,8 @@ struct AwakeTiles
 ///
 /// What is not computed shows no drift, and a viscous layer that fell asleep creeping would have to creep on. So all
 /// are woken after a nap, for a trial of 20 ms. The first nap takes 100 ms, each after it twice the one before and up
-/// to 0.8 s, but, from 100 ms on, no longer than the nodes' ways in the trial let expect a sixteenth of the tolerance
-/// for. What they missed in the nap shows in the trial, since viscous stresses relax in tiles that sleep too.
+/// to 0.8 s, but, from 100 ms on, no longer than the nodes' ways in the trial let expect a twenty-fourth of the
+/// tolerance for. What they missed in the nap shows in the trial, since viscous stresses relax in tiles that sleep too.
 class SleepingTiles
 {
 public:
