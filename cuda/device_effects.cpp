@@ -91,14 +91,6 @@ void DeviceModel::run_tasks(EffectSet running)
   constants_.gliding_count = slides ? static_cast<std::uint32_t>(gliding_.size()) : 0;
 }
 
-bool slides_only(const NodeTask& task)
-{
-  for (int effect = 0; effect < node_effects; ++effect)
-    if ((task.of[effect] >= 0) != (effect == node_sliding))
-      return false;
-  return true;
-}
-
 // what the kernels must know of what nodes do
 Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 {

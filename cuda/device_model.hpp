@@ -21,9 +21,6 @@ std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Whether a node slides on a surface that is still and has no friction, and has nothing else.
-bool slides_only(const NodeTask& task);
-
 /// Patches where there are any, else strips.
 struct CutChoice
 {

@@ -49,7 +49,8 @@ CutChoice choose_cut(const Model& model, Effects effects)
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
   cut.searches = static_cast<std::uint32_t>(from_environment(
       "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
-  const double warps = 1.03 * strip_blocks(effects) * (step_block / 32) * processors;
+  // all at once, where rows are full: what is left over for a second round would take as long as the first
+  const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   cut.strips.planes =
       static_cast<int>(std::clamp(static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps, 1.0, 32.0));

@@ -303,23 +303,25 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
   {
     const std::uint32_t t = first + (threadIdx.x & 31);
     NodeState n{};
-    std::uint32_t node = 0;
+    NodeTask task{};
     if (t < end)
     {
-      const NodeTask& task = g.tasks[t];
-      node = task.node;
-      const float4 before = u[task.node];
-      const float4 now = next[task.node];
+      // all that may be wanted at once: what waits for memory is most of it
+      task = g.tasks[t];
+      const float4 before = u[task.node], now = next[task.node];
       n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-      // the inverse mass of what is written: a buffer that was never stepped holds none
-      apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
+      if (Slides && slides_only(task))
+        slide(g, g.contact_planes[task.of[node_sliding]], n);
+      else
+        // the inverse mass of what is written: a buffer that was never stepped holds none
+        apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
       next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
     }
     if (Slides && __any_sync(whole_warp, n.leaves))
-      aside(find_others<step_block / 32>)(g, n.leaves, n.leaves ? contact_of(g.tasks[t]) : 0, n.u, n.v);
+      aside(find_others<step_block / 32>)(g, n.leaves, n.leaves ? contact_of(task) : 0, n.u, n.v);
     if (t < end)
       for (int i = 0; i < 3; ++i)
-        g.v[i][node] = n.v[i];
+        g.v[i][task.node] = n.v[i];
   }
 }
 

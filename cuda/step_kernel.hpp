@@ -31,6 +31,13 @@ struct NodeTask
   std::int32_t of[node_effects];  ///< indices, by NodeEffect; below 0: not there
 };
 
+/// Whether the node slides on a surface that is still and has no friction, and has nothing else.
+__host__ __device__ inline bool slides_only(const NodeTask& task)
+{
+  return task.of[node_sliding] >= 0 &&
+         (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
+}
+
 /// Part of a vertex's force that a node takes.
 struct LoadPart
 {

@@ -11,6 +11,8 @@ namespace
 {
 
 constexpr int lanes = 32;
+// of a plane with fibres, over one without: strips that begin last should take least
+constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
 
@@ -57,6 +59,7 @@ struct Piece
   std::int32_t j;                     // first owned row
   std::int32_t k, planes;             // first plane, planes with the halo's
   std::int32_t own_k, own_planes;     // of the tile
+  double cost;                        // in planes without fibres
 };
 
 struct Builder
@@ -71,11 +74,12 @@ struct Builder
   {
   }
 
-  bool any_voxel(const Piece& p, std::int32_t k) const
+  template <class Is>
+  bool any_voxel(const Piece& p, std::int32_t k, const Is& is) const
   {
     bool any = false;
     for (int r = -1; r < settings.rows && !any; ++r)
-      voxels.each(p.j + r, k, p.i, p.lanes - 1, [&](std::int32_t, std::uint32_t) { any = true; });
+      voxels.each(p.j + r, k, p.i, p.lanes - 1, [&](std::int32_t, std::uint32_t e) { any = any || is(e); });
     return any;
   }
 
@@ -91,9 +95,14 @@ struct Builder
                      highest = std::max(highest, k);
                    });
     // a plane more at a cut through the tissue
-    p.k = lowest == p.own_k && any_voxel(p, lowest - 1) ? lowest - 1 : lowest;
-    const bool above = highest == p.own_k + p.own_planes - 1 && any_voxel(p, highest);
+    const auto is_there = [](std::uint32_t) { return true; };
+    p.k = lowest == p.own_k && any_voxel(p, lowest - 1, is_there) ? lowest - 1 : lowest;
+    const bool above = highest == p.own_k + p.own_planes - 1 && any_voxel(p, highest, is_there);
     p.planes = highest - p.k + (above ? 2 : 1);
+    p.cost = p.planes;
+    for (std::int32_t k = p.k; !model.fibre_muscle.empty() && k < p.k + p.planes - 1; ++k)
+      if (any_voxel(p, k, [&](std::uint32_t e) { return model.fibre_begin[e] < model.fibre_begin[e + 1]; }))
+        p.cost += fibres_cost;
     pieces.push_back(p);
   }
 
@@ -150,7 +159,7 @@ struct Builder
       for (tile.j = 0; tile.j <= model.size[1]; tile.j += settings.rows)
         add_tile(tile, occupied);
     }
-    std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.planes > b.planes; });
+    std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.cost > b.cost; });
   }
 };
 
@@ -166,7 +175,7 @@ std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
   {
     std::size_t found = warps.size();
     for (std::size_t w = std::max(first_open, warps.size() - std::min(warps.size(), open_warps)); w < warps.size(); ++w)
-      if (used[w] + p.lanes <= lanes && warps[w][0].planes * 3 <= p.planes * 4)
+      if (used[w] + p.lanes <= lanes && p.planes <= warps[w][0].planes && warps[w][0].planes * 3 <= p.planes * 4)
       {
         found = w;
         break;

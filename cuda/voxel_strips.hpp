@@ -50,7 +50,7 @@ struct VoxelStrips
   VoxelStrips(const Model& model, const StripSettings& settings);
 
   int rows = 0;
-  std::vector<Strip> strips;  ///< long ones first
+  std::vector<Strip> strips;  ///< those first that take longest
   std::vector<StripSlot> slots;
   std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of the voxel in the place; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
