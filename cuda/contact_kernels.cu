@@ -6,8 +6,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Planes are found a plan ahead, beside the steps, for nodes that would want another before the next plan ends. Until
-// it is there the old one serves, up to its limit.
+// In strips planes are found a plan ahead, beside the steps, for nodes that would want another before the next plan
+// ends. Until it is there the old one serves, up to its limit. Patches find theirs within a launch (plane_queue.cuh).
 
 constexpr int block = 64;
 static_assert(search_group == 32, "a warp shares out the searches of a group");
@@ -52,7 +52,8 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
     return (far + more * plans * goes) * (far + more * plans * goes);
   };
   const TangentPlane found = g.planes_ahead[index];
-  if (slip_squared(found.reference, u) <= found.reference.w &&
+  const bool from_plan_to_plan = g.searches > 0;
+  if (from_plan_to_plan && slip_squared(found.reference, u) <= found.reference.w &&
       (slip_squared(plane.reference, u) > s.serves || reached(1, 0.1f) > plane.reference.w))
   {
     take_over(g, s);
@@ -72,8 +73,9 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
   const float at[3] = { u[0] + before * v[0], u[1] + before * v[1], u[2] + before * v[2] };
   wish.here = place_of(s, u);
   wish.at = place_of(s, at);
-  g.planes_ahead[index].reference =
-      make_float4(at[0] + plan * v[0], at[1] + plan * v[1], at[2] + plan * v[2], nothing_ahead);
+  if (from_plan_to_plan)
+    g.planes_ahead[index].reference =
+        make_float4(at[0] + plan * v[0], at[1] + plan * v[1], at[2] + plan * v[2], nothing_ahead);
   return wish;
 }
 
@@ -90,7 +92,8 @@ static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, s
   const Point p = now.inwards(at), way = then.inwards(at + (g.steps * g.dt_exact) * v) - p;
   const auto reached = [&](double plans, double more)
   { return fmax(norm(p + plans * way - s.reference), norm(p - s.reference)) + more * plans * norm(way); };
-  if (search.state >= 0 && norm(p - search.ahead) <= search.found.limit &&
+  const bool from_plan_to_plan = g.searches > 0;
+  if (from_plan_to_plan && search.state >= 0 && norm(p - search.ahead) <= search.found.limit &&
       (norm(p - s.reference) > s.plane.slip || reached(1, 0.1) > s.plane.limit))
   {
     take_over(g, search);
@@ -104,8 +107,11 @@ static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, s
   wish.contact = &search.contact;
   wish.here = p;
   wish.at = p + double(share_before(static_cast<float>(norm(way)), limit * limit)) * way;
-  search.state = nothing_ahead;
-  search.ahead = wish.at + way;
+  if (from_plan_to_plan)
+  {
+    search.state = nothing_ahead;
+    search.ahead = wish.at + way;
+  }
   return wish;
 }
 

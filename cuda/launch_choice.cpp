@@ -28,14 +28,15 @@ int from_environment(const char* name, int otherwise, int least, int most)
 int turns(const Model& model, int processors)
 {
   constexpr double uneven = 1.35, with_border = 1.5, halo_share = 0.7;
-  // what kernels have besides, and what finds planes beside the steps
-  const double taken = 2 * sizeof(float) * most_muscles + (model.sliding.empty() ? 0 : 11 * 1024);
+  // what kernels have besides
+  const bool slides = !model.sliding.empty();
+  const double taken = 2 * sizeof(float) * most_muscles + (slides ? 9 * 1024 : 0);
   const double bytes = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin) - taken;
   const double nodes = uneven * static_cast<double>(model.nodes.size()) / processors,
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
-                    static_cast<std::size_t>(nodes)) < bytes)
+                    static_cast<std::size_t>(nodes), slides) < bytes)
       return turns;
   return 0;
 }
@@ -47,8 +48,13 @@ CutChoice choose_cut(const Model& model, Effects effects)
   const int processors = attribute(cudaDevAttrMultiProcessorCount);
   CutChoice cut;
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
-  cut.searches = static_cast<std::uint32_t>(from_environment(
-      "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
+  // patches find planes within a launch
+  if (cut.patches.turns > 0)
+    cut.searches = 0;
+  else
+    cut.searches = static_cast<std::uint32_t>(
+        from_environment("FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group,
+                         1, search_group));
   // all at once, where rows are full: what is left over for a second round would take as long as the first
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);

@@ -16,17 +16,18 @@ struct NodeState
   float u[3];
   float v[3];
   bool leaves = false;  ///< goes on so that in the next step it would be farther from its plane than that serves
+  bool asks = false;    ///< the same, StepArguments::lead later
 };
 
 /// A node's velocity turns with its plane.
 __device__ __forceinline__ void turn(const float4& from, const float4& to, float* v)
 {
-  using Point = SurfaceContact::Point;
-  const Point turned = physics::turned_with_normal(Point{ from.x, from.y, from.z }, Point{ to.x, to.y, to.z },
-                                                   Point{ v[0], v[1], v[2] });
-  v[0] = static_cast<float>(turned.x);
-  v[1] = static_cast<float>(turned.y);
-  v[2] = static_cast<float>(turned.z);
+  using Vector = physics::Vec3<float>;
+  const Vector turned = physics::turned_with_normal(Vector{ from.x, from.y, from.z }, Vector{ to.x, to.y, to.z },
+                                                    Vector{ v[0], v[1], v[2] });
+  v[0] = turned.x;
+  v[1] = turned.y;
+  v[2] = turned.z;
 }
 
 __device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& s, const float* u)
@@ -78,8 +79,12 @@ __device__ __forceinline__ void slide(const StepArguments& g, const TangentPlane
   physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
   const float4& p = plane.normal_offset;
   physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
-  const float next[3] = { u.x + g.dt * v.x, u.y + g.dt * v.y, u.z + g.dt * v.z };
-  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, slip_squared(plane.reference, next) > plane.reference.w };
+  const auto leaves_within = [&](float seconds)
+  {
+    const float then[3] = { u.x + seconds * v.x, u.y + seconds * v.y, u.z + seconds * v.z };
+    return slip_squared(plane.reference, then) > plane.reference.w;
+  };
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves_within(g.dt), leaves_within(g.dt + g.lead) };
 }
 
 /// Velocities for the account of work, where one is kept.
@@ -164,6 +169,11 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   // where it is to have another plane
   if (leaves)
     s.reference = next;
+  const Point further = next + double(g.lead) * w, gone = further - s.reference;
+  const bool asks = g.lead > 0 && !leaves && dot(gone, gone) > s.plane.limit * s.plane.limit;
+  GlidingSearch& search = g.gliding_searches[index];
+  if (asks && search.state == nothing_ahead)
+    search.ahead = further;
   const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
   if (rubs && g.friction_work != nullptr && s.friction > 0)
   {
@@ -174,7 +184,8 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   }
   n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) },
-        leaves };
+        leaves,
+        asks };
 }
 
 static __device__ __noinline__ void glide_on_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,

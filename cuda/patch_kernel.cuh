@@ -1,7 +1,7 @@
 #pragma once
 
 #include "element_stress.cuh"
-#include "node_tasks.cuh"
+#include "plane_queue.cuh"
 
 #include <utility>
 
@@ -61,6 +61,27 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
   return {
     all, { v, v + launch.most_nodes, v + 2 * launch.most_nodes }, v + 3 * launch.most_nodes, launch.most_voxels + 1
   };
+}
+
+__device__ __forceinline__ PlaneQueue plane_queue(const StepLaunch& launch)
+{
+  const PatchMemory memory = patch_memory(launch);
+  return plane_queue(reinterpret_cast<std::int32_t*>(memory.force + 25 * memory.width), launch.most_nodes);
+}
+
+/// Threads of a block that take part in steps, and where they wait for each other.
+template <Effects With>
+__device__ __forceinline__ std::uint32_t stepping_threads(const StepLaunch& launch)
+{
+  return has<With, Effects::sliding> ? launch.threads - finding_threads : blockDim.x;
+}
+template <Effects With>
+__device__ __forceinline__ void meet(const StepLaunch& launch)
+{
+  if (has<With, Effects::sliding>)
+    asm volatile("bar.sync 1, %0;" ::"r"(stepping_threads<With>(launch)) : "memory");
+  else
+    __syncthreads();
 }
 
 __device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8])
@@ -164,7 +185,7 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
 /// Whether the node leaves its plane.
 template <Effects With>
 __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
-                                                std::uint32_t own, std::uint32_t most_halo, bool on_border, bool last,
+                                                std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
                                                 float4* next, int step)
 {
   const std::int32_t task = __ldg(g.patch_tasks + node);
@@ -178,7 +199,7 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
     next[node] = make_float4(force[0], force[1], force[2], 0);
     return false;
   }
-  float4& place = memory.place[most_halo + own];
+  float4& place = memory.place[launch.most_halo + own];
   const NodeFetch fetch{ place, { memory.v[0][own], memory.v[1][own], memory.v[2][own] } };
   NodeState n{ { place.x, place.y, place.z }, { fetch.v[0], fetch.v[1], fetch.v[2] } };
   if (task != patch_task::still)
@@ -207,6 +228,9 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   }
   else if (on_border)
     send(next + node, n.u, mark(g, step + 1));
+  // what is asked in the last step would be waited for
+  if (has<With, Effects::sliding> && n.asks && !last)
+    ask(g, plane_queue(launch), task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]), n);
   return n.leaves;
 }
 
@@ -230,7 +254,9 @@ static __device__ __noinline__ void leave_planes(const StepArguments& g, const S
     for (int i = 0; i < 3; ++i)
       v[i] = memory.v[i][own];
   }
-  find_others<most_patch_threads / 32>(g, leaves, contact, u, v);
+  const bool finds = leaves && !take_asked(g, contact, u, v);
+  if (__any_sync(whole_warp, finds))
+    find_others<most_patch_threads / 32>(g, finds, contact, u, v);
   if (leaves)
     for (int i = 0; i < 3; ++i)
     {
@@ -249,11 +275,24 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   constexpr Effects plain = plain_part<With>;
   const PatchMemory memory = patch_memory(launch);
+  const std::uint32_t threads = stepping_threads<With>(launch);
+  if (has<With, Effects::fibres>)
+    load_activations(g, activations);
+  if constexpr (has<With, Effects::sliding>)
+  {
+    clear(plane_queue(launch));
+    __syncthreads();
+    if (threadIdx.x >= threads)
+    {
+      aside(find_planes)(g, plane_queue(launch));
+      return;
+    }
+  }
   std::uint32_t filled = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
     const Patch patch = g.patches[p];
-    for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+    for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
     {
       const std::uint32_t node = patch.first_node + n;
       memory.place[launch.most_halo + filled + n] = g.u[g.first][node];
@@ -263,8 +302,6 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     }
     filled += patch.nodes;
   }
-  if (has<With, Effects::fibres>)
-    load_activations(g, activations);
   if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
@@ -287,13 +324,13 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       };
       if (threadIdx.x < patch.voxels)
         voxel = fetch(threadIdx.x);
-      for (std::uint32_t h = threadIdx.x; h < patch.halo; h += blockDim.x)
+      for (std::uint32_t h = threadIdx.x; h < patch.halo; h += threads)
       {
         const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
         memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
       }
-      __syncthreads();
-      for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += blockDim.x)
+      meet<With>(launch);
+      for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
           voxel = fetch(v);
@@ -302,25 +339,25 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         else
           put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
       }
-      __syncthreads();
+      meet<With>(launch);
       const bool last = step + 1 == g.step_end;
       const auto step_node = [&](std::uint32_t n)
       {
-        return step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch.most_halo, n < patch.border,
-                                     last, g.u[1 - present], step);
+        return step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
+                                     g.u[1 - present], step);
       };
       if constexpr (has<With, Effects::sliding>)
-        for (std::uint32_t n = threadIdx.x; n - (threadIdx.x & 31) < patch.nodes; n += blockDim.x)
+        for (std::uint32_t n = threadIdx.x; n - (threadIdx.x & 31) < patch.nodes; n += threads)
         {
           const bool leaves = n < patch.nodes && step_node(n);
           if (__any_sync(whole_warp, leaves))
             aside(leave_planes)(g, launch, leaves, patch.first_node + n, filled + n, last);
         }
       else
-        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
           step_node(n);
       if (look)
-        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
           if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
             frequency_bits = max(frequency_bits, look_at_node(g, memory, patch.first_node + n,
                                                               memory.place[launch.most_halo + filled + n].w));
@@ -332,6 +369,12 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       if ((threadIdx.x & 31) == 0)
         atomicMax(g.look, largest);
     }
+  }
+  if constexpr (has<With, Effects::sliding>)
+  {
+    meet<With>(launch);
+    if (threadIdx.x == 0)
+      atomicExch(plane_queue(launch).done, 1);
   }
 }
 

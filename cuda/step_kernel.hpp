@@ -59,7 +59,7 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// Planes are found beside a plan's steps for so many nodes of each `search_group` that follow one another in
+/// In strips planes are found beside a plan's steps for so many nodes of each `search_group` that follow one another in
 /// StepArguments::sliding and then ::gliding, in models of up to `small_model` such nodes for all of them: what a
 /// search knows of its surface takes 296 bytes.
 constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
@@ -86,7 +86,7 @@ struct GlidingContact
   SurfaceContact::Point turned_to;  ///< normal of the plane that its velocity is parallel to
 };
 
-/// What an exact closest point of it needs, and the plane that is found beside a plan's steps for the next plan.
+/// What an exact closest point of it needs, and the plane that is found before it is needed.
 struct GlidingSearch
 {
   SurfaceContact contact;
@@ -105,7 +105,7 @@ struct TangentPlane
   float4 reference;  ///< displacement there; w: square of ContactPlane::limit [m2], below 0: there is no plane yet
 };
 
-/// In the place of TangentPlane::reference.w of planes that are found beside a plan's steps for the next plan.
+/// In the place of TangentPlane::reference.w of planes that are found before they are needed.
 constexpr float nothing_ahead = -1, wanted_ahead = -2;
 
 /// A law beyond neo-Hookean that a voxel has in part.
@@ -167,13 +167,14 @@ struct StepArguments
   const double* load_relief;   ///< three a loaded node: what gravity is less on scaled masses [N]; null: nowhere
   SlidingContact* sliding;
   TangentPlane* contact_planes;
-  TangentPlane* planes_ahead;  ///< for the next plan; reference.w: nothing_ahead, wanted_ahead or as above
+  TangentPlane* planes_ahead;  ///< found before they are needed; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
   GlidingContact* gliding;
   GlidingSearch* gliding_searches;
   std::uint32_t gliding_count;
   SurfaceContact* searching;  ///< `searches` for each search_group
-  std::uint32_t searches;
+  std::uint32_t searches;     ///< 0: planes are asked for within launches (plane_queue.cuh), not from plan to plan
+  float lead;  ///< how long before a node leaves its plane another is asked for within a launch [s]; 0: none is
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
   const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
@@ -204,7 +205,7 @@ constexpr int step_block = 128;
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads of a patch; where nodes slide, the registers of a warp are left to what finds planes beside it.
+/// Most threads of a patch. Where nodes slide, its last warp finds their planes (plane_queue.cuh).
 constexpr std::uint32_t most_patch_threads = 512;
 /// Most patches that a block takes in turn.
 constexpr int most_turns = 8;
@@ -271,11 +272,11 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners
-/// and their stiffness.
-constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
+/// and their stiffness; where nodes slide, a queue of them.
+constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes, bool slides)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
-         25 * sizeof(float) * (most_voxels + 1);
+         25 * sizeof(float) * (most_voxels + 1) + (slides ? sizeof(std::int32_t) * (2 + most_nodes) : 0);
 }
 
 /// Blocks of the patch kernel that a device holds at once; 0 where it has no code for the device.
