@@ -16,7 +16,7 @@ struct NodeState
   float u[3];
   float v[3];
   bool leaves = false;  ///< goes on so that in the next step it would be farther from its plane than that serves
-  bool asks = false;    ///< the same, StepArguments::lead later
+  bool asks = false;    ///< the same, but StepArguments::lead later
 };
 
 /// A node's velocity turns with its plane.
@@ -84,7 +84,8 @@ __device__ __forceinline__ void slide(const StepArguments& g, const TangentPlane
     const float then[3] = { u.x + seconds * v.x, u.y + seconds * v.y, u.z + seconds * v.z };
     return slip_squared(plane.reference, then) > plane.reference.w;
   };
-  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves_within(g.dt), leaves_within(g.dt + g.lead) };
+  const bool leaves = leaves_within(g.dt);
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves, !leaves && leaves_within(g.dt + g.lead) };
 }
 
 /// Velocities for the account of work, where one is kept.
