@@ -181,6 +181,16 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
+/// By a node that is the block's `own`.
+static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
+                                              std::uint32_t own)
+{
+  const PatchMemory memory = patch_memory(launch);
+  const float4 place = memory.place[launch.most_halo + own];
+  ask(g, plane_queue(launch), contact, { place.x, place.y, place.z },
+      { memory.v[0][own], memory.v[1][own], memory.v[2][own] });
+}
+
 /// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
 /// Whether the node leaves its plane.
 template <Effects With>
@@ -230,7 +240,11 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
     send(next + node, n.u, mark(g, step + 1));
   // what is asked in the last step would be waited for
   if (has<With, Effects::sliding> && n.asks && !last)
-    ask(g, plane_queue(launch), task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]), n);
+  {
+    const std::int32_t contact = task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+    if (seen(state_of(g, contact)) == nothing_ahead)
+      aside(ask_ahead)(g, launch, contact, own);
+  }
   return n.leaves;
 }
 

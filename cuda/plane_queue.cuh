@@ -69,21 +69,18 @@ __device__ __forceinline__ void show(float* state, float value)
 
 /// For a node that does not wait yet.
 __device__ __forceinline__ void ask(const StepArguments& g, const PlaneQueue& queue, std::int32_t contact,
-                                    const NodeState& n)
+                                    const float (&u)[3], const float (&v)[3])
 {
-  float* const state = state_of(g, contact);
-  if (seen(state) != nothing_ahead)
-    return;
   // where glide_on() says, or:
   if (contact >= 0)
   {
     const float plan = g.steps * g.dt;
     const float seconds =
-        g.dt + g.lead + plan * share_before(plan * sqrtf(squared(n.v)), g.contact_planes[contact].reference.w);
+        g.dt + g.lead + plan * share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
     g.planes_ahead[contact].reference =
-        make_float4(n.u[0] + seconds * n.v[0], n.u[1] + seconds * n.v[1], n.u[2] + seconds * n.v[2], nothing_ahead);
+        make_float4(u[0] + seconds * v[0], u[1] + seconds * v[1], u[2] + seconds * v[2], nothing_ahead);
   }
-  show(state, wanted_ahead);
+  show(state_of(g, contact), wanted_ahead);
   __threadfence_block();
   atomicExch(queue.place(atomicAdd(queue.asked, 1)), contact);
 }
