@@ -88,6 +88,26 @@ void check_strips(const Model& model, const StripSettings& settings)
     EXPECT_EQ(owners[n], 1) << "node " << n;
 }
 
+// a fibre more in a voxel every so many voxels along x
+Model with_fibres(Model model, int every)
+{
+  Muscle muscle;
+  muscle.name = "m";
+  model.muscles.push_back(muscle);
+  model.fibre_begin.assign(1, 0);
+  for (const auto& voxel : model.voxels)
+  {
+    for (int i = 0; i < voxel[0] / every; ++i)
+    {
+      model.fibre_muscle.push_back(0);
+      model.fibre_weight.push_back(0.5f);
+      model.fibre_direction.push_back({ { 1, 0, 0 } });
+    }
+    model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
+  }
+  return model;
+}
+
 }  // namespace
 
 TEST(VoxelStrips, GiveEveryNodeOneOwnerWithAllItsVoxels)
@@ -119,21 +139,7 @@ TEST(VoxelStrips, FillALargeBlock)
 
 TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
 {
-  Model model = shell();
-  Muscle muscle;
-  muscle.name = "m";
-  model.muscles.push_back(muscle);
-  model.fibre_begin.assign(1, 0);
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    for (int i = 0; i < model.voxels[e][0] / 30; ++i)
-    {
-      model.fibre_muscle.push_back(0);
-      model.fibre_weight.push_back(0.5f);
-      model.fibre_direction.push_back({ { 1, 0, 0 } });
-    }
-    model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
-  }
+  const Model model = with_fibres(shell(), 30);
   const VoxelStrips strips(model, { 4, 8 });
   std::size_t with = 0, without = 0;
   for (const Strip& strip : strips.strips)
@@ -162,4 +168,24 @@ TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
   }
   EXPECT_GT(with, 0u);
   EXPECT_GT(without, 0u);
+}
+
+// what takes longest must not begin last
+TEST(VoxelStrips, BeginWithThoseThatHaveFibres)
+{
+  test::BlockSettings s;
+  s.voxels = { { 60, 20, 30 } };
+  const Model model = with_fibres(test::block_model(s), 31);
+  check_strips(model, { 2, 8 });
+  check_strips(with_fibres(shell(), 30), { 2, 5 });
+  bool plain = false;
+  const VoxelStrips strips(model, { 2, 8 });
+  for (const Strip& strip : strips.strips)
+    if (strip.planes == strips.strips.front().planes)
+    {
+      const bool fibres = strip.fibre_begin != Strip::none;
+      EXPECT_FALSE(plain && fibres);
+      plain = plain || !fibres;
+    }
+  EXPECT_TRUE(plain);
 }
