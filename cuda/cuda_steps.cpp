@@ -36,7 +36,7 @@ StepArguments CudaSolver::arguments(double dt) const
   g.dt_exact = dt;
   g.rate = 1 / dt;
   g.friction_response = physics::friction_response(dt);
-  g.lead = launch_.patches ? static_cast<float>(steps_of_lead * dt) : 0;
+  g.lead = g.searches == 0 ? static_cast<float>(steps_of_lead * dt) : 0;
   kick(g, dt);
   return g;
 }
@@ -114,7 +114,7 @@ void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 }
 
 // long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
-// enough. Contacts that are found ahead want plans just as long as it takes to find them.
+// enough. Contacts that are found from plan to plan want plans just as long as it takes to find them.
 int CudaSolver::steps_a_plan() const
 {
   return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, device_.contacts() > 0 ? 64.0 : 128.0));

@@ -99,7 +99,7 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  const std::uint32_t finding = model.sliding.empty() ? 0 : 32;
+  const std::uint32_t finding = model.sliding.empty() ? 0 : finding_threads;
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads - finding) + finding);
   launch_.most_voxels = patches.most_voxels;
   launch_.most_halo = patches.most_halo;

@@ -46,6 +46,13 @@ __device__ __forceinline__ float share_before(float goes, float served)
   return goes > far ? 0.5f * far / goes : 0.5f;
 }
 
+/// The same as a time [s].
+__device__ __forceinline__ float time_before(const StepArguments& g, const float* v, float served)
+{
+  const float plan = g.steps * g.dt;
+  return plan * share_before(plan * sqrtf(squared(v)), served);
+}
+
 /// What a step needs of the plane of a node that was found at a place; `serves`: see SlidingContact.
 __device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
                                                       const SurfaceContact::Point& at, float& serves)
@@ -172,6 +179,7 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
     s.reference = next;
   const Point further = next + double(g.lead) * w, gone = further - s.reference;
   const bool asks = g.lead > 0 && !leaves && dot(gone, gone) > s.plane.limit * s.plane.limit;
+  // its state changes to nothing_ahead by its node's thread alone
   GlidingSearch& search = g.gliding_searches[index];
   if (asks && search.state == nothing_ahead)
     search.ahead = further;
@@ -271,8 +279,7 @@ __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, st
   Point next{ 0, 0, 0 }, at{ 0, 0, 0 };
   if (leaves && slides)
   {
-    const float plan = g.steps * g.dt;
-    const float before = plan * share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
+    const float before = time_before(g, v, g.contact_planes[contact].reference.w);
     const Point velocity{ v[0], v[1], v[2] };
     on = &g.sliding[contact].contact;
     next = place_of(g.sliding[contact], u) + g.dt_exact * velocity;

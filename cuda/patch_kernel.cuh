@@ -181,6 +181,12 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
+/// Of a node that slides or glides, by its entry of StepArguments::patch_tasks: as find_others() takes it.
+__device__ __forceinline__ std::int32_t contact_of(const StepArguments& g, std::int32_t task)
+{
+  return task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+}
+
 /// By a node that is the block's `own`.
 static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
                                               std::uint32_t own)
@@ -241,7 +247,7 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   // what is asked in the last step would be waited for
   if (has<With, Effects::sliding> && n.asks && !last)
   {
-    const std::int32_t contact = task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+    const std::int32_t contact = contact_of(g, task);
     if (seen(state_of(g, contact)) == nothing_ahead)
       aside(ask_ahead)(g, launch, contact, own);
   }
@@ -260,7 +266,7 @@ static __device__ __noinline__ void leave_planes(const StepArguments& g, const S
   if (leaves)
   {
     const std::int32_t task = __ldg(g.patch_tasks + node);
-    contact = task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+    contact = contact_of(g, task);
     const float4 place = memory.place[launch.most_halo + own];
     u[0] = place.x;
     u[1] = place.y;

@@ -12,9 +12,6 @@ namespace cuda
 // node waits for no more than one plane, so that a queue as long as there are nodes never runs over. What is found
 // depends on where it was asked for and on nothing else: the whole warp finds each, whoever waits beside.
 
-/// Threads of a block that find planes.
-constexpr int finding_threads = 32;
-
 /// Where nobody waits in a queue.
 constexpr std::int32_t nobody = -0x7fffffff;
 
@@ -74,9 +71,7 @@ __device__ __forceinline__ void ask(const StepArguments& g, const PlaneQueue& qu
   // where glide_on() says, or:
   if (contact >= 0)
   {
-    const float plan = g.steps * g.dt;
-    const float seconds =
-        g.dt + g.lead + plan * share_before(plan * sqrtf(squared(v)), g.contact_planes[contact].reference.w);
+    const float seconds = g.dt + g.lead + time_before(g, v, g.contact_planes[contact].reference.w);
     g.planes_ahead[contact].reference =
         make_float4(u[0] + seconds * v[0], u[1] + seconds * v[1], u[2] + seconds * v[2], nothing_ahead);
   }
@@ -104,13 +99,15 @@ static __device__ __forceinline__ void find_asked(const StepArguments& g, std::i
     at = g.gliding_searches[-1 - contact].ahead;
   }
   const ContactPlane plane = on->renew<true, Team>(at);
+  // what all lanes wrote to the contact is shown by one
+  __syncwarp();
   if (Team::rank() == 0)
   {
     float state = 0;
     if (contact >= 0)
     {
-      SlidingContact& s = g.sliding[contact];
-      TangentPlane found = tangent_plane(s, plane, at, s.serves_ahead);
+      float serves = 0;
+      TangentPlane found = tangent_plane(g.sliding[contact], plane, at, serves);
       state = found.reference.w;
       found.reference.w = wanted_ahead;
       g.planes_ahead[contact] = found;
@@ -128,10 +125,12 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
   for (std::uint32_t next = 0;; ++next)
   {
     std::int32_t contact = nobody;
-    if (threadIdx.x % 32 == 0)
+    if ((threadIdx.x & 31) == 0)
       for (bool done = false; !done && contact == nobody;)
       {
         done = atomicOr(queue.done, 0) != 0;
+        // what was asked before all was done is seen
+        __threadfence_block();
         contact = atomicExch(queue.place(next), nobody);
         if (!done && contact == nobody)
           __nanosleep(long_sleep);
@@ -140,6 +139,7 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
     if (contact == nobody)
       return;
     __threadfence_block();
+    __syncwarp();
     find_asked(g, contact);
   }
 }

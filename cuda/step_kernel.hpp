@@ -34,6 +34,7 @@ struct NodeTask
 /// Whether the node slides on a surface that is still and has no friction, and has nothing else.
 __host__ __device__ inline bool slides_only(const NodeTask& task)
 {
+  static_assert(node_effects == 5, "each of them stands below");
   return task.of[node_sliding] >= 0 &&
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
@@ -70,7 +71,7 @@ struct SlidingContact
   double rest[3];  ///< [m]
   SurfaceContact contact;
   std::uint32_t node;
-  std::int32_t search;         ///< into StepArguments::searching, where a plane is found beside the steps
+  std::int32_t search;         ///< in strips, into StepArguments::searching, where a plane is found beside the steps
   float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
 };
 
@@ -207,6 +208,8 @@ constexpr std::uint32_t planes_ahead = 2;
 
 /// Most threads of a patch. Where nodes slide, its last warp finds their planes (plane_queue.cuh).
 constexpr std::uint32_t most_patch_threads = 512;
+/// Of them those of the warp that finds planes.
+constexpr std::uint32_t finding_threads = 32;
 /// Most patches that a block takes in turn.
 constexpr int most_turns = 8;
 
@@ -286,8 +289,9 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before a plan: sliding and gliding nodes take the planes that were found for them where they need them, those that
-/// have left theirs find new ones at once, and those that will want another before the next plan ends ask for it.
+/// Before a plan: sliding and gliding nodes that have left their planes find new ones at once. In strips they take
+/// those that were found for them first, where they need them, and who will want another before the next plan ends asks
+/// for it.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 /// What was asked for; runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);
