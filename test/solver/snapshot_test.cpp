@@ -37,6 +37,22 @@ struct Variant
   int parts = 1;  // of a play, 80 steps each
 };
 
+// a floor that a bone moves, with friction
+void move_floor(Model& m)
+{
+  m.bones = { "jaw" };
+  m.constraint_surfaces[0].bone = 0;
+  m.constraint_surfaces[0].friction = 0.4;
+}
+
+// a load that follows no surface: on a GPU many steps are one launch
+void steady(Model& m)
+{
+  for (Load& load : m.loads)
+    if (load.kind == Load::Kind::pressure)
+      load.kind = Load::Kind::traction;
+}
+
 // every effect at once; a floor that a bone moves, with friction; all precisions; what is renewed now and then
 std::vector<Variant> variants()
 {
@@ -46,14 +62,14 @@ std::vector<Variant> variants()
            { "compensated", [](Model& m) { m.precision = Precision::compensated; } },
            { "double", [](Model& m) { m.precision = Precision::double_precision; } },
            { "reduced", [](Model& m) { m.integration = Integration::selective_reduced; } },
-           { "moved",
+           { "moved", move_floor, true },
+           { "steady", steady },
+           { "moved, steady",
              [](Model& m)
              {
-               m.bones = { "jaw" };
-               m.constraint_surfaces[0].bone = 0;
-               m.constraint_surfaces[0].friction = 0.4;
-             },
-             true },
+               move_floor(m);
+               steady(m);
+             } },
            { "slow muscle", [](Model& m) { m.muscles[0].rise_time = 5e-4; } } };
 }
 
