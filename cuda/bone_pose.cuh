@@ -28,17 +28,6 @@ struct Pose
   __device__ Point inwards(const Point& p) const { return turned_back(p - Point{ t[0], t[1], t[2] }); }
 };
 
-/// Of what never moves.
-struct Still
-{
-  using Point = SurfaceContact::Point;
-
-  __device__ Point turned(const Point& p) const { return p; }
-  __device__ Point turned_back(const Point& p) const { return p; }
-  __device__ Point outwards(const Point& p) const { return p; }
-  __device__ Point inwards(const Point& p) const { return p; }
-};
-
 /// `when`: 0 before the plan's first step, n after its n-th.
 __device__ __forceinline__ Pose pose_at(const StepArguments& g, int when, std::int32_t bone)
 {

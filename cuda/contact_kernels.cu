@@ -57,9 +57,8 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
       (slip_squared(plane.reference, u) > s.serves || reached(1, 0.1f) > plane.reference.w))
   {
     take_over(g, s);
-    turn(plane.normal_offset, found.normal_offset, v);
+    change_plane<of_nodes>(g, static_cast<std::int32_t>(index), found, v);
     plane = found;
-    g.contact_planes[index] = found;
     s.serves = s.serves_ahead;
   }
   const bool first = plane.reference.w < 0;
@@ -79,9 +78,8 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
   return wish;
 }
 
-template <class Frame>
-static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, std::uint32_t index, const Frame& now,
-                                                       const Frame& then)
+static __device__ __forceinline__ Wish look_at_gliding(const StepArguments& g, std::uint32_t index, const Pose& now,
+                                                       const Pose& then)
 {
   using Point = SurfaceContact::Point;
   GlidingContact& s = g.gliding[index];
@@ -126,14 +124,13 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
   else if (glides)
   {
     const std::int32_t bone = g.gliding[gliding].bone;
-    wish = bone < 0 ? look_at_gliding(g, gliding, Still(), Still())
-                    : look_at_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
+    wish = look_at_gliding(g, gliding, pose_at(g, 0, bone), pose_at(g, g.steps, bone));
   }
   const ContactPlane plane = find_before<block / 32>(wish.now, wish.contact, wish.here, wish.at);
   if (slides)
   {
     if (wish.now)
-      put_on(g, static_cast<std::int32_t>(index), plane, wish.at, v);
+      put_on<of_nodes>(g, static_cast<std::int32_t>(index), plane, wish.at, v);
     for (int i = 0; i < 3; ++i)
       g.v[i][g.sliding[index].node] = v[i];
   }

@@ -43,7 +43,7 @@ DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
   book_.damping = DeviceArray<double>(device.nodes());
   book_.constraint = DeviceArray<double>(device.nodes());
   book_.beside = DeviceArray<double>(3 * device.nodes());
-  book_.friction = DeviceArray<double>(device.gliding());
+  book_.friction = DeviceArray<double>(device.friction_works());
   for (int axis = 0; axis < 3; ++axis)
   {
     before_[axis] = DeviceArray<float>(device.nodes());

@@ -36,7 +36,6 @@ void DeviceModel::run(const Model& model, const Discretisation& discretisation, 
   constants_.load_relief = running.has(Effect::gravity) ? loads_.relief() : nullptr;
   run_fibres(model, discretisation, running);
   run_tasks(running);
-  run_friction(model, running);
   choose_effects(running);
 }
 
@@ -89,6 +88,7 @@ void DeviceModel::run_tasks(EffectSet running)
   patch_tasks_.upload(words.data(), words.size());
   constants_.sliding_count = slides ? static_cast<std::uint32_t>(sliding_.size()) : 0;
   constants_.gliding_count = slides ? static_cast<std::uint32_t>(gliding_.size()) : 0;
+  constants_.rubbing_count = slides && running.has(Effect::friction) ? static_cast<std::uint32_t>(rubbing_.size()) : 0;
 }
 
 // what the kernels must know of what nodes do
@@ -106,20 +106,6 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-void DeviceModel::run_friction(const Model& model, EffectSet running)
-{
-  if (gliding_.size() == 0)
-    return;
-  std::vector<GlidingContact> contacts;
-  gliding_.download(contacts);
-  for (std::size_t c = 0; c < contacts.size(); ++c)
-  {
-    const auto& surface = model.constraint_surfaces[gliding_surface_[c]];
-    contacts[c].friction = running.has(Effect::friction) ? surface.friction : 0;
-  }
-  gliding_.upload(contacts.data(), contacts.size());
-}
-
 // the least of the kernels that does what runs, among those that walk the strips as they are cut
 void DeviceModel::choose_effects(EffectSet running)
 {
@@ -131,6 +117,8 @@ void DeviceModel::choose_effects(EffectSet running)
   if (!launch_.patches && strip_rows(least) != strip_rows(most_effects_))
     least = Effects::fibres;
   effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
+  if (running.has(Effect::sliding) && running.has(Effect::friction))
+    effects_ = effects_ | (most_effects_ & Effects::friction);
   launch_.effects = effects_;
 }
 
@@ -146,6 +134,7 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
+  add(Effect::friction, "nodes that rub", rubbing_);
   add(Effect::sliding, "nodes that glide", gliding_, gliding_searches_);
   add(Effect::sliding, "searches", searching_);
   for (const auto& boxes : boxes_)

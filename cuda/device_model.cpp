@@ -67,6 +67,9 @@ Effects effects_of(const Model& model, const Discretisation& discretisation)
     effects = effects | Effects::viscosity;
   if (!model.fibre_muscle.empty())
     effects = effects | Effects::fibres;
+  for (const SlidingNode& node : model.sliding)
+    if (model.constraint_surfaces[node.surface].friction > 0)
+      effects = effects | Effects::friction;
   return effects;
 }
 
@@ -133,6 +136,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.contact_planes = contact_planes_.data();
   g.planes_ahead = planes_ahead_.data();
   g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
+  g.rubbing = rubbing_.data();
+  g.rubbing_count = static_cast<std::uint32_t>(rubbing_.size());
   g.gliding = gliding_.data();
   g.gliding_searches = gliding_searches_.data();
   g.searching = searching_.data();
@@ -253,11 +258,18 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
     surfaces.push_back(
         { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
   }
-  // in the order in which warps meet them
+  // those with friction first, else in the order in which warps meet them
+  const auto rubs = [&model](const SlidingNode& node)
+  {
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    return surface.bone < 0 && surface.friction > 0;
+  };
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
-            [&](const SlidingNode& a, const SlidingNode& b) { return device_node_[a.node] < device_node_[b.node]; });
+            [&](const SlidingNode& a, const SlidingNode& b)
+            { return rubs(a) != rubs(b) ? rubs(a) : device_node_[a.node] < device_node_[b.node]; });
   std::vector<SlidingContact> sliding;
+  std::vector<RubbingContact> rubbing;
   std::vector<GlidingContact> gliding;
   std::vector<GlidingSearch> gliding_searches;
   for (const auto& node : nodes)
@@ -265,7 +277,9 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
     const auto rest = rest_position(model, node.node);
     const SurfaceContact contact(surfaces[node.surface], node.distance);
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    if (surface.bone < 0 && !(surface.friction > 0))
+    if (rubs(node))
+      rubbing.push_back({ static_cast<float>(surface.friction), 0, 0 });
+    if (surface.bone < 0)
     {
       task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
       sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0 });
@@ -274,11 +288,11 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
     task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
     gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
     gliding_searches.push_back({ contact, device_node_[node.node], -1, nothing_ahead, {}, {} });
-    gliding_surface_.push_back(node.surface);
   }
   sliding_ = DeviceArray<SlidingContact>(sliding);
   contact_planes_ = DeviceArray<TangentPlane>(sliding.size());
   planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
+  rubbing_ = DeviceArray<RubbingContact>(rubbing);
   gliding_ = DeviceArray<GlidingContact>(gliding);
   gliding_searches_ = DeviceArray<GlidingSearch>(gliding_searches);
   const std::size_t groups = (nodes.size() + search_group - 1) / search_group;

@@ -62,6 +62,7 @@ public:
   {
     DeviceArray<SlidingContact> sliding;
     DeviceArray<TangentPlane> planes, ahead;
+    DeviceArray<RubbingContact> rubbing;
     DeviceArray<GlidingContact> gliding;
     DeviceArray<GlidingSearch> gliding_searches;
     DeviceArray<SurfaceContact> searching;
@@ -82,7 +83,8 @@ public:
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   std::size_t contacts() const { return sliding_.size() + gliding_.size(); }
-  std::size_t gliding() const { return gliding_.size(); }  ///< those that follow bones or have friction
+  /// Entries of StepArguments::friction_work.
+  std::size_t friction_works() const { return rubbing_.size() + gliding_.size(); }
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -98,7 +100,6 @@ private:
   void add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
-  void run_friction(const Model& model, EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
 
@@ -118,7 +119,6 @@ private:
   std::vector<std::uint32_t> palette_of_voxel_;
   StepArguments constants_{};
   Whole whole_;
-  std::vector<std::int32_t> gliding_surface_;  // of each gliding node
 
   DeviceArray<Patch> patches_;
   DeviceArray<uint4> patch_corners_, node_voxels_;
@@ -137,6 +137,7 @@ private:
   DeviceArray<NodeTask> tasks_;
   DeviceArray<SlidingContact> sliding_;
   DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
+  DeviceArray<RubbingContact> rubbing_;
   DeviceArray<GlidingContact> gliding_;
   DeviceArray<GlidingSearch> gliding_searches_;
   DeviceArray<SurfaceContact> searching_;

@@ -64,14 +64,36 @@ __device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, c
            make_float4(u.x, u.y, u.z, plane.limit * plane.limit) };
 }
 
-/// Gives a node the plane that was found at a place, and turns its velocity with it.
+/// Whether a sliding node has friction.
+__device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
+{
+  return static_cast<std::uint32_t>(index) < g.rubbing_count;
+}
+
+__device__ __forceinline__ float along(const float4& normal, const float* v)
+{
+  return normal.x * v[0] + normal.y * v[1] + normal.z * v[2];
+}
+
+/// Gives a node another plane, and turns its velocity with it. `With`: what nodes do.
+template <Effects With>
+__device__ __forceinline__ void change_plane(const StepArguments& g, std::int32_t index, const TangentPlane& to,
+                                             float* v)
+{
+  const float before = along(to.normal_offset, v);
+  turn(g.contact_planes[index].normal_offset, to.normal_offset, v);
+  if (has<With, Effects::friction> && rubs(g, index))
+    g.rubbing[index].turning += before - along(to.normal_offset, v);
+  g.contact_planes[index] = to;
+}
+
+/// The plane that was found at a place.
+template <Effects With>
 __device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
                                        const SurfaceContact::Point& at, float* v)
 {
   SlidingContact& s = g.sliding[index];
-  const TangentPlane plane = tangent_plane(s, found, at, s.serves);
-  turn(g.contact_planes[index].normal_offset, plane.normal_offset, v);
-  g.contact_planes[index] = plane;
+  change_plane<With>(g, index, tangent_plane(s, found, at, s.serves), v);
 }
 
 __device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
@@ -80,19 +102,20 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
   return x * x + y * y + z * z;
 }
 
-/// `plane`: as it was read before the step.
-__device__ __forceinline__ void slide(const StepArguments& g, const TangentPlane& plane, NodeState& n)
+/// What a step needs of a sliding node's contact, as it was read before the step.
+struct SlidingFetch
 {
-  physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
-  const float4& p = plane.normal_offset;
-  physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
-  const auto leaves_within = [&](float seconds)
-  {
-    const float then[3] = { u.x + seconds * v.x, u.y + seconds * v.y, u.z + seconds * v.z };
-    return slip_squared(plane.reference, then) > plane.reference.w;
-  };
-  const bool leaves = leaves_within(g.dt);
-  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves, !leaves && leaves_within(g.dt + g.lead) };
+  TangentPlane plane;
+  RubbingContact rubbing;  ///< where it rubs
+};
+
+template <Effects With>
+__device__ __forceinline__ SlidingFetch fetch_contact(const StepArguments& g, std::int32_t index)
+{
+  SlidingFetch contact{ g.contact_planes[index], {} };
+  if (has<With, Effects::friction> && rubs(g, index))
+    contact.rubbing = g.rubbing[index];
+  return contact;
 }
 
 /// Velocities for the account of work, where one is kept.
@@ -133,21 +156,73 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
   keep_velocity(g.velocity_free, at.node, n.v);
 }
 
-static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep&,
-                                                  NodeState& n)
-{
-  slide(g, g.contact_planes[index], n);
-}
-
-// a variable, which code for the device can use too
-constexpr bool rubs = built_with(Effect::friction);
-
-/// Sliding on a surface that follows a bone or has friction, in double (see gliding_nodes.cpp).
-template <class Frame>
-static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int32_t index, const Frame& now,
-                                                const Frame& before, const NodeStep& at, NodeState& n)
+/// What friction takes [J] from a node whose velocity it changes, on a surface with a normal and a velocity. `free`:
+/// velocity before constraints.
+static __device__ __forceinline__ double lost_to_friction(const StepArguments& g, const NodeStep& at,
+                                                          const SurfaceContact::Point& normal,
+                                                          const SurfaceContact::Point& surface_velocity,
+                                                          const SurfaceContact::Point& free,
+                                                          const SurfaceContact::Point& v)
 {
   using Point = SurfaceContact::Point;
+  const Point change = v - free, tangential = change - dot(change, normal) * normal;
+  const Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node], g.velocity_before[2][at.node] };
+  return -dot(tangential, 0.5 * (old + v) - surface_velocity) / double(at.before.w);
+}
+
+/// `taken`: normal speed that the plane took from the node in this step.
+static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                           const SlidingFetch& contact, float taken, physics::Vec3<float>& u,
+                                           physics::Vec3<float>& v, const float (&free)[3])
+{
+  const RubbingContact& s = contact.rubbing;
+  const float reaction = (s.turning + taken) * static_cast<float>(g.rate);
+  const float pressing = s.pressing + static_cast<float>(g.friction_response) * (reaction - s.pressing);
+  const physics::Vec3<float> lost = physics::friction_loss(s.friction, g.dt * pressing, norm(v)) * v;
+  v = v - lost;
+  u = u - g.dt * lost;
+  g.rubbing[index].pressing = pressing;
+  g.rubbing[index].turning = 0;
+  const float4& normal = contact.plane.normal_offset;
+  if (g.friction_work != nullptr)
+    g.friction_work[index] += lost_to_friction(g, at, { normal.x, normal.y, normal.z }, { 0, 0, 0 },
+                                               { free[0], free[1], free[2] }, { v.x, v.y, v.z });
+}
+
+/// On a surface that is still.
+template <Effects With>
+__device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                      const SlidingFetch& contact, NodeState& n)
+{
+  physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
+  const TangentPlane& plane = contact.plane;
+  const float4& p = plane.normal_offset;
+  const float taken = physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
+  if (has<With, Effects::friction> && rubs(g, index))
+    rub(g, index, at, contact, taken, u, v, n.v);
+  const auto leaves_within = [&](float seconds)
+  {
+    const float then[3] = { u.x + seconds * v.x, u.y + seconds * v.y, u.z + seconds * v.z };
+    return slip_squared(plane.reference, then) > plane.reference.w;
+  };
+  const bool leaves = leaves_within(g.dt);
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves, !leaves && leaves_within(g.dt + g.lead) };
+}
+
+template <Effects With>
+static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                  NodeState& n)
+{
+  slide<With>(g, index, at, fetch_contact<With>(g, index), n);
+}
+
+/// Sliding on a surface that follows a bone, in double (see gliding_nodes.cpp).
+template <Effects With>
+static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
+{
+  using Point = SurfaceContact::Point;
+  const std::int32_t bone = g.gliding[index].bone;
+  const Pose now = pose_at(g, at.step + 1, bone), before = pose_at(g, at.step, bone);
   GlidingContact& s = g.gliding[index];
   const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
   Point p = now.inwards(rest + Point{ n.u[0], n.u[1], n.u[2] });
@@ -164,7 +239,8 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
     s.turned_to = normal;
   }
   taken += physics::slide(normal, s.plane.height, p, w);
-  if (rubs && s.friction > 0)
+  const bool has_friction = has<With, Effects::friction> && s.friction > 0;
+  if (has_friction)
   {
     const double pressing = s.pressing + g.friction_response * (taken * g.rate - s.pressing);
     s.pressing = pressing;
@@ -184,32 +260,12 @@ static __device__ __forceinline__ void glide_on(const StepArguments& g, std::int
   if (asks && search.state == nothing_ahead)
     search.ahead = further;
   const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
-  if (rubs && g.friction_work != nullptr && s.friction > 0)
-  {
-    const Point out = now.turned(normal), change = v - free;
-    const Point along = change - dot(change, out) * out;
-    const Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node], g.velocity_before[2][at.node] };
-    g.friction_work[index] -= dot(along, 0.5 * (old + v) - surface_velocity) / double(at.before.w);
-  }
+  if (has_friction && g.friction_work != nullptr)
+    g.friction_work[g.rubbing_count + index] += lost_to_friction(g, at, now.turned(normal), surface_velocity, free, v);
   n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) },
         leaves,
         asks };
-}
-
-static __device__ __noinline__ void glide_on_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
-                                                  NodeState& n)
-{
-  const std::int32_t bone = g.gliding[index].bone;
-  glide_on(g, index, pose_at(g, at.step + 1, bone), pose_at(g, at.step, bone), at, n);
-}
-
-static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
-{
-  if (g.gliding[index].bone >= 0)
-    glide_on_bone(g, index, at, n);
-  else
-    glide_on(g, index, Still(), Still(), at, n);
 }
 
 static __device__ __noinline__ void follow_path(const StepArguments& g, std::int32_t index, const NodeStep& at,
@@ -242,20 +298,20 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
   }
 }
 
-/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' own code. `Slides`:
-/// with those that slide or glide.
+/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' own code. `With`:
+/// what nodes do.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
-template <bool Slides>
+template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
   built_with(Effect::surface_loads) ? add_load : nullptr,
-  built_with(Effect::sliding) && Slides ? keep_distance : nullptr,
-  built_with(Effect::sliding) && Slides ? glide : nullptr,
+  has<With, Effects::sliding> ? keep_distance<With> : nullptr,
+  has<With, Effects::sliding> ? glide<With> : nullptr,
   built_with(Effect::prescribed_displacement) ? follow_path : nullptr,
   built_with(Effect::rigid_nodes) ? follow_bone : nullptr,
 };
 
 /// What one node has, after its update.
-template <bool Slides>
+template <Effects With>
 static __device__ __noinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float4& before,
                                                int step, NodeState& n)
 {
@@ -263,12 +319,12 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
 #pragma unroll 1
   for (int effect = 0; effect < node_effects; ++effect)
     if (task.of[effect] >= 0)
-      node_functions<Slides>[effect](g, task.of[effect], at, n);
+      node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
 /// By whole warps, after a step: those that leave their planes get others before the next. u and v are theirs;
 /// `contact`: into StepArguments::sliding, or -1 - index into ::gliding.
-template <int Warps>
+template <int Warps, Effects With>
 __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, std::int32_t contact, const float (&u)[3],
                                          float (&v)[3])
 {
@@ -292,7 +348,7 @@ __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, st
   }
   const ContactPlane plane = find_before<Warps>(leaves, on, next, at);
   if (leaves && slides)
-    put_on(g, contact, plane, at, v);
+    put_on<With>(g, contact, plane, at, v);
   else if (leaves)
     g.gliding[gliding].plane = plane;
 }
@@ -314,7 +370,7 @@ __device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
 }
 
 /// What nodes have that have been written already: tasks [begin, end), a whole warp's.
-template <bool Slides>
+template <Effects With>
 __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
                                           const float4* u, float4* next, int step)
 {
@@ -329,15 +385,17 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
       task = g.tasks[t];
       const float4 before = u[task.node], now = next[task.node];
       n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-      if (Slides && slides_only(task))
-        slide(g, g.contact_planes[task.of[node_sliding]], n);
+      // the inverse mass of what is written: a buffer that was never stepped holds none
+      const float4 old = make_float4(before.x, before.y, before.z, now.w);
+      const std::int32_t contact = task.of[node_sliding];
+      if (has<With, Effects::sliding> && slides_only(task))
+        slide<With>(g, contact, { old, task.node, step }, fetch_contact<With>(g, contact), n);
       else
-        // the inverse mass of what is written: a buffer that was never stepped holds none
-        apply_task<Slides>(g, task, make_float4(before.x, before.y, before.z, now.w), step, n);
+        apply_task<part<With, of_nodes>>(g, task, old, step, n);
       next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
     }
-    if (Slides && __any_sync(whole_warp, n.leaves))
-      aside(find_others<step_block / 32>)(g, n.leaves, n.leaves ? contact_of(task) : 0, n.u, n.v);
+    if (has<With, Effects::sliding> && __any_sync(whole_warp, n.leaves))
+      aside(find_others<step_block / 32, part<With, of_nodes>>)(g, n.leaves, n.leaves ? contact_of(task) : 0, n.u, n.v);
     if (t < end)
       for (int i = 0; i < 3; ++i)
         g.v[i][task.node] = n.v[i];

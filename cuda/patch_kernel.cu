@@ -9,6 +9,8 @@ namespace
 
 const void* kernel(Effects effects)
 {
+  if ((effects & Effects::friction) == Effects::friction)
+    return friction_patch_kernel(effects);
   if ((effects & Effects::sliding) == Effects::sliding)
     return sliding_patch_kernel(effects);
   return (effects & Effects::tasks) == Effects::tasks ? patch_kernel_of<Effects::tasks>(effects)

@@ -166,9 +166,9 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
                                                 float4* next, int step)
 {
   const std::int32_t task = __ldg(g.patch_tasks + node);
-  TangentPlane plane{};
+  SlidingFetch fetched{};
   if (has<With, Effects::sliding> && task >= 0)
-    plane = g.contact_planes[task];
+    fetched = fetch_contact<With>(g, task);
   float force[3];
   sum_forces(memory, __ldg(g.node_voxels + node), force);
   if (g.forces_only)
@@ -183,12 +183,12 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   {
     n = updated(g, node, fetch, force);
     if (has<With, Effects::sliding> && task >= 0)
-      slide(g, plane, n);
+      slide<With>(g, task, { fetch.own, node, step }, fetched, n);
     else if (has<With, Effects::tasks> && task != patch_task::none)
     {
       // a copy, so that the others' numbers stay in registers
       NodeState held = n;
-      apply_task<has<With, Effects::sliding>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
+      apply_task<part<With, of_nodes>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
       n = held;
     }
 #pragma unroll
@@ -217,7 +217,8 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
 
 /// By whole warps: nodes that leave their planes get others. Neighbours have what they wait for already. `own` as for
 /// step_patch_node(). Finds the block's memory by itself: a reference to PatchMemory would have the kernel keep that in
-/// local memory, and a forehead's step took 7 us and not 5.
+/// local memory, and a forehead's step took 7 us and not 5. `With`: what nodes do.
+template <Effects With>
 static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
                                                  std::uint32_t node, std::uint32_t own, bool last)
 {
@@ -235,9 +236,9 @@ static __device__ __noinline__ void leave_planes(const StepArguments& g, const S
     for (int i = 0; i < 3; ++i)
       v[i] = memory.v[i][own];
   }
-  const bool finds = leaves && !take_asked(g, contact, u, v);
+  const bool finds = leaves && !take_asked<With>(g, contact, u, v);
   if (__any_sync(whole_warp, finds))
-    find_others<most_patch_threads / 32>(g, finds, contact, u, v);
+    find_others<most_patch_threads / 32, With>(g, finds, contact, u, v);
   if (leaves)
     for (int i = 0; i < 3; ++i)
     {
@@ -332,7 +333,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         {
           const bool leaves = n < patch.nodes && step_node(n);
           if (__any_sync(whole_warp, leaves))
-            aside(leave_planes)(g, launch, leaves, patch.first_node + n, filled + n, last);
+            aside(leave_planes<part<With, of_nodes>>)(g, launch, leaves, patch.first_node + n, filled + n, last);
         }
       else
         for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
@@ -372,8 +373,9 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// In a unit of their own: the table of what slides counts for all calls of a unit, of kernels that never slide too.
+/// In units of their own: the table of what slides counts for all calls of a unit, of kernels that never slide too.
 const void* sliding_patch_kernel(Effects effects);
+const void* friction_patch_kernel(Effects effects);
 
 }  // namespace cuda
 }  // namespace frontalis

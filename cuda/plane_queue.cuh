@@ -68,7 +68,7 @@ __device__ __forceinline__ void show(float* state, float value)
 __device__ __forceinline__ void ask(const StepArguments& g, const PlaneQueue& queue, std::int32_t contact,
                                     const float (&u)[3], const float (&v)[3])
 {
-  // where glide_on() says, or:
+  // where glide() says, or:
   if (contact >= 0)
   {
     const float seconds = g.dt + g.lead + time_before(g, v, g.contact_planes[contact].reference.w);
@@ -146,6 +146,7 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
 
 /// For a node that leaves its plane: waits for what it asked for. Whether that serves where the node will be a step
 /// later; the node has it then.
+template <Effects With>
 __device__ __forceinline__ bool take_asked(const StepArguments& g, std::int32_t contact, const float (&u)[3],
                                            float (&v)[3])
 {
@@ -163,10 +164,7 @@ __device__ __forceinline__ bool take_asked(const StepArguments& g, std::int32_t 
     const float next[3] = { u[0] + g.dt * v[0], u[1] + g.dt * v[1], u[2] + g.dt * v[2] };
     serves = slip_squared(found.reference, next) <= found.reference.w;
     if (serves)
-    {
-      turn(g.contact_planes[contact].normal_offset, found.normal_offset, v);
-      g.contact_planes[contact] = found;
-    }
+      change_plane<With>(g, contact, found, v);
   }
   else if (known != nothing_ahead)
   {

@@ -9,6 +9,8 @@ namespace
 
 StepKernel kernel(Effects effects, bool look)
 {
+  if ((effects & Effects::friction) == Effects::friction)
+    return friction_step_kernel(effects, look);
   if ((effects & Effects::sliding) == Effects::sliding)
     return sliding_step_kernel(effects, look);
   return (effects & Effects::tasks) == Effects::tasks ? step_kernel_of<Effects::tasks>(effects, look)

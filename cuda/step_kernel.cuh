@@ -43,7 +43,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   if (tasks)
   {
     __syncwarp();
-    run_tasks<has<With, Effects::sliding>>(g, strip.task_begin, strip.task_end, u, next, step);
+    run_tasks<With>(g, strip.task_begin, strip.task_end, u, next, step);
   }
   if (Look)
   {
@@ -69,8 +69,9 @@ StepKernel step_kernel_of(Effects effects, bool look)
   return look ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
 }
 
-/// In a unit of their own, as those of patches.
+/// In units of their own, as those of patches.
 StepKernel sliding_step_kernel(Effects effects, bool look);
+StepKernel friction_step_kernel(Effects effects, bool look);
 
 }  // namespace cuda
 }  // namespace frontalis

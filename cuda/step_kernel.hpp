@@ -31,7 +31,7 @@ struct NodeTask
   std::int32_t of[node_effects];  ///< indices, by NodeEffect; below 0: not there
 };
 
-/// Whether the node slides on a surface that is still and has no friction, and has nothing else.
+/// Whether the node slides on a surface that is still, and has nothing else.
 __host__ __device__ inline bool slides_only(const NodeTask& task)
 {
   static_assert(node_effects == 5, "each of them stands below");
@@ -65,7 +65,7 @@ struct RigidMotion
 /// search knows of its surface takes 296 bytes.
 constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
 
-/// A node on a still surface without friction: what an exact closest point needs.
+/// A node on a still surface: what an exact closest point needs.
 struct SlidingContact
 {
   double rest[3];  ///< [m]
@@ -75,11 +75,19 @@ struct SlidingContact
   float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
 };
 
-/// A node on a surface that follows a bone or has friction: what each step needs of it, in the frame of the bone.
+/// What friction on a still surface needs besides.
+struct RubbingContact
+{
+  float friction;  ///< coefficient
+  float pressing;  ///< reaction over mass that friction knows of [m/s2]
+  float turning;   ///< normal speed that changes of the plane took, a part of the next reaction [m/s]
+};
+
+/// A node on a surface that follows a bone: what each step needs of it, in the frame of the bone.
 struct GlidingContact
 {
-  double rest[3];     ///< [m]
-  std::int32_t bone;  ///< -1: still
+  double rest[3];  ///< [m]
+  std::int32_t bone;
   double friction;
   double pressing;  ///< reaction over mass that friction knows of [m/s2]
   ContactPlane plane;
@@ -170,6 +178,8 @@ struct StepArguments
   TangentPlane* contact_planes;
   TangentPlane* planes_ahead;  ///< found before they are needed; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
+  RubbingContact* rubbing;  ///< of the first `rubbing_count` of ::sliding, which have friction
+  std::uint32_t rubbing_count;
   GlidingContact* gliding;
   GlidingSearch* gliding_searches;
   std::uint32_t gliding_count;
@@ -196,7 +206,7 @@ struct StepArguments
   bool forces_only;            ///< internal forces into u[1 - first], nothing updated
   float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
   float* velocity_free[3];     ///< after it and the loads, before constraints
-  double* friction_work;       ///< lost to friction, one a gliding node [J]; null: no account of work is kept
+  double* friction_work;       ///< lost to friction by each that rubs, then by each that glides [J], or null
   std::uint32_t steps_before;  ///< that this solver's launches have done before this one
 };
 
@@ -233,9 +243,10 @@ enum class Effects : std::uint8_t
   none = 0,  ///< neo-Hookean with scalar hourglass control
   fibres = 1,
   viscosity = 2,
-  forms = 4,    ///< other laws, hourglass controls and integrations
-  sliding = 8,  ///< on surfaces
-  tasks = 16    ///< what node_tasks.cuh has; goes with sliding, whose rare search is better called than compiled in
+  forms = 4,     ///< other laws, hourglass controls and integrations
+  sliding = 8,   ///< on surfaces
+  tasks = 16,    ///< what node_tasks.cuh has; goes with sliding, whose rare search is better called than compiled in
+  friction = 32  ///< of what slides
 };
 constexpr int voxel_sets = 8;  ///< of the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -244,14 +255,17 @@ constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(
 inline constexpr Effects built_effects =
     (built_with(Effect::fibre_stiffness) || built_with(Effect::contraction) ? Effects::fibres : Effects::none) |
     (built_with(Effect::viscosity) ? Effects::viscosity : Effects::none) | Effects::forms | Effects::tasks |
-    (built_with(Effect::sliding) ? Effects::sliding : Effects::none);
+    (built_with(Effect::sliding) ? Effects::sliding : Effects::none) |
+    (built_with(Effect::friction) ? Effects::friction : Effects::none);
 template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & built_effects & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
+/// What nodes do.
+inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
 /// What voxels that have neither fibres nor viscosity need of a kernel.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::forms | Effects::sliding | Effects::tasks);
+inline constexpr Effects plain_part = Set&(Effects::forms | of_nodes);
 /// What voxels need of one.
 constexpr Effects voxel_part(Effects set) { return set & (Effects::fibres | Effects::viscosity | Effects::forms); }
 

@@ -159,7 +159,7 @@ void draw(const std::vector<PresenceCost>& costs, const std::string& backend, co
 {
   Plot plot;
   plot.title = "An effect costs where it is: " + backend;
-  plot.x_label = "voxels (sliding: nodes of a face) that have it [%]";
+  plot.x_label = "voxels (sliding, friction: nodes of a face) that have it [%]";
   plot.y_label = "more than a step without it [%]";
   plot.key = "top left";
   for (const PresenceCost& cost : costs)

@@ -18,9 +18,10 @@ import tempfile
 EFFECTS = (("viscosity",), ("contraction", "fibre_stiffness"), ("gravity",), ("surface_loads",),
            ("prescribed_displacement",), ("rigid_nodes",), ("sliding", "friction"), ("friction",))
 STEPS = "frontalis::SteppingSolver::advance*"
-KERNELS = ("patch_kernel.cu", "patch_kernel_sliding.cu", "step_kernel.cu", "step_kernel_sliding.cu")
+KERNELS = tuple(kind + "_kernel" + nodes + ".cu" for kind in ("patch", "step")
+                for nodes in ("", "_sliding", "_friction"))
 # bits of Effects (cuda/step_kernel.hpp)
-KERNEL_BITS = {"contraction": 1, "fibre_stiffness": 1, "viscosity": 2, "sliding": 8}
+KERNEL_BITS = {"contraction": 1, "fibre_stiffness": 1, "viscosity": 2, "sliding": 8, "friction": 32}
 
 
 def commands_of(build):

@@ -43,16 +43,25 @@ void give(Model& model, Effect effect, double share)
       model.fibre_begin[e + 1] = static_cast<std::int32_t>(model.fibre_muscle.size());
     }
   }
-  if (effect == Effect::sliding)
+  if (effect == Effect::sliding || effect == Effect::friction)
   {
+    // where friction is measured all slide
+    const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
     ConstraintSurface floor;
-    floor.name = "floor";
+    floor.name = "smooth floor";
     floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
     floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
     model.constraint_surfaces.push_back(floor);
+    if (effect == Effect::friction && rows > 0)
+    {
+      floor.name = "rough floor";
+      floor.friction = 0.3;
+      model.constraint_surfaces.push_back(floor);
+    }
+    const auto rough = static_cast<std::int32_t>(model.constraint_surfaces.size()) - 1;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
-      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < rows)
-        model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
+      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < sliding_rows)
+        model.sliding.push_back({ static_cast<std::int32_t>(n), model.nodes[n][1] < rows ? rough : 0, 0 });
   }
 }
 
@@ -64,7 +73,8 @@ std::vector<PresenceCost> measure_presence(const SolverSettings& settings, doubl
   constexpr int rounds = 4;
   const std::vector<double> shares{ 0, 0.1, 0.5, 1 };
   std::vector<PresenceCost> costs;
-  for (const Effect effect : { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding })
+  for (const Effect effect :
+       { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding, Effect::friction })
   {
     std::vector<double> base;
     std::vector<std::vector<double>> more(shares.size());

@@ -3,6 +3,8 @@
 #include "block_model.hpp"
 #include "sphere_mesh.hpp"
 
+#include "frontalis/error.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -240,6 +242,92 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
     }
 }
 
+// A shell that spins on a ball: its nodes go from plane to plane, and what turns their velocities is a part of what
+// presses. `parts`: a rough third, a smooth one, and one on a rough ball that is a bone; else all of it is as rough.
+class SpinningShell : public Gliding
+{
+protected:
+  static constexpr std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
+
+  static Model model_of(bool parts, double friction)
+  {
+    Model model = shell(centre, friction);
+    model.gravity = {};
+    ConstraintSurface ball = model.constraint_surfaces[0];
+    model.constraint_surfaces[0].bone = -1;
+    if (!parts)
+      return model;
+    model.constraint_surfaces.push_back(ball);
+    ball.bone = -1;
+    ball.friction = 0;
+    model.constraint_surfaces.push_back(ball);
+    for (SlidingNode& node : model.sliding)
+      node.surface = model.nodes[node.node][2] < 5 ? 0 : model.nodes[node.node][2] > 9 ? 1 : 2;
+    return model;
+  }
+
+  std::unique_ptr<Solver> spinning(const Model& model, Backend backend, bool ledger = false) const
+  {
+    auto solver = make_solver(std::make_shared<const Model>(model), { backend, 0, 0, ledger });
+    Vectors v(model.nodes.size());
+    for (std::size_t n = 0; n < v.size(); ++n)
+    {
+      const auto p = test::rest(model, n);
+      v[n] = { { -60 * (p[1] - centre[1]), 60 * (p[0] - centre[0]), 0 } };
+    }
+    solver->set_velocities(v);
+    return solver;
+  }
+
+  static double spin_after(Solver& solver, const Model& model, double seconds)
+  {
+    Vectors u;
+    solver.advance(seconds, solver.controls());
+    solver.displacements(u);
+    return spin(model, u, centre, { { 0, 0, 0 } });
+  }
+};
+
+TEST_P(SpinningShell, IsBrakedByFrictionAsInTheReference)
+{
+  const Model smooth = model_of(false, 0);
+  const double free = spin_after(*spinning(smooth, GetParam()), smooth, 20e-3);
+  for (const bool parts : { false, true })
+  {
+    const Model model = model_of(parts, 1.5);
+    const double braked = spin_after(*spinning(model, GetParam()), model, 20e-3);
+    EXPECT_LT(braked, (parts ? 0.92 : 0.8) * free);
+    EXPECT_NEAR(braked, spin_after(*spinning(model, Backend::reference), model, 20e-3), 0.01 * braked);
+  }
+}
+
+TEST_P(SpinningShell, LosesToFrictionWhatItDoesInTheReference)
+{
+  for (const bool parts : { false, true })
+  {
+    const Model model = model_of(parts, 1.5);
+    const auto here = spinning(model, GetParam(), true), there = spinning(model, Backend::reference, true);
+    here->advance(10e-3, here->controls());
+    there->advance(10e-3, there->controls());
+    const EnergyLedger ledger = here->ledger();
+    EXPECT_GT(ledger.friction, 0.2 * ledger.initial);
+    EXPECT_NEAR(ledger.friction, there->ledger().friction, 0.02 * ledger.friction);
+    EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.initial);
+  }
+}
+
+TEST_P(SpinningShell, GoesOnInAnotherSolverThatHasTheSameFriction)
+{
+  const Model model = model_of(true, 1.5);
+  const auto one = spinning(model, GetParam()), other = spinning(model, GetParam());
+  spin_after(*one, model, 5e-3);
+  const std::string bytes = one->pack();
+  other->unpack(bytes);
+  EXPECT_EQ(spin_after(*one, model, 5e-3), spin_after(*other, model, 5e-3));
+  EXPECT_THROW(spinning(model_of(true, 0), GetParam())->unpack(bytes), Error);
+  EXPECT_THROW(other->unpack(spinning(model_of(true, 0), GetParam())->pack()), Error);
+}
+
 TEST_P(Gliding, SameInputSameBits)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
@@ -259,3 +347,4 @@ TEST_P(Gliding, SameInputSameBits)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Gliding, testing::ValuesIn(available_backends()), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, SpinningShell, testing::ValuesIn(available_backends()), test::backend_name);

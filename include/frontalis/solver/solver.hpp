@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Of motions: raised whenever the same model and controls give another one than before (other steps, other laws) or
 /// Solver::pack() other bytes. What was kept of another generation is not taken for this one's.
-constexpr int motion_generation = 8;
+constexpr int motion_generation = 9;
 
 enum class Backend
 {

@@ -9,12 +9,12 @@
 namespace frontalis
 {
 
-/// What an effect costs a step where a share of the voxels (of the nodes of a face: sliding) has it.
+/// What an effect costs a step where a share of the voxels (of the nodes of a face: sliding, friction) has it.
 struct PresenceCost
 {
   Effect effect;
   double share;   ///< of voxels or nodes, 0..1
-  double step;    ///< more than without it [s]
+  double step;    ///< more than without it (friction: than a face that slides) [s]
   double spread;  ///< half of what lies between the quartiles [s]
   double base;    ///< of a step without it [s]
 };
