@@ -1,5 +1,4 @@
-#include "bone_pose.cuh"
-#include "node_tasks.cuh"
+#include "sliding_nodes.cuh"
 
 namespace frontalis
 {

@@ -142,8 +142,10 @@ double CudaSolver::run(const StepPlan& plan)
     if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
-  require(launch_renewals(g, stream_), "renewing contacts");
   const bool from_plan_to_plan = g.searches > 0;
+  // in patches nodes that have planes find others within steps
+  if (from_plan_to_plan || plans_ == 0)
+    require(launch_renewals(g, stream_), "renewing contacts");
   if (from_plan_to_plan)
   {
     require(cudaEventRecord(asked_, stream_), "recording an event");

@@ -303,9 +303,9 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before a plan: sliding and gliding nodes that have left their planes find new ones at once. In strips they take
-/// those that were found for them first, where they need them, and who will want another before the next plan ends asks
-/// for it.
+/// Before a plan, in patches before the first: sliding and gliding nodes that have left their planes find new ones at
+/// once. In strips they take those that were found for them first, where they need them, and who will want another
+/// before the next plan ends asks for it.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
 /// What was asked for; runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);

@@ -197,13 +197,15 @@ void bench_effects(const BenchOptions& options)
                 tenths(100 * cost.step / whole) });
   }
   std::printf("%s", table.text().c_str());
+  if (model)
+  {
+    const ActivationCost cost = measure_activation(model, settings, seconds);
+    std::printf("one muscle active: %.2f us a step; all: %.2f us; spread of the difference %.2f us\n", 1e6 * cost.one,
+                1e6 * cost.all, 1e6 * cost.spread);
+  }
+  // last: nothing that was measured is lost where it cannot be drawn
   if (!plot.empty())
     draw(costs, options.backend, plot);
-  if (!model)
-    return;
-  const ActivationCost cost = measure_activation(model, settings, seconds);
-  std::printf("one muscle active: %.2f us a step; all: %.2f us; spread of the difference %.2f us\n", 1e6 * cost.one,
-              1e6 * cost.all, 1e6 * cost.spread);
 }
 
 void bench(const BenchOptions& options)
