@@ -1,19 +1,19 @@
 #include "frontalis/bake/bake.hpp"
 
-#include "bind_points.hpp"
-#include "fibres.hpp"
-#include "fibre_families.hpp"
+#include "bake/voxels/bind_points.hpp"
+#include "bake/fibres/fibres.hpp"
+#include "bake/fibres/fibre_families.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
-#include "length_text.hpp"
-#include "local_frame.hpp"
-#include "muscle_volumes.hpp"
-#include "restricted_nodes.hpp"
-#include "spread_points.hpp"
-#include "surface.hpp"
-#include "volume_probe.hpp"
-#include "volumes.hpp"
-#include "voxelise.hpp"
+#include "bake/length_text.hpp"
+#include "bake/voxels/local_frame.hpp"
+#include "bake/fibres/muscle_volumes.hpp"
+#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/spread_points.hpp"
+#include "bake/mesh/surface.hpp"
+#include "bake/voxels/volume_probe.hpp"
+#include "bake/voxels/volumes.hpp"
+#include "bake/voxels/voxelise.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ namespace
 {
 
 /// Refuses volumes without a point in the tissue and says how much of each muscle was clipped.
-void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, Stages& stages)
+void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeStages& stages)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
   {
@@ -109,7 +109,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     *report = {};
     report->measure_muscles = measure;
   }
-  Stages stages(report, progress);
+  BakeStages stages(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
     throw Error(scene.file + ": accuracy: samples is " + std::to_string(scene.accuracy.samples) +
                 "; 1 to 32 are meant");

@@ -1,6 +1,6 @@
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
-#include "local_frame.hpp"
+#include "bake/voxels/local_frame.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vector.hpp"
+#include "bake/vector.hpp"
 
 #include <cstdio>
 #include <string>

@@ -1,4 +1,4 @@
-#include "parallel.hpp"
+#include "bake/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 namespace frontalis
 {
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, Stages* stages)
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, BakeStages* stages)
 {
   if (count == 0)
     return;
@@ -84,7 +84,7 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 }
 
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
-                     Stages* stages)
+                     BakeStages* stages)
 {
   parallel_for((count + grain - 1) / grain,
                [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); }, stages);

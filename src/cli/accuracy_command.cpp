@@ -1,5 +1,5 @@
-#include "accuracy_subject.hpp"
-#include "command.hpp"
+#include "cli/accuracy_subject.hpp"
+#include "cli/command.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -8,8 +8,8 @@
 #include <memory>
 
 #ifdef FRONTALIS_WITH_BAKE
-#include "interrupt.hpp"
-#include "progress.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
 
 #include <cstdio>
 #endif

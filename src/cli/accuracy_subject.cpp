@@ -1,9 +1,9 @@
 #ifdef FRONTALIS_WITH_BAKE
 // what a study of accuracy is of, from the command line
 
-#include "accuracy_subject.hpp"
-#include "command.hpp"
-#include "interrupt.hpp"
+#include "cli/accuracy_subject.hpp"
+#include "cli/command.hpp"
+#include "cli/interrupt.hpp"
 
 #include "frontalis/bake/bake.hpp"
 #include "frontalis/error.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model_source.hpp"
+#include "cli/model_source.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "activation_list.hpp"
+#include "cli/activation_list.hpp"
 
-#include "command.hpp"
+#include "cli/command.hpp"
 
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"

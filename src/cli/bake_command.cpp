@@ -1,5 +1,5 @@
-#include "command.hpp"
-#include "model_source.hpp"
+#include "cli/command.hpp"
+#include "cli/model_source.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"

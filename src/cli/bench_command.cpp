@@ -1,6 +1,6 @@
-#include "command.hpp"
-#include "model_source.hpp"
-#include "plot_path.hpp"
+#include "cli/command.hpp"
+#include "cli/model_source.hpp"
+#include "cli/plot_path.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"

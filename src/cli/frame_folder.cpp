@@ -1,4 +1,4 @@
-#include "frame_folder.hpp"
+#include "cli/frame_folder.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,5 +1,5 @@
-#include "command.hpp"
-#include "interrupt.hpp"
+#include "cli/command.hpp"
+#include "cli/interrupt.hpp"
 
 #include <CLI/CLI.hpp>
 

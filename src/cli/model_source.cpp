@@ -1,8 +1,8 @@
-#include "model_source.hpp"
+#include "cli/model_source.hpp"
 
-#include "command.hpp"
-#include "interrupt.hpp"
-#include "progress.hpp"
+#include "cli/command.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"

@@ -1,4 +1,4 @@
-#include "motion.hpp"
+#include "cli/motion.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/named_controls.hpp"

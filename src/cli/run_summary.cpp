@@ -1,4 +1,4 @@
-#include "run_summary.hpp"
+#include "cli/run_summary.hpp"
 
 #include "frontalis/study/table.hpp"
 

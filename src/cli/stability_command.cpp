@@ -1,7 +1,7 @@
-#include "chosen_cases.hpp"
-#include "interrupt.hpp"
-#include "progress.hpp"
-#include "stability_scenes.hpp"
+#include "cli/chosen_cases.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
+#include "cli/stability_scenes.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"

@@ -1,6 +1,6 @@
-#include "stability_scenes.hpp"
+#include "cli/stability_scenes.hpp"
 
-#include "model_source.hpp"
+#include "cli/model_source.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"

@@ -1,5 +1,5 @@
-#include "chosen_cases.hpp"
-#include "interrupt.hpp"
+#include "cli/chosen_cases.hpp"
+#include "cli/interrupt.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/verification.hpp"

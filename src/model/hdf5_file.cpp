@@ -1,4 +1,4 @@
-#include "hdf5_file.hpp"
+#include "model/hdf5_file.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/error.hpp"
-#include "hdf5_file.hpp"
+#include "model/hdf5_file.hpp"
 
 #include <cstring>
 #include <string>

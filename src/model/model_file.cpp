@@ -1,10 +1,10 @@
 #include "frontalis/model/model_file.hpp"
 
 #include "frontalis/error.hpp"
-#include "hdf5_file.hpp"
-#include "model_archive.hpp"
-#include "model_layout.hpp"
-#include "vtk_arrays.hpp"
+#include "model/hdf5_file.hpp"
+#include "model/model_archive.hpp"
+#include "model/model_layout.hpp"
+#include "model/vtk_arrays.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "vtk_arrays.hpp"
+#include "model/vtk_arrays.hpp"
 
 #include <cstddef>
 #include <string>

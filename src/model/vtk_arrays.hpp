@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
-#include "hdf5_file.hpp"
+#include "model/hdf5_file.hpp"
 
 namespace frontalis
 {

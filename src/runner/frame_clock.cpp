@@ -1,4 +1,4 @@
-#include "frame_clock.hpp"
+#include "runner/frame_clock.hpp"
 
 namespace frontalis
 {

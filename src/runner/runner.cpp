@@ -2,7 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/named_controls.hpp"
-#include "runner_implementation.hpp"
+#include "runner/runner_implementation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frame_clock.hpp"
+#include "runner/frame_clock.hpp"
 #include "frontalis/runner/runner.hpp"
 
 #include <chrono>

@@ -1,7 +1,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
-#include "runner_implementation.hpp"
+#include "runner/runner_implementation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "content.hpp"
+#include "scene/content.hpp"
 
-#include "quantity.hpp"
+#include "scene/quantity.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"

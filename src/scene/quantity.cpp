@@ -1,4 +1,4 @@
-#include "quantity.hpp"
+#include "scene/quantity.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "sections.hpp"
+#include "scene/sections.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "sections.hpp"
+#include "scene/sections.hpp"
 
 namespace frontalis
 {

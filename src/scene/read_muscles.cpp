@@ -1,6 +1,6 @@
-#include "sections.hpp"
+#include "scene/sections.hpp"
 
-#include "suggestion.hpp"
+#include "scene/suggestion.hpp"
 
 namespace frontalis
 {

@@ -1,7 +1,7 @@
 #include "frontalis/scene/read_scene.hpp"
 
-#include "content.hpp"
-#include "sections.hpp"
+#include "scene/content.hpp"
+#include "scene/sections.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "yaml_reader.hpp"
+#include "scene/yaml_reader.hpp"
 
 #include "frontalis/scene/read_scene.hpp"
 #include "frontalis/scene/scene.hpp"

@@ -1,4 +1,4 @@
-#include "suggestion.hpp"
+#include "scene/suggestion.hpp"
 
 #include <algorithm>
 #include <cstddef>

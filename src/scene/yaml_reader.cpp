@@ -1,6 +1,6 @@
-#include "yaml_reader.hpp"
+#include "scene/yaml_reader.hpp"
 
-#include "suggestion.hpp"
+#include "scene/suggestion.hpp"
 
 #include "frontalis/error.hpp"
 

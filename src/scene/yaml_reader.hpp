@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quantity.hpp"
+#include "scene/quantity.hpp"
 
 #include <yaml-cpp/yaml.h>
 

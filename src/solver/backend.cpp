@@ -1,10 +1,10 @@
 #include "frontalis/error.hpp"
-#include "stepping_solver.hpp"
+#include "solver/stepping/stepping_solver.hpp"
 
 #include <cmath>
 
 #if defined(FRONTALIS_WITH_CUDA)
-#include "cuda_backend.hpp"
+#include "cuda/backend/cuda_backend.hpp"
 #endif
 
 namespace frontalis

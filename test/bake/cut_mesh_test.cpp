@@ -1,4 +1,4 @@
-#include "../../src/bake/cut_mesh.hpp"
+#include "bake/mesh/cut_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // what is repaired in meshes and listed, and what is data; what is refused stands in test/model/bad
 
-#include "../../src/bake/load_surface.hpp"
-#include "../../src/bake/mesh_faults.hpp"
-#include "../../src/bake/mesh_repairs.hpp"
-#include "../../src/bake/surface.hpp"
+#include "bake/mesh/load_surface.hpp"
+#include "bake/mesh/mesh_faults.hpp"
+#include "bake/mesh/mesh_repairs.hpp"
+#include "bake/mesh/surface.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "../../src/bake/surface.hpp"
+#include "bake/mesh/surface.hpp"
 
 #include "bake/scene_pieces.hpp"
 

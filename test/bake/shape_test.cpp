@@ -1,4 +1,4 @@
-#include "../../src/bake/surface.hpp"
+#include "bake/mesh/surface.hpp"
 
 #include "frontalis/bake/forehead_shape.hpp"
 #include "frontalis/error.hpp"
@@ -169,7 +169,7 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
                      file_surface("mixed", write_box("mixed.obj", false, true)) };
   BakeReport report;
   const BakeProgress progress;
-  Stages stages(&report, progress);
+  BakeStages stages(&report, progress);
   for (const auto& surface : prepare_surfaces(scene, stages))
     EXPECT_NEAR(signed_volume(surface->mesh()), 1, 1e-6) << surface->name();
   const auto reported = [&](const std::string& name, const std::string& text)

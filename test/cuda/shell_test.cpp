@@ -1,4 +1,4 @@
-#include "../../src/study/gpu/shell_model.hpp"
+#include "study/bench/shell_model.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <gtest/gtest.h>

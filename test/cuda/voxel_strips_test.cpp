@@ -1,4 +1,4 @@
-#include "../../cuda/voxel_strips.hpp"
+#include "cuda/partition/voxel_strips.hpp"
 #include "block_model.hpp"
 #include "frontalis/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "../../src/solver/surface_contact.hpp"
+#include "solver/contact/surface_contact.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "../../src/solver/surface_tree.hpp"
+#include "solver/contact/surface_tree.hpp"
 #include "backends.hpp"
 #include "block_model.hpp"
 #include "sphere_mesh.hpp"

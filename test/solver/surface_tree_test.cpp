@@ -1,4 +1,4 @@
-#include "../../src/solver/surface_tree.hpp"
+#include "solver/contact/surface_tree.hpp"
 
 #include "sphere_mesh.hpp"
 

@@ -45,7 +45,7 @@ struct SolverSettings
   double sleep = 0;
 };
 
-/// What drives the model from outside.
+/// What constraint_steps the model from outside.
 struct Controls
 {
   std::vector<float> activation;     ///< one a muscle, 0..1

@@ -1,0 +1,252 @@
+#include "cuda/backend/cuda_solver.hpp"
+
+#include "cuda/backend/cuda_backend.hpp"
+#include "cuda/backend/highest_frequency.hpp"
+#include "cuda/backend/launch_choice.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+    : SteppingSolver(std::move(model), settings),
+      device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
+      skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
+      landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
+{
+  for (auto& buffer : u_)
+    buffer = DeviceArray<float4>(device_.nodes());
+  for (auto& component : v_)
+    component = DeviceArray<float>(device_.nodes());
+  const std::size_t points = 3 * (2 * skin_.vertices() + landmarks_.vertices());
+  skin_output_ = DeviceArray<float>(points);
+  skin_staged_ = PinnedArray<float>(points);
+  std::vector<std::uint32_t> still;
+  for (const auto node : device_.still_nodes())
+    still.push_back(device_.device_node()[node]);
+  still_ = DeviceArray<std::uint32_t>(still);
+  // ordered with the default stream, so that events recorded there enclose this solver's work
+  require(cudaStreamCreate(&stream_), "making a stream");
+  require(cudaStreamCreateWithFlags(&beside_, cudaStreamNonBlocking), "making a stream");
+  for (cudaEvent_t* const event : { &asked_, &found_ })
+    require(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "making an event");
+  const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2) +
+                               (discretisation_.viscous_terms > 0 ? 128 * sizeof(float) : 0);
+  for (auto& slot : slots_)
+  {
+    slot.staged = PinnedArray<char>(controls);
+    slot.controls = DeviceArray<char>(controls);
+    slot.seen = PinnedArray<std::uint32_t>(1);
+    slot.seen.data()[0] = 0;
+    require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
+  }
+  if (model_->muscles.size() > most_muscles)
+    throw Error("backend cuda: " + std::to_string(model_->muscles.size()) + " muscles; allowed are " +
+                std::to_string(most_muscles));
+  launch_ = choose_launch(device_);
+  if (wants_ledger_)
+  {
+    account_ = std::make_unique<DeviceAccount>(*model_, device_);
+    device_.viscosity().keep_account();
+  }
+  rest();
+}
+
+CudaSolver::~CudaSolver()
+{
+  if (stream_ != nullptr)
+    cudaStreamSynchronize(stream_);
+  for (auto& slot : slots_)
+    if (slot.done != nullptr)
+      cudaEventDestroy(slot.done);
+  for (const auto event : { asked_, found_ })
+    if (event != nullptr)
+      cudaEventDestroy(event);
+  for (const auto stream : { stream_, beside_ })
+    if (stream != nullptr)
+      cudaStreamDestroy(stream);
+}
+
+void CudaSolver::upload_displacements(const Vectors* in, DeviceArray<float4>& to) const
+{
+  std::vector<float4> u(device_.nodes(), float4{ 0, 0, 0, 0 });
+  for (std::size_t n = 0; n < model_->nodes.size(); ++n)
+  {
+    const auto x = in == nullptr ? std::array<double, 3>{ { 0, 0, 0 } } : (*in)[n];
+    u[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
+                                    static_cast<float>(1 / discretisation_.node_mass[n]) };
+  }
+  for (const auto node : device_.still_nodes())
+    u[device_.device_node()[node]].w = 0;
+  to.upload(u.data(), u.size());
+}
+
+void CudaSolver::rest()
+{
+  synchronise();
+  present_ = 0;
+  plans_ = 0;
+  still_moved_ = false;
+  upload_displacements(nullptr, u_[0]);
+  require(cudaMemcpy(u_[1].data(), u_[0].data(), u_[0].bytes(), cudaMemcpyDeviceToDevice), "copying on the device");
+  for (auto& component : v_)
+    require(cudaMemset(component.data(), 0, component.bytes()), "clearing velocities");
+  device_.reset_contacts();
+  device_.viscosity().reset();
+  mode_.reset();
+  require(cudaDeviceSynchronize(), "coming to rest");
+}
+
+void CudaSolver::effect_switched(Effect effect)
+{
+  synchronise();
+  device_.run(*model_, discretisation_, effects());
+  launch_ = choose_launch(device_);
+  if (loads_)
+    loads_->run(effects());
+  if (effect == Effect::viscosity)
+    device_.viscosity().reset();
+  if (effect == Effect::sliding || effect == Effect::friction)
+    device_.reset_contacts();
+  // what the plans under way saw is of no use any more
+  plans_ = 0;
+}
+
+void CudaSolver::list_allocations(AllocationList& list) const
+{
+  device_.list_allocations(effect_of_fibres(), list);
+  for (const auto& u : u_)
+    list.add(Effect::elasticity, "motion", u.bytes());
+  for (const auto& v : v_)
+    list.add(Effect::elasticity, "motion", v.bytes());
+  list.add(Effect::elasticity, "skin", skin_.bytes() + landmarks_.bytes() + skin_output_.bytes());
+  list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
+  for (const auto& slot : slots_)
+    list.add(Effect::elasticity, "controls", slot.controls.bytes());
+  if (account_)
+    account_->list_allocations(effect_of_fibres(), list);
+  if (monitor_)
+    list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
+  if (mode_)
+    list.add(Effect::elasticity, "mode of the highest frequency", mode_->bytes());
+  if (loads_)
+    loads_->list_allocations(list);
+}
+
+void CudaSolver::set_displacements(const Vectors& in)
+{
+  rest();
+  upload_displacements(&in, u_[present_]);
+  still_moved_ = true;
+  displacements_were_set();
+}
+
+void CudaSolver::set_velocities(const Vectors& in)
+{
+  synchronise();
+  std::vector<float> component(device_.nodes(), 0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (std::size_t n = 0; n < in.size(); ++n)
+      component[device_.device_node()[n]] = static_cast<float>(in[n][axis]);
+    for (const auto node : device_.still_nodes())
+      component[device_.device_node()[node]] = 0;
+    v_[axis].upload(component.data(), component.size());
+  }
+  velocities_were_set();
+}
+
+void CudaSolver::displacements(Vectors& out) const
+{
+  synchronise();
+  download(u_[present_], out);
+}
+
+void CudaSolver::download(const DeviceArray<float4>& field, Vectors& out) const
+{
+  std::vector<float4> values;
+  field.download(values);
+  out.resize(model_->nodes.size());
+  for (std::size_t n = 0; n < out.size(); ++n)
+  {
+    const float4& x = values[device_.device_node()[n]];
+    out[n] = { { x.x, x.y, x.z } };
+  }
+}
+
+void CudaSolver::velocities(Vectors& out) const
+{
+  synchronise();
+  out.resize(model_->nodes.size());
+  std::vector<float> component;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    v_[axis].download(component);
+    for (std::size_t n = 0; n < out.size(); ++n)
+      out[n][axis] = component[device_.device_node()[n]];
+  }
+}
+
+void CudaSolver::skin(SkinState& out)
+{
+  const float4* const u = u_[present_].data();
+  const std::size_t vertices = skin_.vertices(), landmarks = landmarks_.vertices();
+  float* const positions = skin_output_.data();
+  require(launch_place(skin_.view(), u, positions, stream_), "placing the skin");
+  require(launch_normals(skin_.view(), positions, positions + 3 * vertices, stream_), "normals of the skin");
+  require(launch_place(landmarks_.view(), u, positions + 6 * vertices, stream_), "placing landmarks");
+  require(cudaMemcpyAsync(skin_staged_.data(), positions, skin_output_.bytes(), cudaMemcpyDeviceToHost, stream_),
+          "copying the skin");
+  synchronise();
+  const auto take = [](std::vector<std::array<float, 3>>& to, std::size_t count, const float* from)
+  {
+    to.resize(count);
+    if (count > 0)
+      std::memcpy(to.data(), from, count * sizeof(to[0]));
+  };
+  take(out.vertices, vertices, skin_staged_.data());
+  take(out.normals, vertices, skin_staged_.data() + 3 * vertices);
+  take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
+}
+
+std::string CudaSolver::description() const
+{
+  cudaDeviceProp device{};
+  require(cudaGetDeviceProperties(&device, 0), "asking for the device");
+  return std::string("cuda (float, ") + device.name + ", " +
+         (launch_.patches ? std::to_string(device_.patches()) + " patches"
+                          : std::to_string(device_.strips()) + " strips, " +
+                                std::to_string(std::lround(100 * device_.filled())) + " % filled") +
+         computes_all() + ")";
+}
+
+}  // namespace cuda
+
+std::string missing_cuda_device()
+{
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess)
+  {
+    cudaGetLastError();
+    return cudaGetErrorString(status);
+  }
+  return count > 0 ? std::string() : "no CUDA device found";
+}
+
+std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+{
+  const std::string missing = missing_cuda_device();
+  if (!missing.empty())
+    throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
+  auto solver = std::make_unique<cuda::CudaSolver>(std::move(model), settings);
+  if (settings.ledger)
+    solver->reset();
+  return solver;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,104 @@
+#pragma once
+
+#include "cuda/backend/device_account.hpp"
+#include "cuda/backend/device_monitor.hpp"
+#include "cuda/backend/device_model.hpp"
+#include "solver/stepping/nodal_loads.hpp"
+#include "solver/stepping/stepping_solver.hpp"
+
+#include <memory>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// One plan's worth of controls on its way to the device, and what is seen at its end.
+struct PlanSlot
+{
+  PinnedArray<char> staged;
+  DeviceArray<char> controls;
+  PinnedArray<std::uint32_t> seen;
+  cudaEvent_t done = nullptr;
+};
+
+/// Float, on one NVIDIA GPU. Steps are queued and not waited for: what a plan's last step saw of the time step rules
+/// the plan after the next, and the host waits only for that and where it asks for results.
+class CudaSolver : public SteppingSolver
+{
+public:
+  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
+  ~CudaSolver() override;
+
+  void skin(SkinState& out) override;
+  void displacements(Vectors& out) const override;
+  void set_displacements(const Vectors& in) override;
+  void set_velocities(const Vectors& in) override;
+  void internal_forces(Vectors& out) override { forces(u_[present_].data(), out); }
+  /// Both wait for the device: some 40 us, where a step of a small model takes 2.
+  int steps_a_check() const override { return 2048; }
+  std::string description() const override;
+
+protected:
+  double run(const StepPlan& plan) override;
+  void save_fields(std::unique_ptr<Fields>& to) const override;
+  void restore_fields(const Fields& from) override;
+  int steps_a_plan() const override;
+  /// The host's look at millions of nodes takes as long as some hundred of their steps.
+  int steps_a_look() const override { return model_->nodes.size() > 1000000 ? 2048 : 512; }
+  void rest() override;
+  void effect_switched(Effect effect) override;
+  void list_allocations(AllocationList& list) const override;
+  void velocities(Vectors& out) const override;
+  void forces_at(const Vectors& at, Vectors& out) override;
+  double assembled_frequency_squared(int most_iterations) override;
+  void external_forces(Vectors& out) override;
+  void open_account() override;
+  Work work() override;
+  Monitor measure() override;
+
+private:
+  static constexpr int plan_slots = 3;
+
+  StepArguments arguments(double dt) const;
+  void kick(StepArguments& g, double seconds) const;
+  void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
+  void step(StepArguments& g, int begin, int end);
+  void do_steps(StepArguments& g, int begin, int end);
+  void forces(float4* at, Vectors& out);
+  void queue_forces(float4* at, const float* activation, float4* out);
+  void download(const DeviceArray<float4>& field, Vectors& out) const;
+  void upload_displacements(const Vectors* in, DeviceArray<float4>& to) const;
+  void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
+
+  struct Kept;
+  struct Mode;
+  struct ModeDeleter
+  {
+    void operator()(Mode* mode) const;
+  };
+
+  DeviceModel device_;
+  DeviceArray<float4> u_[2];
+  DeviceArray<float> v_[3];
+  DeviceSurface skin_, landmarks_;
+  DeviceArray<float> skin_output_;  // vertices, normals, landmarks
+  PinnedArray<float> skin_staged_;
+  DeviceArray<std::uint32_t> still_;  // device nodes that never move
+  std::uint32_t steps_before_ = 0;    // steps that the device was asked for
+  cudaStream_t stream_ = nullptr;
+  cudaStream_t beside_ = nullptr;  // what runs beside a plan's steps, all of it between these events
+  cudaEvent_t asked_ = nullptr, found_ = nullptr;
+  PlanSlot slots_[plan_slots];
+  std::int64_t plans_ = 0;
+  int present_ = 0;           // buffer that holds the displacements now
+  bool still_moved_ = false;  // displacements were set from outside, those of still nodes too
+  StepLaunch launch_{};
+  std::unique_ptr<DeviceAccount> account_;
+  std::unique_ptr<DeviceMonitor> monitor_;   // made when it is asked for
+  std::unique_ptr<NodalLoads> loads_;        // on the host, where somebody asks for them
+  std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
+};
+
+}  // namespace cuda
+}  // namespace frontalis

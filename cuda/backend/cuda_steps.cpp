@@ -1,0 +1,289 @@
+#include "cuda/backend/cuda_solver.hpp"
+
+#include "frontalis/physics/sliding.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// A plane is found in some ten microseconds: longer leads miss more often where nodes will be.
+constexpr double steps_of_lead = 10;
+
+void CudaSolver::kick(StepArguments& g, double seconds) const
+{
+  g.kick = seconds;
+  g.keep = static_cast<float>(keep(seconds));
+  g.gain = static_cast<float>(gain(seconds));
+  for (int axis = 0; axis < 3; ++axis)
+    g.impulse[axis] = static_cast<float>(gain(seconds) * gravity_[axis]);
+}
+
+StepArguments CudaSolver::arguments(double dt) const
+{
+  StepArguments g = device_.arguments();
+  for (int buffer = 0; buffer < 2; ++buffer)
+    g.u[buffer] = u_[buffer].data();
+  for (int axis = 0; axis < 3; ++axis)
+    g.v[axis] = v_[axis].data();
+  if (account_)
+    account_->describe(g);
+  g.first = present_;
+  g.dt = static_cast<float>(dt);
+  g.dt_exact = dt;
+  g.rate = 1 / dt;
+  g.friction_response = physics::friction_response(dt);
+  g.lead = g.searches == 0 ? static_cast<float>(steps_of_lead * dt) : 0;
+  kick(g, dt);
+  return g;
+}
+
+// look (cleared), activations, poses, seconds by which viscous stresses relax within launches (none of them: empty):
+// one copy through page-locked memory
+void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
+{
+  const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
+  const std::size_t poses_at = sizeof(double) * (1 + muscles);
+  const std::size_t relaxation_at = poses_at + sizeof(double) * 12 * (plan.steps + 1) * bones;
+  const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
+  if (bytes > slot.staged.size())
+  {
+    slot.staged = PinnedArray<char>(bytes);
+    slot.controls = DeviceArray<char>(bytes);
+  }
+  char* const staged = slot.staged.data();
+  std::memset(staged, 0, sizeof(double));
+  if (muscles > 0)
+  {
+    const std::vector<float> none(runs(Effect::contraction) ? 0 : muscles, 0);
+    const float* const begin = none.empty() ? plan.begin.activation.data() : none.data();
+    const float* const end = none.empty() ? plan.end.activation.data() : none.data();
+    std::memcpy(staged + sizeof(double), begin, muscles * sizeof(float));
+    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), end, muscles * sizeof(float));
+  }
+  for (int step = 0; bones > 0 && step <= plan.steps; ++step)
+  {
+    const std::vector<RigidTransform> poses = step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone;
+    for (std::size_t b = 0; b < bones; ++b)
+    {
+      char* const pose = staged + poses_at + sizeof(double) * 12 * (step * bones + b);
+      std::memcpy(pose, poses[b].rotation.data(), 9 * sizeof(double));
+      std::memcpy(pose + 9 * sizeof(double), poses[b].translation.data(), 3 * sizeof(double));
+    }
+  }
+  if (!relaxation.empty())
+    std::memcpy(staged + relaxation_at, relaxation.data(), sizeof(float) * relaxation.size());
+  require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
+  char* const controls = slot.controls.data();
+  g.look = reinterpret_cast<std::uint32_t*>(controls);
+  g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
+  g.activation_end = g.activation_begin + muscles;
+  g.poses = reinterpret_cast<const double*>(controls + poses_at);
+  g.relaxation = relaxation.empty() ? nullptr : reinterpret_cast<const float*>(controls + relaxation_at);
+}
+
+void CudaSolver::step(StepArguments& g, int begin, int end)
+{
+  g.step_begin = begin;
+  g.step_end = end;
+  g.first = present_;
+  g.steps_before = steps_before_;
+  require(launch_steps(g, launch_, stream_), "launching steps");
+  steps_before_ += static_cast<std::uint32_t>(end - begin);
+  present_ = (present_ + end - begin) & 1;
+}
+
+// as many steps in one launch as nothing has to be done between them
+void CudaSolver::do_steps(StepArguments& g, int begin, int end)
+{
+  if (launch_.patches && !account_ && !device_.loads().follow())
+    return step(g, begin, end);
+  for (int s = begin; s < end; ++s)
+  {
+    device_.loads().update(u_[present_].data(), stream_);
+    g.first = present_;
+    if (account_)
+      account_->before_step(g, s, stream_);
+    step(g, s, s + 1);
+    if (account_)
+      account_->after_step(g, damping_, s, stream_);
+  }
+}
+
+// long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
+// enough. Contacts that are found from plan to plan want plans just as long as it takes to find them.
+int CudaSolver::steps_a_plan() const
+{
+  return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, device_.contacts() > 0 ? 64.0 : 128.0));
+}
+
+double CudaSolver::run(const StepPlan& plan)
+{
+  PlanSlot& slot = slots_[plans_ % plan_slots];
+  StepArguments g = arguments(plan.dt);
+  g.time = plan.time;
+  g.steps = plan.steps;
+  g.look_always = plan.closely;
+  const bool relaxes = !device_.viscosity().idle();
+  const std::vector<double> elapsed = relaxes ? relaxations(plan) : std::vector<double>(plan.steps, 0);
+  // patches relax their viscous stresses themselves, where nobody asks for their work
+  std::vector<float> relaxation;
+  if (launch_.patches && !account_ && relaxes)
+  {
+    relaxation.push_back(0);
+    relaxation.insert(relaxation.end(), elapsed.begin(), elapsed.end() - 1);
+  }
+  stage(plan, relaxation, slot, g);
+  const auto relax_after = [&](int step)
+  {
+    if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
+      device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
+  };
+  const bool from_plan_to_plan = g.searches > 0;
+  // in patches nodes that have planes find others within steps
+  if (from_plan_to_plan || plans_ == 0)
+    require(launch_renewals(g, stream_), "renewing contacts");
+  if (from_plan_to_plan)
+  {
+    require(cudaEventRecord(asked_, stream_), "recording an event");
+    require(cudaStreamWaitEvent(beside_, asked_), "waiting for an event");
+    require(launch_renewals_ahead(g, beside_), "renewing contacts ahead");
+    require(cudaEventRecord(found_, beside_), "recording an event");
+  }
+  int done = 0;
+  if (still_moved_ || plan.first_kick != plan.dt)
+  {
+    const int before = present_;
+    kick(g, plan.first_kick);
+    do_steps(g, 0, 1);
+    kick(g, plan.dt);
+    if (still_moved_)
+      require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
+              "holding still nodes");
+    still_moved_ = false;
+    done = 1;
+    relax_after(0);
+  }
+  while (done < plan.steps)
+  {
+    int end = done + 1;
+    while (end < plan.steps && (!relaxation.empty() || elapsed[end - 1] == 0))
+      ++end;
+    do_steps(g, done, end);
+    relax_after(end - 1);
+    done = end;
+  }
+  if (from_plan_to_plan)
+    require(cudaStreamWaitEvent(stream_, found_), "waiting for an event");
+  require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
+          "copying the frequency bound");
+  require(cudaEventRecord(slot.done, stream_), "recording an event");
+  ++plans_;
+  const auto seen = [&](std::int64_t index)
+  {
+    const PlanSlot& of = slots_[index % plan_slots];
+    require(cudaEventSynchronize(of.done), "stepping");
+    float squared = 0;
+    std::memcpy(&squared, of.seen.data(), sizeof squared);
+    return double(squared);
+  };
+  // the plan before, so that the device is never without work; its own where there is none or motion changes fast
+  if (plans_ == 1 || plan.awaited)
+    return seen(plans_ - 1);
+  const double before = seen(plans_ - 2);
+  return before > plan.alarm ? seen(plans_ - 1) : before;
+}
+
+// internal forces at other displacements; `out` must hold zeros where no voxel is
+void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
+{
+  StepArguments g = arguments(0);
+  g.activation_begin = g.activation_end = activation;
+  g.steps = 1;
+  g.forces_only = true;
+  const int present = present_;
+  g.u[present] = at;
+  g.u[1 - present] = out;
+  step(g, 0, 1);
+  present_ = present;
+}
+
+void CudaSolver::forces(float4* at, Vectors& out)
+{
+  synchronise();
+  const DeviceArray<float> activation(felt_activation());
+  const DeviceArray<float4> forces(device_.nodes());
+  require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
+  queue_forces(at, activation.data(), forces.data());
+  synchronise();
+  download(forces, out);
+}
+
+void CudaSolver::forces_at(const Vectors& at, Vectors& out)
+{
+  DeviceArray<float4> u(device_.nodes());
+  upload_displacements(&at, u);
+  forces(u.data(), out);
+}
+
+void CudaSolver::external_forces(Vectors& out)
+{
+  out.assign(model_->nodes.size(), {});
+  if (!loads_)
+  {
+    loads_ = std::make_unique<NodalLoads>(*model_, discretisation_);
+    loads_->run(effects());
+  }
+  if (loads_->idle())
+    return;
+  Vectors u;
+  displacements(u);
+  std::vector<double> component[3];
+  for (int axis = 0; axis < 3; ++axis)
+    for (const auto& x : u)
+      component[axis].push_back(x[axis]);
+  const double* const pointers[3] = { component[0].data(), component[1].data(), component[2].data() };
+  loads_->update(time(), pointers);
+  for (std::size_t l = 0; l < loads_->nodes().size(); ++l)
+    out[loads_->nodes()[l]] = loads_->forces()[l];
+}
+
+// the account begins with what fibres and viscous stresses do now
+void CudaSolver::open_account()
+{
+  synchronise();
+  StepArguments g = arguments(0);
+  const DeviceArray<float> activation(felt_activation());
+  g.activation_begin = g.activation_end = activation.data();
+  g.steps = 1;
+  account_->open(g, u_[present_].data(), stream_);
+  device_.viscosity().reset_account();
+  synchronise();
+}
+
+Work CudaSolver::work()
+{
+  StepArguments g = arguments(0);
+  const DeviceArray<float> activation(felt_activation());
+  g.activation_begin = g.activation_end = activation.data();
+  g.steps = 1;
+  account_->look(g, u_[present_].data(), 0, stream_);
+  device_.viscosity().relax(arguments(0), u_[present_].data(), u_[1 - present_].data(), 0, stream_);
+  synchronise();
+  Work work = account_->work();
+  work.viscous = device_.viscosity().work();
+  return work;
+}
+
+Monitor CudaSolver::measure()
+{
+  if (!monitor_)
+    monitor_ = std::make_unique<DeviceMonitor>(*model_, device_);
+  return monitor_->look(arguments(0), u_[present_].data(), stream_);
+}
+
+}  // namespace cuda
+}  // namespace frontalis

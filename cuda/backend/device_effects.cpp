@@ -1,0 +1,150 @@
+#include "cuda/backend/device_model.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// Arrays keep their sizes and say less: a strip has no fibres, a muscle no passive part, a node nothing to do.
+
+std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
+{
+  std::vector<std::uint32_t> words;
+  const bool passive = running.has(Effect::fibre_stiffness);
+  for (const auto m : model.fibre_muscle)
+  {
+    const Muscle& muscle = model.muscles[m];
+    words.push_back(static_cast<std::uint32_t>(m) | (muscle.tension_length ? 0x40000000u : 0) |
+                    (muscle.passive && passive ? 0x80000000u : 0));
+  }
+  return words;
+}
+
+void DeviceModel::run(const Model& model, const Discretisation& discretisation, EffectSet running)
+{
+  if (whole_.strips.empty() && whole_.patch_tasks.empty())
+  {
+    strips_.download(whole_.strips);
+    tasks_.download(whole_.tasks);
+    patch_tasks_.download(whole_.patch_tasks);
+  }
+  viscosity_.run(running);
+  viscosity_.describe(constants_);
+  loads_.run(running);
+  constants_.load_relief = running.has(Effect::gravity) ? loads_.relief() : nullptr;
+  run_fibres(model, discretisation, running);
+  run_tasks(running);
+  choose_effects(running);
+}
+
+void DeviceModel::run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running)
+{
+  if (fibre_muscle_.size() == 0)
+    return;
+  const auto words = muscle_words(model, running);
+  fibre_muscle_.upload(words.data(), words.size());
+  const bool any = running.has(Effect::contraction) || running.has(Effect::fibre_stiffness);
+  constants_.fibres = any ? fibres_.data() : nullptr;
+  auto strips = whole_.strips;
+  for (Strip& strip : strips)
+    if (!any)
+      strip.fibre_begin = Strip::none;
+  strips_.upload(strips.data(), strips.size());
+
+  // what the bound of the stiffness allows for
+  std::vector<float4> palette;
+  palette_.download(palette);
+  for (float4& entry : palette)
+    entry.w = 0;
+  VoxelProperties voxel;
+  for (std::size_t e = 0; e < palette_of_voxel_.size(); ++e)
+  {
+    discretisation.voxel(e, voxel);
+    float& bound = palette[palette_of_voxel_[e]].w;
+    bound = std::max(bound, static_cast<float>(voxel.stiffness));
+  }
+  palette_.upload(palette.data(), palette.size());
+}
+
+void DeviceModel::run_tasks(EffectSet running)
+{
+  const bool slides = running.has(Effect::sliding);
+  auto tasks = whole_.tasks;
+  for (NodeTask& task : tasks)
+  {
+    if (loads_.idle())
+      task.of[node_load] = -1;
+    if (!slides)
+      task.of[node_sliding] = task.of[node_gliding] = -1;
+  }
+  tasks_.upload(tasks.data(), tasks.size());
+  effects_ = voxel_part(effects_) | node_part(tasks);
+  auto words = whole_.patch_tasks;
+  for (std::int32_t& word : words)
+    if (!slides && word >= 0)
+      word = patch_task::none;
+  patch_tasks_.upload(words.data(), words.size());
+  constants_.sliding_count = slides ? static_cast<std::uint32_t>(sliding_.size()) : 0;
+  constants_.gliding_count = slides ? static_cast<std::uint32_t>(gliding_.size()) : 0;
+  constants_.rubbing_count = slides && running.has(Effect::friction) ? static_cast<std::uint32_t>(rubbing_.size()) : 0;
+}
+
+// what the kernels must know of what nodes do
+Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
+{
+  Effects part = Effects::none;
+  for (const NodeTask& task : tasks)
+  {
+    if (task.of[node_sliding] >= 0 || task.of[node_gliding] >= 0)
+      part = part | Effects::sliding;
+    const bool any = std::any_of(std::begin(task.of), std::end(task.of), [](std::int32_t index) { return index >= 0; });
+    if (any && !(launch_.patches && slides_only(task)))
+      part = part | Effects::tasks;
+  }
+  return part;
+}
+
+// the least of the kernels that does what runs, among those that walk the strips as they are cut
+void DeviceModel::choose_effects(EffectSet running)
+{
+  Effects least = most_effects_ & Effects::general_element;
+  if (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness))
+    least = least | (most_effects_ & Effects::fibres);
+  if (running.has(Effect::viscosity))
+    least = least | (most_effects_ & Effects::viscosity);
+  if (!launch_.patches && strip_rows(least) != strip_rows(most_effects_))
+    least = Effects::fibres;
+  effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
+  if (running.has(Effect::sliding) && running.has(Effect::friction))
+    effects_ = effects_ | (most_effects_ & Effects::friction);
+  launch_.effects = effects_;
+}
+
+void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
+{
+  const auto add = [&list](Effect effect, const char* what, const auto&... arrays)
+  { (list.add(effect, what, arrays.bytes()), ...); };
+  add(Effect::elasticity, "strips", strips_, slots_);
+  add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_makes_, halo_);
+  add(Effect::elasticity, "inverse masses", mobility_);
+  add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
+  add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
+  add(Effect::rigid_nodes, "poses", rigid_);
+  add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
+  add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
+  add(Effect::friction, "nodes that rub", rubbing_);
+  add(Effect::sliding, "nodes that glide", gliding_, gliding_searches_);
+  add(Effect::sliding, "searches", searching_);
+  for (const auto& boxes : boxes_)
+    add(Effect::sliding, "surfaces", boxes);
+  for (const auto& triangles : triangles_)
+    add(Effect::sliding, "surfaces", triangles);
+  add(Effect::elasticity, "what nodes do", tasks_, patch_tasks_);
+  loads_.list_allocations(list);
+  viscosity_.list_allocations(list);
+}
+
+}  // namespace cuda
+}  // namespace frontalis

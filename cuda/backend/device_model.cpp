@@ -1,0 +1,361 @@
+#include "cuda/backend/device_model.hpp"
+
+#include "solver/stepping/step_bound.hpp"
+#include "solver/contact/surface_tree.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <unordered_map>
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+using Entry = std::vector<float>;
+
+struct HashEntry
+{
+  std::size_t operator()(const Entry& entry) const
+  {
+    std::size_t hash = 1469598103934665603u;
+    for (const float x : entry)
+    {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &x, sizeof bits);
+      hash = (hash ^ bits) * 1099511628211u;
+    }
+    return hash ^ (hash >> 29);
+  }
+};
+
+std::array<double, 3> rest_position(const Model& model, std::int32_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
+
+// the bulk of what a model needs: nodes, patches or strips, fibres
+void expect_room(const Model& model, const VoxelCut& cut)
+{
+  const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
+  std::size_t wanted =
+      (model.nodes.size() + 1) * node_bytes + model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
+  if (cut.patches)
+    wanted += cut.patches->voxel.size() * (sizeof(uint4) + sizeof(uint2)) +
+              cut.patches->halo.size() * sizeof(std::uint32_t) +
+              model.nodes.size() * (sizeof(uint4) + sizeof(std::int32_t));
+  else
+    wanted += cut.strips->slots.size() * sizeof(StripSlot) + cut.strips->fibre_words.size() * sizeof(std::uint32_t);
+  std::size_t free = 0, total = 0;
+  require(cudaMemGetInfo(&free, &total), "asking for free memory");
+  if (wanted > free)
+    throw Error("backend cuda: the model needs " + std::to_string(wanted) + " bytes of device memory, " +
+                std::to_string(free) + " of " + std::to_string(total) + " are free");
+}
+
+}  // namespace
+
+Effects effects_of(const Model& model, const Discretisation& discretisation)
+{
+  Effects effects = Effects::none;
+  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws)
+    effects = effects | Effects::general_element;
+  if (discretisation.viscous_terms > 0)
+    effects = effects | Effects::viscosity;
+  if (!model.fibre_muscle.empty())
+    effects = effects | Effects::fibres;
+  for (const SlidingNode& node : model.sliding)
+    if (model.constraint_surfaces[node.surface].friction > 0)
+      effects = effects | Effects::friction;
+  return effects;
+}
+
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut)
+    : DeviceModel(model, discretisation, VoxelCut(model, cut))
+{
+}
+
+DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
+    : most_effects_(effects_of(model, discretisation)),
+      device_node_((expect_room(model, cut), std::move(cut.device_node()))),
+      loads_(model, discretisation, device_node_),
+      viscosity_(model, discretisation, device_node_,
+                 discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
+                 cut.patches != nullptr)
+{
+  palette_of_voxel_ = add_palette(model, discretisation);
+  add_fibres(model, discretisation);
+  std::vector<NodeTask> tasks = add_tasks(model, cut.searches);
+  // nodes that never move have no inverse mass
+  if (discretisation.held.size() > still_nodes_.size())
+  {
+    const std::vector<float> of_node = mobility(discretisation);
+    std::vector<float> of_device(nodes(), 0);
+    for (std::size_t n = 0; n < of_node.size(); ++n)
+      of_device[device_node_[n]] = of_node[n];
+    mobility_ = DeviceArray<float>(of_device);
+  }
+  if (cut.patches)
+    add_patches(model, *cut.patches, tasks, palette_of_voxel_);
+  else
+    add_strips(*cut.strips, tasks, palette_of_voxel_);
+  most_effects_ = most_effects_ | node_part(tasks);
+  launch_.effects = effects_ = most_effects_;
+  tasks_ = DeviceArray<NodeTask>(tasks);
+
+  StepArguments& g = constants_;
+  g.patches = patches_.data();
+  g.patch_count = static_cast<std::uint32_t>(patches_.size());
+  g.patch_corners = patch_corners_.data();
+  g.patch_makes = patch_makes_.data();
+  g.halo = halo_.data();
+  g.node_voxels = node_voxels_.data();
+  g.patch_tasks = patch_tasks_.data();
+  g.strips = strips_.data();
+  static_assert(sizeof(StripSlot) == sizeof(uint2), "a slot is read as two words");
+  g.slots = reinterpret_cast<const uint2*>(slots_.data());
+  g.strip_count = static_cast<std::uint32_t>(strips_.size());
+  g.mobility = mobility_.data();
+  g.palette = palette_.data();
+  g.stabilisation = stabilisation_.data();
+  g.law_begin = law_begin_.data();
+  g.laws = laws_.data();
+  g.muscles = static_cast<std::int32_t>(model.muscles.size());
+  g.fibre_words = fibre_words_.data();
+  g.fibres = fibres_.data();
+  g.fibre_muscle = fibre_muscle_.data();
+  g.tasks = tasks_.data();
+  g.load_parts = loads_.parts();
+  g.load_begin = loads_.begin();
+  g.vertex_force = loads_.vertex_force();
+  g.load_ramp = loads_.ramp();
+  g.sliding = sliding_.data();
+  g.contact_planes = contact_planes_.data();
+  g.planes_ahead = planes_ahead_.data();
+  g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
+  g.rubbing = rubbing_.data();
+  g.rubbing_count = static_cast<std::uint32_t>(rubbing_.size());
+  g.gliding = gliding_.data();
+  g.gliding_searches = gliding_searches_.data();
+  g.searching = searching_.data();
+  g.gliding_count = static_cast<std::uint32_t>(gliding_.size());
+  g.load_relief = loads_.relief();
+  g.selective_reduced = discretisation.selective_reduced;
+  viscosity_.describe(g);
+  g.prescribed = prescribed_.data();
+  g.rigid = rigid_.data();
+  g.bones = static_cast<std::int32_t>(model.bones.size());
+  g.stretch_half_sum = static_cast<float>(discretisation.stretch_half_sum);
+  const auto& h = model.spacing;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.scale[axis] = static_cast<float>(0.25 / h[axis]);
+    g.stretch_weight[axis] = static_cast<float>(discretisation.stretch_weight[axis]);
+    g.hourglass_weight[axis] = static_cast<float>(discretisation.hourglass_weight[axis]);
+  }
+}
+
+StepArguments DeviceModel::arguments() const { return constants_; }
+
+// voxels of equal make share an entry; entry 0 has no stiffness. Returns the entry of each voxel.
+std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
+{
+  const bool stabilised = d.assumed_strain;
+  std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
+  std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
+  std::vector<std::uint32_t> law_begin(2, 0);
+  std::vector<LawEntry> laws;
+  std::vector<std::uint32_t> entry_of(model.voxels.size());
+  std::unordered_map<Entry, std::uint32_t, HashEntry> known;
+  Entry latest, entry;
+  std::uint32_t index = 0;
+  VoxelProperties voxel;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    d.voxel(e, voxel);
+    entry.clear();
+    for (const double x :
+         { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffness })
+      entry.push_back(static_cast<float>(x));
+    const auto& form = voxel.stabilisation;
+    if (stabilised)
+      for (const double x : { form.bending, form.coupling, form.torsion, form.warping })
+        entry.push_back(static_cast<float>(x));
+    for (const LawPart& part : voxel.laws)
+    {
+      for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume, part.per_tangent,
+                              part.stiffness_at_rest })
+        entry.push_back(static_cast<float>(x));
+      for (const double x : part.parameters)
+        entry.push_back(static_cast<float>(x));
+    }
+    if (index == 0 || entry != latest)
+    {
+      const auto found = known.emplace(entry, static_cast<std::uint32_t>(entries.size()));
+      if (found.second)
+      {
+        entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
+        std::size_t at = 4;
+        if (stabilised)
+        {
+          more.push_back(float4{ entry[4], entry[5], entry[6], entry[7] });
+          at = 8;
+        }
+        for (; at < entry.size(); at += 15)
+        {
+          LawEntry law{ static_cast<std::int32_t>(entry[at]), entry[at + 1], entry[at + 2], entry[at + 3], {} };
+          std::copy(entry.begin() + static_cast<std::ptrdiff_t>(at) + 4,
+                    entry.begin() + static_cast<std::ptrdiff_t>(at) + 15, law.parameters);
+          laws.push_back(law);
+        }
+        law_begin.push_back(static_cast<std::uint32_t>(laws.size()));
+      }
+      index = found.first->second;
+      latest = entry;
+    }
+    entry_of[e] = index;
+  }
+  viscosity_.set_palette(entry_of);
+  palette_ = DeviceArray<float4>(entries);
+  stabilisation_ = DeviceArray<float4>(more);
+  if (!laws.empty())
+  {
+    law_begin_ = DeviceArray<std::uint32_t>(law_begin);
+    laws_ = DeviceArray<LawEntry>(laws);
+  }
+  return entry_of;
+}
+
+void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation)
+{
+  std::vector<float4> fibres;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+    {
+      const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
+      const auto& a = model.fibre_direction[f];
+      fibres.push_back({ a[0], a[1], a[2],
+                         static_cast<float>(muscle.stress_reference * model.fibre_weight[f] * discretisation.volume *
+                                            model.fill[e]) });
+    }
+  fibres_ = DeviceArray<float4>(fibres);
+  fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
+}
+
+void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of)
+{
+  if (model.sliding.empty())
+    return;
+  std::vector<SurfaceSearch> surfaces;
+  for (const auto& surface : model.constraint_surfaces)
+  {
+    const SurfaceTree tree(surface.mesh);
+    boxes_.emplace_back(tree.boxes());
+    triangles_.emplace_back(tree.triangles());
+    surfaces.push_back(
+        { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
+  }
+  // those with friction first, else in the order in which warps meet them
+  const auto rubs = [&model](const SlidingNode& node)
+  {
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    return surface.bone < 0 && surface.friction > 0;
+  };
+  std::vector<SlidingNode> nodes = model.sliding;
+  std::sort(nodes.begin(), nodes.end(),
+            [&](const SlidingNode& a, const SlidingNode& b)
+            { return rubs(a) != rubs(b) ? rubs(a) : device_node_[a.node] < device_node_[b.node]; });
+  std::vector<SlidingContact> sliding;
+  std::vector<RubbingContact> rubbing;
+  std::vector<GlidingContact> gliding;
+  std::vector<GlidingSearch> gliding_searches;
+  for (const auto& node : nodes)
+  {
+    const auto rest = rest_position(model, node.node);
+    const SurfaceContact contact(surfaces[node.surface], node.distance);
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    if (rubs(node))
+      rubbing.push_back({ static_cast<float>(surface.friction), 0, 0 });
+    if (surface.bone < 0)
+    {
+      task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
+      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0 });
+      continue;
+    }
+    task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
+    gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
+    gliding_searches.push_back({ contact, device_node_[node.node], -1, nothing_ahead, {}, {} });
+  }
+  sliding_ = DeviceArray<SlidingContact>(sliding);
+  contact_planes_ = DeviceArray<TangentPlane>(sliding.size());
+  planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
+  rubbing_ = DeviceArray<RubbingContact>(rubbing);
+  gliding_ = DeviceArray<GlidingContact>(gliding);
+  gliding_searches_ = DeviceArray<GlidingSearch>(gliding_searches);
+  const std::size_t groups = (nodes.size() + search_group - 1) / search_group;
+  constants_.searches = searches;
+  searching_ = DeviceArray<SurfaceContact>(std::vector<SurfaceContact>(groups * searches));
+  reset_contacts();
+}
+
+// what holds or moves nodes, by device node; those that never move are not stepped at all
+std::vector<NodeTask> DeviceModel::add_tasks(const Model& model, std::uint32_t searches)
+{
+  std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
+  add_sliding(model, searches, task_of);
+  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
+    task_of[loads_.nodes()[l]].of[node_load] = static_cast<std::int32_t>(l);
+  std::vector<PrescribedMotion> prescribed;
+  for (const auto& node : model.prescribed)
+  {
+    std::int32_t& index = task_of[node.node].of[node_prescribed];
+    if (index < 0)
+    {
+      index = static_cast<std::int32_t>(prescribed.size());
+      prescribed.push_back({});
+    }
+    const Load& load = model.loads[node.load];
+    for (int axis = 0; axis < 3; ++axis)
+      if (load.fixed[axis])
+      {
+        prescribed[index].fixed[axis] = true;
+        prescribed[index].value[axis] = load.value[axis];
+        prescribed[index].ramp[axis] = load.ramp;
+      }
+  }
+  std::vector<RigidMotion> rigid;
+  std::vector<char> still(model.nodes.size(), 0);
+  for (const auto& node : model.rigid)
+  {
+    still[node.node] = node.bone < 0;
+    task_of[node.node].of[node_rigid] = node.bone < 0 ? -1 : static_cast<std::int32_t>(rigid.size());
+    if (node.bone < 0)
+      continue;
+    RigidMotion motion{};
+    const auto rest = rest_position(model, node.node);
+    std::copy(rest.begin(), rest.end(), motion.rest);
+    motion.bone = node.bone;
+    rigid.push_back(motion);
+  }
+
+  std::vector<NodeTask> tasks;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    NodeTask& t = task_of[n];
+    t.node = device_node_[n];
+    if (still[n] != 0)
+      still_nodes_.push_back(static_cast<std::uint32_t>(n));
+    else if (std::any_of(std::begin(t.of), std::end(t.of), [](std::int32_t index) { return index >= 0; }))
+      tasks.push_back(t);
+  }
+  std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });
+  prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
+  rigid_ = DeviceArray<RigidMotion>(rigid);
+  return tasks;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

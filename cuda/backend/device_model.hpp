@@ -1,0 +1,153 @@
+#pragma once
+
+#include "cuda/backend/device_memory.hpp"
+#include "cuda/backend/device_surface.hpp"
+#include "cuda/backend/device_viscosity.hpp"
+#include "solver/stepping/discretisation.hpp"
+#include "frontalis/byte_archive.hpp"
+#include "cuda/kernels/step_kernel.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// One word a fibre: StepArguments::fibre_muscle.
+std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
+
+/// What a model's voxels need of the kernels.
+Effects effects_of(const Model& model, const Discretisation& discretisation);
+
+/// Patches where there are any, else strips.
+struct CutChoice
+{
+  PatchSettings patches{ 0, 0 };
+  StripSettings strips;
+  std::uint32_t searches = search_group;  ///< StepArguments::searches
+};
+
+/// A model, cut up.
+struct VoxelCut
+{
+  VoxelCut(const Model& model, const CutChoice& choice);
+
+  std::unique_ptr<VoxelPatches> patches;
+  std::unique_ptr<VoxelStrips> strips;  ///< one of both
+  std::uint32_t searches;               ///< as in CutChoice
+
+  std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
+  /// 1 + the model voxel at each place, 0: none.
+  std::vector<std::uint32_t> voxel_at() const;
+};
+
+/// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
+class DeviceModel
+{
+public:
+  /// Throws Error with the bytes wanted and free where the device has too little memory, before anything is allocated.
+  DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
+
+  /// Arguments of a step with all that is constant filled in.
+  StepArguments arguments() const;
+  /// Only these effects act from now on; no array changes its place or size.
+  void run(const Model& model, const Discretisation& discretisation, EffectSet running);
+  void list_allocations(Effect of_fibres, AllocationList& list) const;
+  /// Contacts as they are at rest.
+  void reset_contacts();
+  /// What sliding nodes know of their surfaces.
+  struct Contacts
+  {
+    DeviceArray<SlidingContact> sliding;
+    DeviceArray<TangentPlane> planes, ahead;
+    DeviceArray<RubbingContact> rubbing;
+    DeviceArray<GlidingContact> gliding;
+    DeviceArray<GlidingSearch> gliding_searches;
+    DeviceArray<SurfaceContact> searching;
+
+    void archive(ByteArchive& archive);
+  };
+  void save(Contacts& to, cudaStream_t stream) const;
+  void restore(const Contacts& from, cudaStream_t stream);
+
+  Effects effects() const { return effects_; }
+  /// How the step kernel is launched: all but how many blocks the device holds.
+  const StepLaunch& launch() const { return launch_; }
+  std::size_t patches() const { return patches_.size(); }
+  std::size_t strips() const { return strips_.size(); }
+  double filled() const { return filled_; }                      ///< VoxelStrips::filled()
+  std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
+  const std::vector<std::uint32_t>& device_node() const { return device_node_; }
+  const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
+  const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
+  std::size_t contacts() const { return sliding_.size() + gliding_.size(); }
+  /// Entries of StepArguments::friction_work.
+  std::size_t friction_works() const { return rubbing_.size() + gliding_.size(); }
+  DeviceLoads& loads() { return loads_; }
+  DeviceViscosity& viscosity() { return viscosity_; }
+  const DeviceViscosity& viscosity() const { return viscosity_; }
+
+private:
+  DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut);
+  std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
+  void add_fibres(const Model& model, const Discretisation& discretisation);
+  std::vector<NodeTask> add_tasks(const Model& model, std::uint32_t searches);
+  void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
+  void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
+                   const std::vector<std::uint32_t>& palette_entry);
+  void add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of);
+  void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
+  void run_tasks(EffectSet running);
+  Effects node_part(const std::vector<NodeTask>& tasks) const;
+  void choose_effects(EffectSet running);
+
+  /// What arrays hold where every effect runs; kept from the first switch on.
+  struct Whole
+  {
+    std::vector<Strip> strips;
+    std::vector<NodeTask> tasks;
+    std::vector<std::int32_t> patch_tasks;
+  };
+
+  Effects most_effects_;  // where every effect of the model runs
+  Effects effects_ = Effects::none;
+  StepLaunch launch_{};
+  std::vector<std::uint32_t> device_node_;
+  std::vector<std::uint32_t> still_nodes_;
+  std::vector<std::uint32_t> palette_of_voxel_;
+  StepArguments constants_{};
+  Whole whole_;
+
+  DeviceArray<Patch> patches_;
+  DeviceArray<uint4> patch_corners_, node_voxels_;
+  DeviceArray<uint2> patch_makes_;
+  DeviceArray<std::uint32_t> halo_;
+  DeviceArray<std::int32_t> patch_tasks_;
+  DeviceArray<Strip> strips_;
+  double filled_ = 1;
+  DeviceArray<StripSlot> slots_;
+  DeviceArray<float> mobility_;
+  DeviceArray<float4> palette_, stabilisation_;
+  DeviceArray<std::uint32_t> law_begin_;
+  DeviceArray<LawEntry> laws_;
+  DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
+  DeviceArray<float4> fibres_;
+  DeviceArray<NodeTask> tasks_;
+  DeviceArray<SlidingContact> sliding_;
+  DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
+  DeviceArray<RubbingContact> rubbing_;
+  DeviceArray<GlidingContact> gliding_;
+  DeviceArray<GlidingSearch> gliding_searches_;
+  DeviceArray<SurfaceContact> searching_;
+  std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
+  std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
+  DeviceArray<PrescribedMotion> prescribed_;
+  DeviceArray<RigidMotion> rigid_;
+  DeviceLoads loads_;
+  DeviceViscosity viscosity_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "cuda/backend/device_memory.hpp"
+#include "cuda/backend/device_model.hpp"
+#include "cuda/kernels/monitor_kernel.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Looks at all voxels of a model in device memory: 44 bytes a voxel, taken when it is made.
+class DeviceMonitor
+{
+public:
+  DeviceMonitor(const Model& model, const DeviceModel& device);
+
+  /// Energies and the worst voxel at displacements u, velocities g.v; waits for the stream.
+  Monitor look(const StepArguments& g, const float4* u, cudaStream_t stream);
+  std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< of the device's memory
+
+private:
+  DeviceArray<MonitorVoxel> voxels_;
+  DeviceArray<PlaneMonitor> parts_{ monitor_blocks };
+  PinnedArray<PlaneMonitor> seen_{ monitor_blocks };
+  DeviceArray<float> stiffness_, node_stiffness_;
+  DeviceArray<StiffestVoxel> stiffest_{ monitor_blocks };
+  PinnedArray<StiffestVoxel> seen_stiffest_{ monitor_blocks };
+  MonitorVoxels view_{};
+};
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,112 @@
+#include "cuda/backend/device_model.hpp"
+#include "frontalis/error.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+VoxelCut::VoxelCut(const Model& model, const CutChoice& choice) : searches(choice.searches)
+{
+  if (model.nodes.size() >= StripSlot::node_mask || model.fibre_muscle.size() >= (1u << 28))
+    throw Error("backend cuda: " + std::to_string(model.nodes.size()) + " nodes and " +
+                std::to_string(model.fibre_muscle.size()) + " fibre entries; allowed are below 2^30 and 2^28");
+  if (choice.patches.turns > 0)
+    patches = std::make_unique<VoxelPatches>(model, choice.patches);
+  else
+    strips = std::make_unique<VoxelStrips>(model, choice.strips);
+}
+
+std::vector<std::uint32_t> VoxelCut::voxel_at() const
+{
+  std::vector<std::uint32_t> at;
+  if (patches)
+    for (const auto voxel : patches->voxel)
+      at.push_back(1 + voxel);
+  else
+    for (const auto& slot : strips->slots)
+      at.push_back(slot.voxel);
+  return at;
+}
+
+// device nodes are numbered strip by strip, so that the tasks of a strip follow each other
+void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
+                             const std::vector<std::uint32_t>& palette_entry)
+{
+  filled_ = strips.filled();
+  std::vector<std::uint32_t> strip_of_device(device_node_.size() + 1, 0);
+  std::vector<char> still(device_node_.size() + 1, 0);
+  for (std::size_t n = 0; n < device_node_.size(); ++n)
+    strip_of_device[device_node_[n]] = strips.strip_of_node[n];
+  for (const auto n : still_nodes_)
+    still[device_node_[n]] = 1;
+  std::uint32_t task = 0;
+  for (std::size_t s = 0; s < strips.strips.size(); ++s)
+  {
+    strips.strips[s].task_begin = task;
+    while (task < tasks.size() && strip_of_device[tasks[task].node] == s)
+      ++task;
+    strips.strips[s].task_end = task;
+  }
+  for (auto& slot : strips.slots)
+  {
+    slot.voxel = slot.voxel > 0 ? palette_entry[slot.voxel - 1] : 0;
+    if (still[slot.node & StripSlot::node_mask] != 0)
+      slot.node &= ~StripSlot::updated;
+  }
+  strips.slots.resize(strips.slots.size() + planes_ahead * static_cast<std::size_t>(strips.rows + 2) * 32,
+                      StripSlot{ 0, 0 });
+  strips_ = DeviceArray<Strip>(strips.strips);
+  slots_ = DeviceArray<StripSlot>(strips.slots);
+  // words are fetched a row ahead
+  if (!strips.fibre_words.empty())
+    strips.fibre_words.resize(strips.fibre_words.size() + 32, 0);
+  fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);
+  launch_.threads = step_block;
+}
+
+void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
+                              const std::vector<std::uint32_t>& palette_entry)
+{
+  std::vector<uint2> makes;
+  for (const auto voxel : patches.voxel)
+    makes.push_back({ palette_entry[voxel], fibre_word(model, voxel) });
+  std::vector<std::int32_t> task_of(device_node_.size() + 1, patch_task::none);
+  for (const auto n : still_nodes_)
+    task_of[device_node_[n]] = patch_task::still;
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+  {
+    const NodeTask& task = tasks[t];
+    task_of[task.node] = slides_only(task) ? task.of[node_sliding] : patch_task::other - static_cast<std::int32_t>(t);
+  }
+  const auto words = [](const std::vector<std::array<std::uint16_t, 8>>& from)
+  {
+    std::vector<uint4> to(from.size());
+    static_assert(sizeof(to[0]) == sizeof(from[0]), "eight places are read as four words");
+    std::memcpy(to.data(), from.data(), from.size() * sizeof(to[0]));
+    return to;
+  };
+  patches_ = DeviceArray<Patch>(patches.patches);
+  patch_corners_ = DeviceArray<uint4>(words(patches.corner));
+  node_voxels_ = DeviceArray<uint4>(words(patches.node_voxel));
+  patch_makes_ = DeviceArray<uint2>(makes);
+  halo_ = DeviceArray<std::uint32_t>(patches.halo);
+  patch_tasks_ = DeviceArray<std::int32_t>(task_of);
+  std::uint32_t most = patches.most_voxels;
+  for (const Patch& patch : patches.patches)
+    most = std::max({ most, patch.nodes, patch.halo });
+  launch_.patches = true;
+  const std::uint32_t finding = model.sliding.empty() ? 0 : finding_threads;
+  launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads - finding) + finding);
+  launch_.most_voxels = patches.most_voxels;
+  launch_.most_halo = patches.most_halo;
+  launch_.most_nodes = patches.most_nodes;
+  launch_.shared_bytes =
+      patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, !model.sliding.empty());
+}
+
+}  // namespace cuda
+}  // namespace frontalis

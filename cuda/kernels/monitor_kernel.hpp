@@ -1,0 +1,52 @@
+#pragma once
+
+#include "solver/energy/plane_monitor.hpp"
+#include "cuda/kernels/step_kernel.hpp"
+
+namespace frontalis
+{
+
+/// A voxel as the monitor sees it.
+struct MonitorVoxel
+{
+  std::uint32_t node[8];  ///< device nodes
+  std::uint32_t palette;
+};
+
+struct MonitorVoxels
+{
+  const MonitorVoxel* voxels;  ///< in the model's order
+  std::uint32_t count;
+  std::uint32_t nodes;    ///< device nodes
+  double scale[3];        ///< 1 / (4 h)
+  float* stiffness;       ///< room for the bound of each voxel [N/m]
+  float* node_stiffness;  ///< and for the sum at each node
+};
+
+/// The bound of the highest frequency squared [1/s2] of the nodes of some voxels, and the stiffest of the voxels that
+/// have the node that sets it.
+struct StiffestVoxel
+{
+  float frequency_squared = 0;
+  float stiffness = 0;  ///< bound [N/m]
+  std::int32_t voxel = -1;
+
+  /// In any order. Numbers that are not finite count as the largest.
+  FRONTALIS_LAW void add(const StiffestVoxel& part)
+  {
+    const bool none = frequency_squared != frequency_squared;
+    const bool larger = !none && !(part.frequency_squared <= frequency_squared);
+    const bool same = part.voxel >= 0 && part.frequency_squared == frequency_squared;
+    if (larger || (same && (part.stiffness > stiffness || (part.stiffness == stiffness && part.voxel < voxel))))
+      *this = part;
+  }
+};
+
+/// Parts that launch_monitor() leaves, to be added up.
+constexpr int monitor_blocks = 264;
+
+/// Energies and worst voxels, in double, and the stiffest ones, at displacements u.
+cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
+                           PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
+
+}  // namespace frontalis

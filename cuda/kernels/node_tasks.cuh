@@ -1,0 +1,177 @@
+#pragma once
+
+#include "frontalis/physics/ramp.hpp"
+#include "cuda/kernels/sliding_nodes.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Velocities for the account of work, where one is kept.
+__device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t node, const float* v)
+{
+  if (to[0] != nullptr)
+    for (int i = 0; i < 3; ++i)
+      to[i][node] = v[i];
+}
+
+static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                             NodeState& n)
+{
+  double force[3] = { 0, 0, 0 };
+  for (auto l = g.load_begin[index]; l < g.load_begin[index + 1]; ++l)
+  {
+    const LoadPart part = g.load_parts[l];
+    const double share = part.weight * physics::ramped(g.time + at.step * g.dt_exact, g.load_ramp[part.load]);
+    for (int i = 0; i < 3; ++i)
+      force[i] += share * g.vertex_force[3 * part.vertex + i];
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    if (g.load_relief != nullptr)
+      force[i] += g.load_relief[3 * index + i];
+    const float change = g.gain * at.before.w * static_cast<float>(force[i]);
+    n.v[i] += change;
+    n.u[i] += g.dt * change;
+  }
+  keep_velocity(g.velocity_free, at.node, n.v);
+}
+
+static __device__ __noinline__ void follow_path(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                NodeState& n)
+{
+  const PrescribedMotion& motion = g.prescribed[index];
+  const float old[3] = { at.before.x, at.before.y, at.before.z };
+  for (int i = 0; i < 3; ++i)
+    if (motion.fixed[i])
+    {
+      n.u[i] =
+          static_cast<float>(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
+      n.v[i] = (n.u[i] - old[i]) / g.dt;
+    }
+}
+
+static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                NodeState& n)
+{
+  using Point = SurfaceContact::Point;
+  const RigidMotion& motion = g.rigid[index];
+  const Point rest{ motion.rest[0], motion.rest[1], motion.rest[2] };
+  const Point moved = pose_at(g, at.step + 1, motion.bone).outwards(rest) - rest;
+  const double to[3] = { moved.x, moved.y, moved.z };
+  const float old[3] = { at.before.x, at.before.y, at.before.z };
+  for (int i = 0; i < 3; ++i)
+  {
+    n.u[i] = static_cast<float>(to[i]);
+    n.v[i] = (n.u[i] - old[i]) / g.dt;
+  }
+}
+
+/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' own code. `With`:
+/// what nodes do.
+using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
+template <Effects With>
+static __device__ const NodeFunction node_functions[node_effects] = {
+  add_load,
+  has<With, Effects::sliding> ? keep_distance<With> : nullptr,
+  has<With, Effects::sliding> ? glide<With> : nullptr,
+  follow_path,
+  follow_bone,
+};
+
+/// What one node has, after its update.
+template <Effects With>
+static __device__ __noinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float4& before,
+                                               int step, NodeState& n)
+{
+  const NodeStep at{ before, task.node, step };
+#pragma unroll 1
+  for (int effect = 0; effect < node_effects; ++effect)
+    if (task.of[effect] >= 0)
+      node_functions<With>[effect](g, task.of[effect], at, n);
+}
+
+/// For what is rare: called through an address that the compiler does not see through, a function keeps to registers of
+/// its own. Seen through, find_others() had the kernels spill 140 bytes a thread.
+template <class Function>
+__device__ __forceinline__ Function* aside(Function* function)
+{
+  auto address = reinterpret_cast<std::uint64_t>(function);
+  asm volatile("" : "+l"(address));
+  return reinterpret_cast<Function*>(address);
+}
+
+/// As find_others() takes it.
+__device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
+{
+  return task.of[node_sliding] >= 0 ? task.of[node_sliding] : -1 - task.of[node_gliding];
+}
+
+/// What nodes have that have been written already: tasks [begin, end), a whole warp's.
+template <Effects With>
+__device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
+                                          const float4* u, float4* next, int step)
+{
+  for (std::uint32_t first = begin; first < end; first += 32)
+  {
+    const std::uint32_t t = first + (threadIdx.x & 31);
+    NodeState n{};
+    NodeTask task{};
+    if (t < end)
+    {
+      // all that may be wanted at once: what waits for memory is most of it
+      task = g.tasks[t];
+      const float4 before = u[task.node], now = next[task.node];
+      n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
+      // the inverse mass of what is written: a buffer that was never stepped holds none
+      const float4 old = make_float4(before.x, before.y, before.z, now.w);
+      const std::int32_t contact = task.of[node_sliding];
+      if (has<With, Effects::sliding> && slides_only(task))
+        slide<With>(g, contact, { old, task.node, step }, fetch_contact<With>(g, contact), n);
+      else
+        apply_task<part<With, of_nodes>>(g, task, old, step, n);
+      next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
+    }
+    if (has<With, Effects::sliding> && __any_sync(whole_warp, n.leaves))
+      aside(find_others<step_block / 32, part<With, of_nodes>>)(g, n.leaves, n.leaves ? contact_of(task) : 0, n.u, n.v);
+    if (t < end)
+      for (int i = 0; i < 3; ++i)
+        g.v[i][task.node] = n.v[i];
+  }
+}
+
+/// What the update of a node needs, fetched before the stress is computed.
+struct NodeFetch
+{
+  float4 own;
+  float v[3];
+};
+
+__device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
+{
+  // without a condition, so that nothing waits for it; nodes that are not stepped here are there to be read too
+  const std::uint32_t node = word & StripSlot::node_mask;
+  return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
+}
+
+/// Damped central difference.
+__device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32_t node, const NodeFetch& fetch,
+                                             const float* force)
+{
+  const float share = g.gain * fetch.own.w;
+  NodeState n;
+#pragma unroll
+  for (int i = 0; i < 3; ++i)
+    // two multiply-adds, with gravity or without
+    n.v[i] = (g.keep * fetch.v[i] + g.impulse[i]) - share * force[i];
+  n.u[0] = fetch.own.x + g.dt * n.v[0];
+  n.u[1] = fetch.own.y + g.dt * n.v[1];
+  n.u[2] = fetch.own.z + g.dt * n.v[2];
+  keep_velocity(g.velocity_before, node, fetch.v);
+  keep_velocity(g.velocity_free, node, n.v);
+  return n;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

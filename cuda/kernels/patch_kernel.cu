@@ -1,0 +1,51 @@
+#include "cuda/kernels/patch_kernel.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+const void* kernel(Effects effects)
+{
+  if ((effects & Effects::friction) == Effects::friction)
+    return friction_patch_kernel(effects);
+  if ((effects & Effects::sliding) == Effects::sliding)
+    return sliding_patch_kernel(effects);
+  return (effects & Effects::tasks) == Effects::tasks ? patch_kernel_of<Effects::tasks>(effects)
+                                                      : patch_kernel_of<Effects::none>(effects);
+}
+
+}  // namespace
+}  // namespace cuda
+
+int resident_blocks(const StepLaunch& launch)
+{
+  int device = 0, processors = 0, blocks = 0;
+  const void* const kernel = cuda::kernel(launch.effects);
+  const auto bytes = static_cast<int>(launch.shared_bytes);
+  cudaFuncAttributes known{};
+  // the limit is the kernel's: another solver may need more
+  if (cudaGetDevice(&device) != cudaSuccess ||
+      cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
+      cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||
+      (known.maxDynamicSharedSizeBytes < bytes &&
+       cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes) != cudaSuccess) ||
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, launch.threads, launch.shared_bytes) !=
+          cudaSuccess)
+    return 0;
+  return processors * blocks;
+}
+
+cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream)
+{
+  void* parameters[] = { const_cast<StepArguments*>(&arguments), const_cast<StepLaunch*>(&launch) };
+  const void* const kernel = cuda::kernel(launch.effects);
+  const dim3 grid(launch.blocks), block(launch.threads);
+  if (arguments.step_end - arguments.step_begin > 1)
+    return cudaLaunchCooperativeKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
+  return cudaLaunchKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
+}
+
+}  // namespace frontalis

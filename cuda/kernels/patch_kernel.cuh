@@ -1,0 +1,381 @@
+#pragma once
+
+#include "cuda/kernels/element_stress.cuh"
+#include "cuda/kernels/patch_memory.cuh"
+
+#include <utility>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// A block of threads keeps its patch in shared memory, halo included, for as many steps as a launch has: a thread a
+// voxel, forces of the corners through shared memory, then a thread a node. Between steps only the nodes on the border
+// go from block to block. Displacement and the number of the step travel in one word of 16 bytes, so that whoever waits
+// for a node waits for its data and for nothing else: there is no barrier of all blocks and no fence. Each node's
+// writer also waits for its readers, a step later, because who reads a patch is read by it: two buffers are enough.
+
+/// Marks what is written during a launch: the inverse masses that stand there otherwise are not negative.
+__device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
+{
+  return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
+}
+
+__device__ __forceinline__ void send(float4* to, const float* u, std::uint32_t mark)
+{
+  asm volatile(
+      "{ .reg .b64 low, high; .reg .b128 all; mov.b64 low, {%1, %2}; mov.b64 high, {%3, %4};"
+      " mov.b128 all, {low, high}; st.relaxed.gpu.global.b128 [%0], all; }" ::"l"(to),
+      "r"(__float_as_uint(u[0])), "r"(__float_as_uint(u[1])), "r"(__float_as_uint(u[2])), "r"(mark)
+      : "memory");
+}
+
+__device__ __forceinline__ float4 receive(const float4* from, std::uint32_t mark)
+{
+  std::uint32_t word[4];
+  do
+    asm volatile(
+        "{ .reg .b64 low, high; .reg .b128 all; ld.relaxed.gpu.global.b128 all, [%4];"
+        " mov.b128 {low, high}, all; mov.b64 {%0, %1}, low; mov.b64 {%2, %3}, high; }"
+        : "=r"(word[0]), "=r"(word[1]), "=r"(word[2]), "=r"(word[3])
+        : "l"(from)
+        : "memory");
+  while (word[3] != mark);
+  return make_float4(__uint_as_float(word[0]), __uint_as_float(word[1]), __uint_as_float(word[2]), 0);
+}
+
+__device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8])
+{
+  const std::uint32_t word[4] = { words.x, words.y, words.z, words.w };
+#pragma unroll
+  for (int i = 0; i < 4; ++i)
+  {
+    out[2 * i] = word[i] & 0xffffu;
+    out[2 * i + 1] = word[i] >> 16;
+  }
+}
+
+/// What a voxel needs besides its corners' displacements.
+struct VoxelFetch
+{
+  uint4 corner;
+  ElementPlace place;
+};
+
+template <Effects With>
+__device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::uint32_t index)
+{
+  VoxelFetch voxel{};
+  voxel.corner = __ldg(g.patch_corners + index);
+  if (has<With, Effects::fibres>)
+  {
+    const uint2 make = __ldg(g.patch_makes + index);
+    voxel.place.palette = make.x;
+    fetch_fibre(g, make.y, voxel.place);
+  }
+  else
+    voxel.place.palette = __ldg(&g.patch_makes[index].x);
+  if (has<With, Effects::viscosity>)
+    voxel.place.viscous = __ldg(g.viscous_words + index);
+  return voxel;
+}
+
+template <Effects With>
+__device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel,
+                                           const Activations& activation, float relaxes, bool look,
+                                           const PatchMemory& memory, std::uint32_t column)
+{
+  std::uint32_t corner[8];
+  split(voxel.corner, corner);
+  float mode[3][8];
+#pragma unroll
+  for (int b = 0; b < 8; ++b)
+  {
+    const float4 u = memory.place[corner[b]];
+    mode[0][b] = u.x;
+    mode[1][b] = u.y;
+    mode[2][b] = u.z;
+  }
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+    physics::walsh_hadamard(mode[c]);
+  float stiffness = 0;
+  element_forces<With>(g, voxel.place, activation, relaxes, mode, look, stiffness);
+  if (look)
+    memory.force[24 * memory.width + column] = stiffness;
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    physics::walsh_hadamard_transposed(mode[c]);
+#pragma unroll
+    for (int b = 0; b < 8; ++b)
+      memory.force[(3 * b + c) * memory.width + column] = mode[c][b];
+  }
+}
+
+/// Force on a node: its voxels in the order of the corner that it is of them.
+__device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
+{
+  std::uint32_t column[8];
+  split(voxels, column);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    force[c] = 0;
+#pragma unroll
+    for (int b = 0; b < 8; ++b)
+      force[c] += memory.force[(3 * b + c) * memory.width + column[b]];
+  }
+}
+
+/// Bits of the highest frequency squared that a node allows; voxels as in sum_forces().
+__device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
+                                                      std::uint32_t node, float inverse_mass)
+{
+  std::uint32_t column[8];
+  split(__ldg(g.node_voxels + node), column);
+  float stiffness = 0;
+#pragma unroll
+  for (int b = 0; b < 8; ++b)
+    stiffness += memory.force[24 * memory.width + column[b]];
+  return frequency_bits_of(g, node, inverse_mass, stiffness);
+}
+
+/// Of a node that slides or glides, by its entry of StepArguments::patch_tasks: as find_others() takes it.
+__device__ __forceinline__ std::int32_t contact_of(const StepArguments& g, std::int32_t task)
+{
+  return task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
+}
+
+/// By a node that is the block's `own`.
+static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
+                                              std::uint32_t own)
+{
+  const PatchMemory memory = patch_memory(launch);
+  const float4 place = memory.place[launch.most_halo + own];
+  ask(g, plane_queue(launch), contact, { place.x, place.y, place.z },
+      { memory.v[0][own], memory.v[1][own], memory.v[2][own] });
+}
+
+/// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
+/// Whether the node leaves its plane.
+template <Effects With>
+__device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
+                                                std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
+                                                float4* next, int step)
+{
+  const std::int32_t task = __ldg(g.patch_tasks + node);
+  SlidingFetch fetched{};
+  if (has<With, Effects::sliding> && task >= 0)
+    fetched = fetch_contact<With>(g, task);
+  float force[3];
+  sum_forces(memory, __ldg(g.node_voxels + node), force);
+  if (g.forces_only)
+  {
+    next[node] = make_float4(force[0], force[1], force[2], 0);
+    return false;
+  }
+  float4& place = memory.place[launch.most_halo + own];
+  const NodeFetch fetch{ place, { memory.v[0][own], memory.v[1][own], memory.v[2][own] } };
+  NodeState n{ { place.x, place.y, place.z }, { fetch.v[0], fetch.v[1], fetch.v[2] } };
+  if (task != patch_task::still)
+  {
+    n = updated(g, node, fetch, force);
+    if (has<With, Effects::sliding> && task >= 0)
+      slide<With>(g, task, { fetch.own, node, step }, fetched, n);
+    else if (has<With, Effects::tasks> && task != patch_task::none)
+    {
+      // a copy, so that the others' numbers stay in registers
+      NodeState held = n;
+      apply_task<part<With, of_nodes>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
+      n = held;
+    }
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      memory.v[i][own] = n.v[i];
+    place = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
+  }
+  if (last)
+  {
+    next[node] = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = n.v[i];
+  }
+  else if (on_border)
+    send(next + node, n.u, mark(g, step + 1));
+  // what is asked in the last step would be waited for
+  if (has<With, Effects::sliding> && n.asks && !last)
+  {
+    const std::int32_t contact = contact_of(g, task);
+    if (seen(state_of(g, contact)) == nothing_ahead)
+      aside(ask_ahead)(g, launch, contact, own);
+  }
+  return n.leaves;
+}
+
+/// By whole warps: nodes that leave their planes get others. Neighbours have what they wait for already. `own` as for
+/// step_patch_node(). Finds the block's memory by itself: a reference to PatchMemory would have the kernel keep that in
+/// local memory, and a forehead's step took 7 us and not 5. `With`: what nodes do.
+template <Effects With>
+static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
+                                                 std::uint32_t node, std::uint32_t own, bool last)
+{
+  const PatchMemory memory = patch_memory(launch);
+  std::int32_t contact = 0;
+  float u[3] = {}, v[3] = {};
+  if (leaves)
+  {
+    const std::int32_t task = __ldg(g.patch_tasks + node);
+    contact = contact_of(g, task);
+    const float4 place = memory.place[launch.most_halo + own];
+    u[0] = place.x;
+    u[1] = place.y;
+    u[2] = place.z;
+    for (int i = 0; i < 3; ++i)
+      v[i] = memory.v[i][own];
+  }
+  const bool finds = leaves && !take_asked<With>(g, contact, u, v);
+  if (__any_sync(whole_warp, finds))
+    find_others<most_patch_threads / 32, With>(g, finds, contact, u, v);
+  if (leaves)
+    for (int i = 0; i < 3; ++i)
+    {
+      memory.v[i][own] = v[i];
+      if (last)
+        g.v[i][node] = v[i];
+    }
+}
+
+// an int: nvcc does not name the sets of an enumeration
+template <int Set>
+__global__ void __launch_bounds__(most_patch_threads, 1)
+    patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
+{
+  constexpr Effects With = static_cast<Effects>(Set);
+  __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
+  constexpr Effects plain = plain_part<With>;
+  const PatchMemory memory = patch_memory(launch);
+  const std::uint32_t threads = stepping_threads<With>(launch);
+  if (has<With, Effects::fibres>)
+    load_activations(g, activations);
+  if constexpr (has<With, Effects::sliding>)
+  {
+    clear(plane_queue(launch));
+    __syncthreads();
+    if (threadIdx.x >= threads)
+    {
+      aside(find_planes)(g, plane_queue(launch));
+      return;
+    }
+  }
+  std::uint32_t filled = 0;
+  for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
+  {
+    const Patch patch = g.patches[p];
+    for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
+    {
+      const std::uint32_t node = patch.first_node + n;
+      memory.place[launch.most_halo + filled + n] = g.u[g.first][node];
+#pragma unroll
+      for (int i = 0; i < 3; ++i)
+        memory.v[i][filled + n] = g.v[i][node];
+    }
+    filled += patch.nodes;
+  }
+  if (threadIdx.x < 25)
+    memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
+  for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
+  {
+    const int present = (g.first + step - g.step_begin) & 1;
+    const float4* const u = g.u[present];
+    const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
+    std::uint32_t frequency_bits = 0;
+    filled = 0;
+    const Activations activation = activations_at(g, step, activations);
+    const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
+    for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
+    {
+      const Patch patch = g.patches[p];
+      VoxelFetch voxel{};
+      // whole warps: the first voxels have fibres or viscosity, the others ask for neither
+      const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
+      const auto fetch = [&](std::uint32_t v) {
+        return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
+      };
+      if (threadIdx.x < patch.voxels)
+        voxel = fetch(threadIdx.x);
+      for (std::uint32_t h = threadIdx.x; h < patch.halo; h += threads)
+      {
+        const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
+        memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
+      }
+      meet<With>(launch);
+      for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
+      {
+        if (v != threadIdx.x)
+          voxel = fetch(v);
+        if (is_plain(v))
+          put_forces<plain>(g, voxel, activation, 0, look, memory, v);
+        else
+          put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
+      }
+      meet<With>(launch);
+      const bool last = step + 1 == g.step_end;
+      const auto step_node = [&](std::uint32_t n)
+      {
+        return step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
+                                     g.u[1 - present], step);
+      };
+      if constexpr (has<With, Effects::sliding>)
+        for (std::uint32_t n = threadIdx.x; n - (threadIdx.x & 31) < patch.nodes; n += threads)
+        {
+          const bool leaves = n < patch.nodes && step_node(n);
+          if (__any_sync(whole_warp, leaves))
+            aside(leave_planes<part<With, of_nodes>>)(g, launch, leaves, patch.first_node + n, filled + n, last);
+        }
+      else
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
+          step_node(n);
+      if (look)
+        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
+          if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
+            frequency_bits = max(frequency_bits, look_at_node(g, memory, patch.first_node + n,
+                                                              memory.place[launch.most_halo + filled + n].w));
+      filled += patch.nodes;
+    }
+    if (look)
+    {
+      const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
+      if ((threadIdx.x & 31) == 0)
+        atomicMax(g.look, largest);
+    }
+  }
+  if constexpr (has<With, Effects::sliding>)
+  {
+    meet<With>(launch);
+    if (threadIdx.x == 0)
+      atomicExch(plane_queue(launch).done, 1);
+  }
+}
+
+/// Kernels of patches by what their voxels have; `Nodes`: what their nodes do.
+template <Effects Nodes, int... Voxels>
+const void* patch_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
+{
+  const void* const kernels[] = { reinterpret_cast<const void*>(patch_kernel<Voxels | int(Nodes)>)... };
+  return kernels[static_cast<int>(voxel_part(effects))];
+}
+template <Effects Nodes>
+const void* patch_kernel_of(Effects effects)
+{
+  return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
+}
+
+/// In units of their own: the table of what slides counts for all calls of a unit, of kernels that never slide too.
+const void* sliding_patch_kernel(Effects effects);
+const void* friction_patch_kernel(Effects effects);
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "cuda/kernels/strip_sweep.cuh"
+
+#include <utility>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// A warp a strip. Looking at the time step is a kernel of its own, so that steps that do not hold no registers for it.
+// `Set`: an int, because nvcc does not name the sets of an enumeration.
+template <int Rows, bool Look, int Set>
+__global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
+    step_kernel(const __grid_constant__ StepArguments g)
+{
+  constexpr Effects With = static_cast<Effects>(Set);
+  __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
+  const std::uint32_t lane = threadIdx.x & 31;
+  const std::uint32_t s = blockIdx.x * (step_block / 32) + threadIdx.x / 32;
+  const std::int32_t step = g.step_begin;
+  const float4* const u = g.u[g.first];
+  float4* const next = g.u[1 - g.first];
+  if (has<With, Effects::fibres>)
+  {
+    load_activations(g, activations);
+    __syncthreads();
+  }
+  if (s >= g.strip_count)
+    return;
+  const Strip strip = g.strips[s];
+  const bool tasks = has<With, Effects::tasks> && strip.task_begin < strip.task_end && !g.forces_only;
+  const std::uint32_t* words = nullptr;
+  const std::uint32_t* viscous = nullptr;
+  if (has<With, Effects::fibres> && strip.fibre_begin != Strip::none)
+    words = g.fibre_words + strip.fibre_begin + lane;
+  if (has<With, Effects::viscosity> && g.viscous_words != nullptr)
+    viscous = g.viscous_words + strip.slot_begin + lane;
+  std::uint32_t frequency_bits = 0;
+  sweep_strip<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next,
+                          activations_at(g, step, activations), Look, frequency_bits);
+  if (tasks)
+  {
+    __syncwarp();
+    run_tasks<With>(g, strip.task_begin, strip.task_end, u, next, step);
+  }
+  if (Look)
+  {
+    const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
+    if (lane == 0)
+      atomicMax(g.look, largest);
+  }
+}
+
+using StepKernel = void (*)(StepArguments);
+
+/// Kernels of strips by what their voxels have; `Nodes`: what their nodes do.
+template <Effects Nodes, bool Look, int... Voxels>
+StepKernel step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
+{
+  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Voxels)), Look, Voxels | int(Nodes)>... };
+  return kernels[static_cast<int>(voxel_part(effects))];
+}
+template <Effects Nodes>
+StepKernel step_kernel_of(Effects effects, bool look)
+{
+  using Sets = std::make_integer_sequence<int, voxel_sets>;
+  return look ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
+}
+
+/// In units of their own, as those of patches.
+StepKernel sliding_step_kernel(Effects effects, bool look);
+StepKernel friction_step_kernel(Effects effects, bool look);
+
+}  // namespace cuda
+}  // namespace frontalis

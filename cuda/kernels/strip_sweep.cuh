@@ -1,0 +1,253 @@
+#pragma once
+
+#include "cuda/kernels/element_stress.cuh"
+#include "cuda/kernels/node_tasks.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// One row of nodes after the x step of the Walsh-Hadamard transform: sum and difference with the neighbour in x.
+struct RowValues
+{
+  float sum[3];
+  float difference[3];
+};
+
+/// The displacement of a node. The fourth word is not fetched: a register that a load in flight writes and nobody reads
+/// would be taken for something else at once, and that would wait for the load.
+struct Displacement
+{
+  float2 xy;
+  float z;
+};
+
+__device__ __forceinline__ Displacement displacement(const float4* u, const uint2& place)
+{
+  const float* const at = reinterpret_cast<const float*>(u + (place.x & StripSlot::node_mask));
+  return { *reinterpret_cast<const float2*>(at), at[2] };
+}
+
+__device__ __forceinline__ RowValues transform_x(const Displacement& u)
+{
+  const float here[3] = { u.xy.x, u.xy.y, u.z };
+  RowValues row;
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    const float next = __shfl_down_sync(whole_warp, here[c], 1);
+    row.sum[c] = here[c] + next;
+    row.difference[c] = next - here[c];
+  }
+  return row;
+}
+
+/// Forces on a row of nodes before the transposed x step: component, then sum and difference.
+struct RowForces
+{
+  float part[3][2];
+};
+
+__device__ __forceinline__ RowForces no_forces() { return { { { 0, 0 }, { 0, 0 }, { 0, 0 } } }; }
+
+__device__ __forceinline__ void add(RowForces& to, const RowForces& from)
+{
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    to.part[c][0] += from.part[c][0];
+    to.part[c][1] += from.part[c][1];
+  }
+}
+
+/// y and z steps of the transform, the stress, and their transposes: voxel between rows a, b of the planes below,
+/// above.
+template <Effects With>
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+                                             const Activations& activation, const RowValues& below_a,
+                                             const RowValues& below_b, const RowValues& above_a,
+                                             const RowValues& above_b, bool look, float& stiffness,
+                                             RowForces force[2][2])
+{
+  float mode[3][8];
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    const float low[4] = { below_a.sum[c] + below_b.sum[c], below_a.difference[c] + below_b.difference[c],
+                           below_b.sum[c] - below_a.sum[c], below_b.difference[c] - below_a.difference[c] };
+    const float high[4] = { above_a.sum[c] + above_b.sum[c], above_a.difference[c] + above_b.difference[c],
+                            above_b.sum[c] - above_a.sum[c], above_b.difference[c] - above_a.difference[c] };
+#pragma unroll
+    for (int q = 0; q < 4; ++q)
+    {
+      mode[c][q] = low[q] + high[q];
+      mode[c][q + 4] = high[q] - low[q];
+    }
+  }
+  element_forces<With>(g, place, activation, 0, mode, look, stiffness);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+#pragma unroll
+    for (int x = 0; x < 2; ++x)
+    {
+      const float without_y = mode[c][x], with_y = mode[c][x + 2];
+      const float below0 = without_y - mode[c][x + 4], below1 = with_y - mode[c][x + 6];
+      const float above0 = without_y + mode[c][x + 4], above1 = with_y + mode[c][x + 6];
+      force[0][0].part[c][x] = below0 - below1;
+      force[0][1].part[c][x] = below0 + below1;
+      force[1][0].part[c][x] = above0 - above1;
+      force[1][1].part[c][x] = above0 + above1;
+    }
+}
+
+/// The transposed x step.
+__device__ __forceinline__ void transform_x_transposed(const RowForces& row, int left, float (&force)[3])
+{
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+  {
+    // the lane before the first is the last one, which never holds a voxel
+    const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
+    force[c] = row.part[c][0] - row.part[c][1] + from_left;
+  }
+}
+
+/// The transposed x step, then the update of the node or its force alone.
+__device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
+                                          const NodeFetch& fetch, const RowForces& row)
+{
+  float force[3];
+  transform_x_transposed(row, left, force);
+  const std::uint32_t node = word & StripSlot::node_mask;
+  if (g.forces_only)
+  {
+    if (word & StripSlot::owned)
+      next[node] = make_float4(force[0], force[1], force[2], 0);
+  }
+  else if (word & StripSlot::updated)
+  {
+    const NodeState n = updated(g, node, fetch, force);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = n.v[i];
+    next[node] = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
+  }
+}
+
+/// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
+/// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
+/// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements and words of
+/// fibres a row ahead.
+/// `slot`, `fibre_word`, `viscous_word`: the strip's, at this lane; null where it has none.
+template <int Rows, Effects With>
+__device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
+                                            const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
+                                            const float4* u, float4* next, const Activations& activation, bool look,
+                                            std::uint32_t& frequency_bits)
+{
+  constexpr int nodes = Rows + 2;
+  const int lane = threadIdx.x & 31;
+  const int left = (lane + 31) & 31;
+  RowValues below[nodes];
+  RowForces carried[Rows];
+  float carried_stiffness[Rows] = {};
+  uint2 here[nodes], above_slot[nodes];
+#pragma unroll
+  for (int r = 0; r < nodes; ++r)
+    here[r] = slot[r * 32];
+  slot += nodes * 32;
+#pragma unroll
+  for (int r = 0; r < nodes; ++r)
+    above_slot[r] = slot[r * 32];
+  {
+    Displacement raw[nodes];
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      raw[r] = displacement(u, here[r]);
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      below[r] = transform_x(raw[r]);
+  }
+#pragma unroll
+  for (int r = 0; r < Rows; ++r)
+    carried[r] = no_forces();
+  ElementPlace place{};
+  std::uint32_t next_word = has<With, Effects::fibres> && fibre_word != nullptr ? *fibre_word : 0;
+  Displacement raw_a = displacement(u, above_slot[0]), raw_b = displacement(u, above_slot[1]);
+  for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
+  {
+    slot += nodes * 32;
+    uint2 further[nodes];
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+      further[r] = slot[r * 32];
+    RowForces pending_below = no_forces(), pending_above = no_forces();
+    float pending_stiffness = 0;
+    RowValues above_a = transform_x(raw_a);
+#pragma unroll
+    for (int r = 0; r <= Rows; ++r)
+    {
+      const RowValues above_b = transform_x(raw_b);
+      if (r + 2 < nodes)
+        raw_b = displacement(u, above_slot[r + 2]);
+      else
+      {
+        raw_a = displacement(u, further[0]);
+        raw_b = displacement(u, further[1]);
+      }
+      if (has<With, Effects::fibres> && fibre_word != nullptr)
+      {
+        fetch_fibre(g, next_word, place);
+        fibre_word += 32;
+        next_word = *fibre_word;
+      }
+      if (has<With, Effects::viscosity> && viscous_word != nullptr)
+        place.viscous = viscous_word[(plane * nodes + r) * 32];
+      NodeFetch fetch{};
+      if (r > 0)
+        fetch = fetch_node(g, u, here[r].x);
+      RowForces force[2][2] = { { no_forces(), no_forces() }, { no_forces(), no_forces() } };
+      float stiffness = 0;
+      if (__any_sync(whole_warp, here[r].y != 0))
+      {
+        place.palette = here[r].y;
+        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, stiffness, force);
+      }
+      // a voxel adds the same to each of its nodes
+      if (look && r > 0)
+      {
+        const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;
+        const float sum = right + __shfl_sync(whole_warp, right, left);
+        if ((here[r].x & StripSlot::updated) != 0)
+          frequency_bits =
+              max(frequency_bits, frequency_bits_of(g, here[r].x & StripSlot::node_mask, fetch.own.w, sum));
+        carried_stiffness[r - 1] = pair;
+      }
+      pending_stiffness = stiffness;
+      if (r > 0)
+      {
+        RowForces sum = carried[r - 1];
+        add(sum, pending_below);
+        add(sum, force[0][0]);
+        step_node(g, next, here[r].x, left, fetch, sum);
+        carried[r - 1] = pending_above;
+        add(carried[r - 1], force[1][0]);
+      }
+      pending_below = force[0][1];
+      pending_above = force[1][1];
+      below[r] = above_a;
+      above_a = above_b;
+    }
+    below[nodes - 1] = above_a;
+#pragma unroll
+    for (int r = 0; r < nodes; ++r)
+    {
+      here[r] = above_slot[r];
+      above_slot[r] = further[r];
+    }
+  }
+}
+
+}  // namespace cuda
+}  // namespace frontalis

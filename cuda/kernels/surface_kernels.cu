@@ -1,0 +1,122 @@
+#include "frontalis/physics/trilinear.hpp"
+#include "cuda/kernels/surface_kernels.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+constexpr int block = 128;
+
+template <class Real>
+__global__ void place(const BoundSurface s, const float4* u, Real* positions)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= s.vertex_count)
+    return;
+  double weight[8];
+  physics::trilinear_weights<double>(s.coordinates[3 * v], s.coordinates[3 * v + 1], s.coordinates[3 * v + 2], weight);
+  double moved[3] = { 0, 0, 0 };
+  for (int b = 0; b < 8; ++b)
+  {
+    const float4 node = u[s.nodes[8 * v + b]];
+    moved[0] += weight[b] * node.x;
+    moved[1] += weight[b] * node.y;
+    moved[2] += weight[b] * node.z;
+  }
+  for (int i = 0; i < 3; ++i)
+    positions[3 * v + i] = static_cast<Real>(s.rest[3 * v + i] + moved[i]);
+}
+
+template <class Real>
+__device__ physics::Vec3<Real> vertex(const Real* positions, int v)
+{
+  return { positions[3 * v], positions[3 * v + 1], positions[3 * v + 2] };
+}
+
+// twice the area vectors of the triangles around a vertex, in their order
+template <class Real>
+__device__ physics::Vec3<Real> area_around(const BoundSurface& s, const Real* positions, std::uint32_t v)
+{
+  physics::Vec3<Real> sum{ 0, 0, 0 };
+  for (auto t = s.around_begin[v]; t < s.around_begin[v + 1]; ++t)
+  {
+    const int3 corner = s.triangles[s.around[t]];
+    const auto a = vertex(positions, corner.x);
+    sum = sum + cross(vertex(positions, corner.y) - a, vertex(positions, corner.z) - a);
+  }
+  return sum;
+}
+
+__global__ void normals(const BoundSurface s, const float* positions, float* out)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= s.vertex_count)
+    return;
+  const auto sum = area_around(s, positions, v);
+  const float length = norm(sum);
+  out[3 * v] = length > 0 ? sum.x / length : 0;
+  out[3 * v + 1] = length > 0 ? sum.y / length : 0;
+  out[3 * v + 2] = length > 0 ? sum.z / length : 0;
+}
+
+__global__ void pressure_forces(const BoundSurface s, double pressure, const double* positions, double* forces)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= s.vertex_count)
+    return;
+  const auto sum = area_around(s, positions, v);
+  const double share = -pressure / 6;
+  forces[3 * v] = share * sum.x;
+  forces[3 * v + 1] = share * sum.y;
+  forces[3 * v + 2] = share * sum.z;
+}
+
+__global__ void hold(const std::uint32_t* nodes, std::uint32_t count, float4* u)
+{
+  const std::uint32_t n = blockIdx.x * block + threadIdx.x;
+  if (n < count)
+    u[nodes[n]] = make_float4(0, 0, 0, u[nodes[n]].w);
+}
+
+namespace
+{
+
+int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / block); }
+
+}  // namespace
+}  // namespace cuda
+
+cudaError_t launch_place(const BoundSurface& surface, const float4* u, float* positions, cudaStream_t stream)
+{
+  if (surface.vertex_count > 0)
+    cuda::place<<<cuda::blocks(surface.vertex_count), cuda::block, 0, stream>>>(surface, u, positions);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_normals(const BoundSurface& surface, const float* positions, float* normals, cudaStream_t stream)
+{
+  if (surface.vertex_count > 0)
+    cuda::normals<<<cuda::blocks(surface.vertex_count), cuda::block, 0, stream>>>(surface, positions, normals);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double pressure, double* positions,
+                            double* forces, cudaStream_t stream)
+{
+  if (surface.vertex_count == 0)
+    return cudaSuccess;
+  const int count = cuda::blocks(surface.vertex_count);
+  cuda::place<<<count, cuda::block, 0, stream>>>(surface, u, positions);
+  cuda::pressure_forces<<<count, cuda::block, 0, stream>>>(surface, pressure, positions, forces);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_hold(const std::uint32_t* nodes, std::uint32_t count, float4* u, cudaStream_t stream)
+{
+  if (count > 0)
+    cuda::hold<<<cuda::blocks(count), cuda::block, 0, stream>>>(nodes, count, u);
+  return cudaGetLastError();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,201 @@
+#include "cuda/kernels/element_stress.cuh"
+#include "frontalis/physics/ramp.hpp"
+#include "cuda/kernels/node_tasks.cuh"
+#include "cuda/kernels/voxel_kernels.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+constexpr int block = 128;
+
+__device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepArguments& g, const float4* u,
+                                                                    const std::uint32_t* node)
+{
+  float mode[3][8];
+  for (int b = 0; b < 8; ++b)
+  {
+    const float4 x = u[node[b]];
+    mode[0][b] = x.x;
+    mode[1][b] = x.y;
+    mode[2][b] = x.z;
+  }
+  for (auto& component : mode)
+    physics::walsh_hadamard(component);
+  return physics::kinematics(mode[0], mode[1], mode[2], g.scale);
+}
+
+__global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous,
+                                               const float4* u, const float4* u_before, float elapsed)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= viscous.count)
+    return;
+  const ViscousVoxel voxel = viscous.voxels[v];
+  const auto k = kinematics_of(g, u, voxel.node);
+  if (viscous.account == nullptr)
+    return relax_voxel<Effects::general_element>(g, v, voxel.palette, elapsed, k, k, nullptr);
+  const auto k_before = kinematics_of(g, u_before, voxel.node);
+  relax_voxel<Effects::general_element>(g, v, voxel.palette, elapsed, k, k_before, viscous.account);
+}
+
+__global__ void __launch_bounds__(block)
+    fibre_work(const __grid_constant__ StepArguments g, const FibreVoxels fibres, const float4* u, int step, bool open)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= fibres.count)
+    return;
+  const FibreVoxel voxel = fibres.voxels[v];
+  const auto k = kinematics_of(g, u, voxel.node);
+  const auto fraction = static_cast<float>((step + 1.0) / g.steps);
+  double work = 0;
+  for (std::uint32_t f = voxel.first; f < voxel.first + voxel.count; ++f)
+  {
+    const float4 fibre = g.fibres[f];
+    const std::uint32_t word = g.fibre_muscle[f], muscle = word & 0x3fffffffu;
+    const float begin = g.activation_begin[muscle];
+    const float a[3] = { fibre.x, fibre.y, fibre.z };
+    float squared = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const float along = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
+      squared += along * along;
+    }
+    const float stress =
+        physics::fibre_stress<float>(squared, k.J, fibre.w, begin + fraction * (g.activation_end[muscle] - begin),
+                                     (word & 0x40000000u) ? 1.0f : 0.0f, (word & 0x80000000u) ? 1.0f : 0.0f);
+    const float2 memory = fibres.memory[f];
+    work -= 0.25 * (double(memory.x) + double(stress)) * (double(squared) - double(memory.y));
+    fibres.memory[f] = make_float2(stress, squared);
+  }
+  fibres.work[v] = open ? 0 : fibres.work[v] + work;
+}
+
+__global__ void __launch_bounds__(block)
+    node_work(const __grid_constant__ StepArguments g, const NodeAccount account, double damping)
+{
+  const std::uint32_t n = blockIdx.x * block + threadIdx.x;
+  if (n >= account.nodes)
+    return;
+  const float4 u = g.u[g.first][n], next = g.u[1 - g.first][n];
+  const double moved[3] = { double(next.x) - u.x, double(next.y) - u.y, double(next.z) - u.z };
+  double damped = 0, constrained = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double old = g.velocity_before[i][n], free = g.velocity_free[i][n], now = g.v[i][n];
+    damped += 0.25 * (old + now) * (old + free);
+    constrained += 0.5 * (old + now) * (now - free);
+    const double beside = moved[i] - g.dt_exact * now, change = free - old + 0.5 * damping * g.kick * (old + free);
+    constrained -= change * 0.5 * (beside + account.beside[3 * n + i]) / g.kick;
+    account.beside[3 * n + i] = beside;
+  }
+  const double mass = u.w > 0 ? 1.0 / double(u.w) : 0;
+  account.damping[n] += damping * g.kick * mass * damped;
+  account.constraint[n] += mass * constrained;
+}
+
+__global__ void __launch_bounds__(block)
+    load_work(const __grid_constant__ StepArguments g, const NodeAccount account, int step)
+{
+  const std::uint32_t l = blockIdx.x * block + threadIdx.x;
+  if (l >= account.loaded_nodes)
+    return;
+  const std::uint32_t n = account.loaded[l];
+  double work = 0;
+  for (auto p = g.load_begin[l]; p < g.load_begin[l + 1]; ++p)
+  {
+    const LoadPart part = g.load_parts[p];
+    const double share = part.weight * physics::ramped(g.time + step * g.dt_exact, g.load_ramp[part.load]);
+    for (int i = 0; i < 3; ++i)
+      work += share * g.vertex_force[3 * part.vertex + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
+  }
+  account.load[l] += g.kick * work;
+}
+
+__global__ void __launch_bounds__(block)
+    displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode, float amount, float4* out)
+{
+  const std::uint32_t n = blockIdx.x * block + threadIdx.x;
+  if (n >= nodes)
+    return;
+  const float4 at = u[n], along = mode[n];
+  const float share = amount * sqrtf(mobility == nullptr ? at.w : mobility[n]);
+  out[n] = make_float4(at.x + share * along.x, at.y + share * along.y, at.z + share * along.z, at.w);
+}
+
+__global__ void __launch_bounds__(block)
+    product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces, const float4* present,
+            float factor, float4* mode, double2* seen)
+{
+  __shared__ double2 own[block];
+  double2 sum{ 0, 0 };
+  for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < nodes; n += product_blocks * block)
+  {
+    const float4 p = forces[n], m = present[n];
+    const float root = sqrtf(mobility == nullptr ? u[n].w : mobility[n]), share = factor * root;
+    const float4 now = make_float4(share * (p.x - m.x), share * (p.y - m.y), share * (p.z - m.z), 0);
+    mode[n] = now;
+    sum.x = fmax(sum.x, double(root) * fmax(fabs(now.x), fmax(fabs(now.y), fabs(now.z))));
+    sum.y += double(now.x) * now.x + double(now.y) * now.y + double(now.z) * now.z;
+  }
+  own[threadIdx.x] = sum;
+  for (int half = block / 2; half > 0; half /= 2)
+  {
+    __syncthreads();
+    if (threadIdx.x < half)
+      own[threadIdx.x] = { fmax(own[threadIdx.x].x, own[threadIdx.x + half].x),
+                           own[threadIdx.x].y + own[threadIdx.x + half].y };
+  }
+  if (threadIdx.x == 0)
+    seen[blockIdx.x] = own[0];
+}
+
+namespace
+{
+
+int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / block); }
+
+}  // namespace
+}  // namespace cuda
+
+cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
+                              const float4* u_before, float elapsed, cudaStream_t stream)
+{
+  if (viscous.count > 0)
+    cuda::relax<<<cuda::blocks(viscous.count), cuda::block, 0, stream>>>(arguments, viscous, u, u_before, elapsed);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels& fibres, const float4* u, int step,
+                              bool open, cudaStream_t stream)
+{
+  if (fibres.count > 0)
+    cuda::fibre_work<<<cuda::blocks(fibres.count), cuda::block, 0, stream>>>(arguments, fibres, u, step, open);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
+                                cudaStream_t stream)
+{
+  cuda::node_work<<<cuda::blocks(account.nodes), cuda::block, 0, stream>>>(arguments, account, damping);
+  if (account.loaded_nodes > 0)
+    cuda::load_work<<<cuda::blocks(account.loaded_nodes), cuda::block, 0, stream>>>(arguments, account, step);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
+                            float amount, float4* out, cudaStream_t stream)
+{
+  cuda::displace<<<cuda::blocks(nodes), cuda::block, 0, stream>>>(nodes, mobility, u, mode, amount, out);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
+                           const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream)
+{
+  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, mobility, u, forces, present, factor, mode, seen);
+  return cudaGetLastError();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,281 @@
+#include "cuda/partition/voxel_patches.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace frontalis
+{
+namespace
+{
+
+// what computing costs, in plain voxels; from what blocks took of which all voxels had the effect or none
+constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
+
+std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
+
+float voxel_cost(const Model& model, std::size_t e)
+{
+  return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
+}
+
+// recursive bisection of nodes by weight, each time across where the nodes' cross-section is smallest
+class Bisection
+{
+public:
+  Bisection(const Model& model, const std::vector<float>& weight)
+      : part_of(model.nodes.size()), model_(model), weight_(weight), order_(model.nodes.size())
+  {
+    std::iota(order_.begin(), order_.end(), 0u);
+  }
+
+  void cut(int parts)
+  {
+    cut(0, order_.size(), 0, parts);
+    order_ = {};
+  }
+
+  std::vector<std::uint32_t> part_of;  ///< of each node
+
+private:
+  struct Plane
+  {
+    int axis = 0;
+    std::int32_t at = 0;
+    double before = 0;  // weight of the nodes before it
+    std::size_t section = 0;
+  };
+
+  Plane find(std::size_t first, std::size_t last, double share)
+  {
+    Plane best;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sum_.assign(model_.size[axis] + 1, 0);
+      count_.assign(model_.size[axis] + 1, 0);
+      double total = 0;
+      for (std::size_t n = first; n < last; ++n)
+      {
+        const std::int32_t at = model_.nodes[order_[n]][axis];
+        sum_[at] += weight_[order_[n]];
+        ++count_[at];
+        total += weight_[order_[n]];
+      }
+      Plane plane;
+      plane.axis = axis;
+      while (plane.at < model_.size[axis] && plane.before + sum_[plane.at] <= share * total)
+        plane.before += sum_[plane.at++];
+      plane.section = count_[plane.at];
+      if (axis == 0 || plane.section < best.section)
+      {
+        best = plane;
+        missing_ = share * total - plane.before;
+      }
+    }
+    return best;
+  }
+
+  void cut(std::size_t first, std::size_t last, std::uint32_t part, int parts)
+  {
+    if (parts == 1 || first == last)
+    {
+      for (std::size_t n = first; n < last; ++n)
+        part_of[order_[n]] = part;
+      return;
+    }
+    const int low = parts / 2;
+    const Plane plane = find(first, last, static_cast<double>(low) / parts);
+    const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
+    const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
+               end = order_.begin() + static_cast<std::ptrdiff_t>(last);
+    // nodes stay in the model's order, so that the plane itself is cut along a row
+    const auto within = std::stable_partition(begin, end, [&](std::uint32_t n) { return coordinate(n) < plane.at; });
+    const auto after = std::stable_partition(within, end, [&](std::uint32_t n) { return coordinate(n) == plane.at; });
+    auto middle = within;
+    for (double missing = missing_; middle < after && missing > 0.5 * weight_[*middle]; ++middle)
+      missing -= weight_[*middle];
+    const auto half = static_cast<std::size_t>(middle - order_.begin());
+    cut(first, half, part, low);
+    cut(half, last, part + static_cast<std::uint32_t>(low), parts - low);
+  }
+
+  const Model& model_;
+  const std::vector<float>& weight_;
+  std::vector<std::uint32_t> order_;
+  std::vector<double> sum_;
+  std::vector<std::size_t> count_;
+  double missing_ = 0;
+};
+
+// calls with (part, voxel) once for each part that has a corner of the voxel
+template <class Call>
+void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, const Call& call)
+{
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    std::uint32_t seen[8];
+    int count = 0;
+    for (const auto n : model.voxel_nodes[e])
+      if (std::find(seen, seen + count, part_of[n]) == seen + count)
+        call(seen[count++] = part_of[n], static_cast<std::uint32_t>(e));
+  }
+}
+
+// parts of about equal cost: weights are mended a few times, since how much a part computes beside its own is known
+// afterwards
+std::vector<std::uint32_t> partition(const Model& model, int parts)
+{
+  std::vector<float> weight(model.nodes.size(), node_cost);
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (const auto n : model.voxel_nodes[e])
+      weight[n] += 0.125f * voxel_cost(model, e);
+  std::vector<std::uint32_t> best;
+  double least = 0;
+  for (int round = 0; round < 6; ++round)
+  {
+    Bisection bisection(model, weight);
+    bisection.cut(parts);
+    std::vector<double> cost(parts, 0);
+    for (const auto part : bisection.part_of)
+      cost[part] += node_cost;
+    each_part(model, bisection.part_of,
+              [&](std::uint32_t part, std::uint32_t e) { cost[part] += voxel_cost(model, e); });
+    const double mean = std::accumulate(cost.begin(), cost.end(), 0.0) / parts;
+    for (std::size_t n = 0; n < weight.size(); ++n)
+      weight[n] *= static_cast<float>(cost[bisection.part_of[n]] / mean);
+    const double most = *std::max_element(cost.begin(), cost.end());
+    if (best.empty() || most < least)
+    {
+      best = std::move(bisection.part_of);
+      least = most;
+    }
+  }
+  return best;
+}
+
+// nodes that do more than slide on what is still: a warp takes as long for one of them as for all of its own
+std::vector<char> busy_nodes(const Model& model)
+{
+  std::vector<char> busy(model.nodes.size(), 0);
+  for (const SlidingNode& node : model.sliding)
+  {
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    busy[node.node] = surface.bone >= 0 || surface.friction > 0 ? 1 : 0;
+  }
+  for (const auto& node : model.prescribed)
+    busy[node.node] = 1;
+  for (const auto& node : model.rigid)
+    busy[node.node] = node.bone >= 0 ? 1 : 0;
+  return busy;
+}
+
+}  // namespace
+
+VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
+{
+  const int parts = settings.blocks * settings.turns;
+  const auto part_of = partition(model, parts);
+  std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
+  std::vector<char> on_border(model.nodes.size(), 0);
+  each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
+  for (const auto& corners : model.voxel_nodes)
+    for (const auto n : corners)
+      if (part_of[n] != part_of[corners[0]])
+      {
+        for (const auto other : corners)
+          on_border[other] = 1;
+        break;
+      }
+  const auto busy = busy_nodes(model);
+  for (const char border : { 1, 0 })
+    for (const char first : { 1, 0 })
+      for (std::size_t n = 0; n < model.nodes.size(); ++n)
+        if (on_border[n] == border && busy[n] == first)
+          nodes_of[part_of[n]].push_back(static_cast<std::uint32_t>(n));
+  number_nodes(model.nodes.size(), nodes_of);
+  for (int p = 0; p < parts; ++p)
+  {
+    patches[p].border = static_cast<std::uint32_t>(
+        std::count_if(nodes_of[p].begin(), nodes_of[p].end(), [&](std::uint32_t n) { return on_border[n] != 0; }));
+    most_voxels = std::max(most_voxels, static_cast<std::uint32_t>(voxels_of[p].size()));
+  }
+
+  // halos in the order of device nodes, so that neighbouring threads read neighbouring nodes
+  std::vector<std::vector<std::uint32_t>> halo_of(parts);
+  for (int p = 0; p < parts; ++p)
+  {
+    auto& nodes = halo_of[p];
+    for (const auto e : voxels_of[p])
+      for (const auto n : model.voxel_nodes[e])
+        if (part_of[n] != static_cast<std::uint32_t>(p))
+          nodes.push_back(device_node[n]);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    patches[p].halo_begin = static_cast<std::uint32_t>(halo.size());
+    patches[p].halo = static_cast<std::uint32_t>(nodes.size());
+    halo.insert(halo.end(), nodes.begin(), nodes.end());
+    most_halo = std::max(most_halo, patches[p].halo);
+    const auto rank = [&](std::uint32_t e) { return std::make_pair(is_viscous(model, e), fibres_of(model, e)); };
+    std::stable_sort(voxels_of[p].begin(), voxels_of[p].end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return rank(a) > rank(b); });
+    patches[p].special = static_cast<std::uint32_t>(
+        std::count_if(voxels_of[p].begin(), voxels_of[p].end(),
+                      [&](std::uint32_t e) { return rank(e) > std::make_pair(false, std::int32_t{ 0 }); }));
+  }
+
+  std::array<std::uint16_t, 8> none{};
+  none.fill(static_cast<std::uint16_t>(most_voxels));
+  node_voxel.assign(model.nodes.size() + 1, none);
+  std::vector<std::uint32_t> filled(settings.blocks, 0);
+  for (int p = 0; p < parts; ++p)
+  {
+    Patch& patch = patches[p];
+    patch.voxel_begin = static_cast<std::uint32_t>(voxel.size());
+    patch.voxels = static_cast<std::uint32_t>(voxels_of[p].size());
+    add_patch(model, patch, voxels_of[p], most_halo + filled[p % settings.blocks]);
+    filled[p % settings.blocks] += patch.nodes;
+    most_nodes = std::max(most_nodes, filled[p % settings.blocks]);
+  }
+  if (most_halo + most_nodes > 65535 || most_voxels >= 65535)
+    throw Error("backend cuda: patches of " + std::to_string(most_nodes) + " nodes; allowed are 65535");
+}
+
+void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of)
+{
+  device_node.assign(count, 0);
+  std::uint32_t next = 1;
+  for (const auto& nodes : nodes_of)
+  {
+    patches.push_back({ next, static_cast<std::uint32_t>(nodes.size()), 0, 0, 0, 0, 0, 0 });
+    for (const auto n : nodes)
+      device_node[n] = next++;
+  }
+}
+
+// `first_place`: of its first own node
+void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
+                             std::uint32_t first_place)
+{
+  const auto halo_first = halo.begin() + patch.halo_begin, halo_last = halo_first + patch.halo;
+  for (std::size_t v = 0; v < voxels.size(); ++v)
+  {
+    std::array<std::uint16_t, 8> places{};
+    for (int b = 0; b < 8; ++b)
+    {
+      const std::uint32_t node = device_node[model.voxel_nodes[voxels[v]][b]];
+      const bool own = node >= patch.first_node && node < patch.first_node + patch.nodes;
+      if (own)
+        node_voxel[node][b] = static_cast<std::uint16_t>(v);
+      places[b] = static_cast<std::uint16_t>(
+          own ? first_place + node - patch.first_node
+              : static_cast<std::uint32_t>(std::lower_bound(halo_first, halo_last, node) - halo_first));
+    }
+    corner.push_back(places);
+    voxel.push_back(voxels[v]);
+  }
+}
+
+}  // namespace frontalis

@@ -1,0 +1,197 @@
+#include "bake/fibres/fibre_coordinates.hpp"
+
+#include "frontalis/error.hpp"
+#include "bake/fibres/coordinate_range.hpp"
+#include "bake/fibres/grid_field.hpp"
+#include "bake/mesh/surface_direction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double pi = 3.14159265358979323846;
+
+CornerField corners_of(const MuscleGrid& grid, const Eigen::VectorXd& nodal)
+{
+  CornerField field;
+  for (const auto& nodes : grid.cell_nodes)
+  {
+    std::array<double, 8> values{};
+    for (std::size_t b = 0; b < 8; ++b)
+      values[b] = nodal(nodes[b]);
+    field.push_back(values);
+  }
+  return field;
+}
+
+/// Turns around the hole, 0 to 1 from anywhere: the azimuth plus what makes it harmonic.
+CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField& field)
+{
+  const Vector3 aside = std::abs(hole.axis[0]) < 0.6 ? Vector3{ 1, 0, 0 } : Vector3{ 0, 1, 0 };
+  const Vector3 x = normalised(cross(hole.axis, aside)), y = cross(hole.axis, x);
+  std::vector<double> turns;
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+  {
+    const Vector3 d = grid.node_position(n) - hole.centre;
+    turns.push_back(std::atan2(dot(d, y), dot(d, x)) / (2 * pi));
+  }
+  CornerField azimuth;
+  for (const auto& nodes : grid.cell_nodes)
+  {
+    std::array<double, 8> values{};
+    const double first = turns[static_cast<std::size_t>(nodes[0])];
+    for (std::size_t b = 0; b < 8; ++b)
+    {
+      const double difference = turns[static_cast<std::size_t>(nodes[b])] - first;
+      values[b] = first + difference - std::round(difference);
+    }
+    azimuth.push_back(values);
+  }
+  const CornerField correction = corners_of(grid, field.balance(azimuth));
+  for (std::size_t c = 0; c < azimuth.size(); ++c)
+    for (std::size_t b = 0; b < 8; ++b)
+      azimuth[c][b] += correction[c][b];
+  return azimuth;
+}
+
+/// Nodes nearest to an end, as the ground of a field between ends.
+std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3&)>& distance)
+{
+  std::vector<double> distances;
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+    distances.push_back(distance(grid.node_position(n)));
+  const double near = std::max(0.0, *std::min_element(distances.begin(), distances.end())) + 0.75 * grid.edge;
+  std::vector<std::int32_t> nodes;
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+    if (distances[n] <= near)
+      nodes.push_back(static_cast<std::int32_t>(n));
+  return nodes;
+}
+
+Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, const GridField& field)
+{
+  const auto origin = nodes_at(grid, guide.origin), insertion = nodes_at(grid, guide.insertion);
+  std::vector<std::int32_t> shared;
+  std::set_intersection(origin.begin(), origin.end(), insertion.begin(), insertion.end(), std::back_inserter(shared));
+  if (!shared.empty())
+    throw Error("its origin and insertion are at the same place; they must be apart");
+  std::vector<std::pair<std::int32_t, double>> fixed;
+  fixed.reserve(origin.size() + insertion.size());
+  for (const std::int32_t n : origin)
+    fixed.emplace_back(n, 0.0);
+  for (const std::int32_t n : insertion)
+    fixed.emplace_back(n, 1.0);
+  return field.between(fixed);
+}
+
+double at(const std::array<double, 8>& corners, const std::array<double, 8>& weights)
+{
+  double value = 0;
+  for (std::size_t b = 0; b < 8; ++b)
+    value += weights[b] * corners[b];
+  return value;
+}
+
+/// Starting fields that every slow mode has something of.
+Eigen::MatrixXd starting_fields(const MuscleGrid& grid)
+{
+  Eigen::MatrixXd fields(static_cast<Eigen::Index>(grid.nodes.size()), 6);
+  Vector3 mean{ 0, 0, 0 };
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+    mean = mean + (1.0 / static_cast<double>(grid.nodes.size())) * grid.node_position(n);
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+  {
+    const Vector3 p = grid.node_position(n) - mean;
+    fields.row(static_cast<Eigen::Index>(n)) << p[0], p[1], p[2], norm(p), p[0] * p[1] / (norm(p) + grid.edge),
+        p[1] * p[2] / (norm(p) + grid.edge);
+  }
+  return fields;
+}
+
+}  // namespace
+
+FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& guide)
+{
+  Box box;
+  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
+    box.include(grid.node_position(n));
+  const double diagonal = norm(box.upper - box.lower);
+  const double reach = std::max(2 * grid.edge, 0.04 * diagonal);
+  const auto shown = shown_directions(grid, reach);
+
+  FibreCoordinates result;
+  result.distinctness = std::numeric_limits<double>::infinity();
+  CornerField along;
+  std::vector<ShownDirection> trusted = shown;
+  std::vector<Eigen::Vector3d> gradients(grid.cells.size());
+  for (int turn = 0; turn < 2; ++turn)
+  {
+    const GridField field(grid, slow_along(trusted));
+    if (guide.ring)
+      along = around(grid, *guide.ring, field);
+    else if (guide.origin)
+      along = corners_of(grid, between_ends(grid, guide, field));
+    else
+    {
+      const auto modes = field.slowest_modes(starting_fields(grid));
+      along = corners_of(grid, modes.fields.col(0));
+      if (turn == 0)
+        result.distinctness = std::sqrt(modes.values(1) / modes.values(0));
+    }
+    for (std::size_t c = 0; c < along.size(); ++c)
+      gradients[c] = gradient(grid, along[c]);
+    trusted = blend(grid, reach, shown, gradients);
+  }
+
+  // across: next to constant along the fibres
+  std::vector<Eigen::Vector3d> fibres;
+  fibres.reserve(trusted.size());
+  for (const ShownDirection& fibre : trusted)
+    fibres.push_back(fibre.direction);
+  const GridField field(grid, fibres, 1e-4);
+  const CornerField across = corners_of(grid, field.slowest_modes(starting_fields(grid)).fields.col(0));
+
+  const WayTable length(grid, along, guide.ring.has_value()), width(grid, across, false);
+  result.length = length.length();
+  result.width = width.length();
+  const auto coordinates = [&](std::size_t cell, const std::array<double, 8>& weights)
+  {
+    const double u = at(along[cell], weights);
+    return std::array<double, 2>{ length(guide.ring ? u - std::floor(u) : u) / result.length,
+                                  width(at(across[cell], weights)) / result.width };
+  };
+  std::array<double, 8> middle{};
+  middle.fill(0.125);
+  for (std::size_t c = 0; c < grid.cells.size(); ++c)
+    result.cells.push_back(coordinates(c, middle));
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const MuscleGrid::Sample& sample : grid.samples)
+    result.samples.push_back(sample.cell < 0
+                                 ? std::array<double, 2>{ none, none }
+                                 : coordinates(static_cast<std::size_t>(sample.cell),
+                                               grid.weights(static_cast<std::size_t>(sample.cell), sample.point)));
+  // fibres end where the muscle does, and keep to its sides
+  const auto stretch = [&](std::size_t stretched, double ends)
+  {
+    const Stretch table(grid, result.samples, stretched, stretched == 1 && guide.ring, ends);
+    for (auto* points : { &result.cells, &result.samples })
+      for (auto& point : *points)
+        if (!std::isnan(point[0]))
+          table.apply(point);
+  };
+  if (!guide.ring)
+  {
+    // an end that is cut obliquely takes about half a width
+    stretch(1, std::min(0.45, 1.5 * result.width / result.length));
+    stretch(0, 0);
+  }
+  stretch(1, 0);
+  return result;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,160 @@
+#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/voxel_index.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+/// Number of each voxel's component, components joined by faces; the sizes in `sizes`.
+std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
+{
+  const VoxelIndex index(model.voxels, model.size);
+  std::vector<std::int32_t> component(model.voxels.size(), -1);
+  std::vector<std::size_t> front;
+  for (std::size_t seed = 0; seed < component.size(); ++seed)
+  {
+    if (component[seed] >= 0)
+      continue;
+    const auto number = static_cast<std::int32_t>(sizes.size());
+    std::size_t size = 0;
+    component[seed] = number;
+    front.push_back(seed);
+    while (!front.empty())
+    {
+      const std::size_t e = front.back();
+      front.pop_back();
+      ++size;
+      for (int side = 0; side < 6; ++side)
+      {
+        auto place = model.voxels[e];
+        place[static_cast<std::size_t>(side / 2)] += side % 2 == 0 ? -1 : 1;
+        const std::int32_t other = index.find(place);
+        if (other < 0 || component[static_cast<std::size_t>(other)] >= 0)
+          continue;
+        component[static_cast<std::size_t>(other)] = number;
+        front.push_back(static_cast<std::size_t>(other));
+      }
+    }
+    sizes.push_back(size);
+  }
+  return component;
+}
+
+/// Keeps those of the restricted nodes that are still there, with their new numbers.
+template <class Restricted>
+void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& number)
+{
+  std::size_t kept = 0;
+  for (Restricted entry : list)
+  {
+    entry.node = number[static_cast<std::size_t>(entry.node)];
+    if (entry.node >= 0)
+      list[kept++] = entry;
+  }
+  list.resize(kept);
+}
+
+void keep_voxels(Model& model, const std::vector<bool>& keep)
+{
+  Model kept;
+  kept.mixture_begin.push_back(0);
+  kept.fibre_begin.push_back(0);
+  for (std::size_t e = 0; e < keep.size(); ++e)
+  {
+    if (!keep[e])
+      continue;
+    kept.voxels.push_back(model.voxels[e]);
+    kept.fill.push_back(model.fill[e]);
+    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
+         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
+    {
+      kept.mixture_material.push_back(model.mixture_material[m]);
+      kept.mixture_proportion.push_back(model.mixture_proportion[m]);
+    }
+    kept.mixture_begin.push_back(static_cast<std::int32_t>(kept.mixture_material.size()));
+    for (auto m = static_cast<std::size_t>(model.fibre_begin[e]);
+         m < static_cast<std::size_t>(model.fibre_begin[e + 1]); ++m)
+    {
+      kept.fibre_muscle.push_back(model.fibre_muscle[m]);
+      kept.fibre_weight.push_back(model.fibre_weight[m]);
+      kept.fibre_direction.push_back(model.fibre_direction[m]);
+    }
+    kept.fibre_begin.push_back(static_cast<std::int32_t>(kept.fibre_muscle.size()));
+  }
+  model.voxels = std::move(kept.voxels);
+  model.fill = std::move(kept.fill);
+  model.mixture_begin = std::move(kept.mixture_begin);
+  model.mixture_material = std::move(kept.mixture_material);
+  model.mixture_proportion = std::move(kept.mixture_proportion);
+  model.fibre_begin = std::move(kept.fibre_begin);
+  model.fibre_muscle = std::move(kept.fibre_muscle);
+  model.fibre_weight = std::move(kept.fibre_weight);
+  model.fibre_direction = std::move(kept.fibre_direction);
+
+  // nodes stay in the same order, so old and new lists are merged
+  const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);
+  build_nodes(model);
+  std::vector<std::int32_t> number(old.size(), -1);
+  std::size_t at = 0;
+  for (std::size_t n = 0; n < old.size() && at < model.nodes.size(); ++n)
+  {
+    if (old[n] == model.nodes[at])
+      number[n] = static_cast<std::int32_t>(at++);
+  }
+  renumber(model.rigid, number);
+  renumber(model.sliding, number);
+  renumber(model.prescribed, number);
+}
+
+}  // namespace
+
+void remove_islands(Model& model, BakeStages& stages)
+{
+  std::vector<std::size_t> sizes;
+  const std::vector<std::int32_t> component = face_components(model, sizes);
+  if (sizes.size() < 2)
+    return;
+  std::vector<bool> restricted(model.nodes.size(), false);
+  for (const RigidNode& node : model.rigid)
+    restricted[static_cast<std::size_t>(node.node)] = true;
+  for (const SlidingNode& node : model.sliding)
+    restricted[static_cast<std::size_t>(node.node)] = true;
+  for (const PrescribedNode& node : model.prescribed)
+    restricted[static_cast<std::size_t>(node.node)] = true;
+  std::vector<bool> held(sizes.size(), false);
+  for (std::size_t e = 0; e < component.size(); ++e)
+  {
+    for (const std::int32_t n : model.voxel_nodes[e])
+    {
+      if (restricted[static_cast<std::size_t>(n)])
+        held[static_cast<std::size_t>(component[e])] = true;
+    }
+  }
+
+  const auto largest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  std::vector<bool> stays(sizes.size());
+  std::size_t islands = 0, crumbs = 0, voxels = 0;
+  for (std::size_t c = 0; c < sizes.size(); ++c)
+  {
+    stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
+    if (stays[c])
+      continue;
+    (held[c] ? crumbs : islands) += 1;
+    voxels += sizes[c];
+  }
+  if (voxels == 0)
+    return;
+  std::vector<bool> keep(component.size());
+  for (std::size_t e = 0; e < keep.size(); ++e)
+    keep[e] = stays[static_cast<std::size_t>(component[e])];
+  keep_voxels(model, keep);
+  stages.found(std::to_string(voxels) + " voxels removed: " + std::to_string(islands) +
+               " islands that nothing holds and " + std::to_string(crumbs) +
+               " small parts that hang on by an edge or a corner or not at all");
+}
+
+}  // namespace frontalis

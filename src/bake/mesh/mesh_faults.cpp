@@ -1,0 +1,215 @@
+#include "bake/mesh/mesh_faults.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+namespace processing = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using HalfEdgeMesh = CGAL::Surface_mesh<Kernel::Point_3>;
+using Face = HalfEdgeMesh::Face_index;
+
+constexpr double sliver_height = 0.02;
+
+Vector3 vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
+
+void add(MeshFaults::Kind& kind, const Vector3& place)
+{
+  if (kind.count++ == 0)
+    kind.place = place;
+}
+
+/// Collects the edges that more than two triangles share.
+struct EdgeCollector : processing::Default_orientation_visitor
+{
+  void non_manifold_edge(std::size_t a, std::size_t b, std::size_t) { edges->emplace_back(a, b); }
+  std::vector<std::pair<std::size_t, std::size_t>>* edges = nullptr;
+};
+
+HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, std::vector<std::pair<std::size_t, std::size_t>>& shared)
+{
+  std::vector<Kernel::Point_3> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vector3& v : mesh.vertices)
+    points.emplace_back(v[0], v[1], v[2]);
+  std::vector<std::array<std::size_t, 3>> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles)
+    triangles.push_back(
+        { static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2]) });
+  // where bodies touch, each gets vertices of its own
+  EdgeCollector collector;
+  collector.edges = &shared;
+  processing::orient_polygon_soup(points, triangles, CGAL::parameters::visitor(collector));
+  HalfEdgeMesh out;
+  processing::polygon_soup_to_polygon_mesh(points, triangles, out);
+  return out;
+}
+
+std::array<Vector3, 3> corners(const HalfEdgeMesh& mesh, Face face)
+{
+  std::array<Vector3, 3> places{};
+  std::size_t c = 0;
+  for (const auto v : CGAL::vertices_around_face(mesh.halfedge(face), mesh))
+    places[c++] = vector_of(mesh.point(v));
+  return places;
+}
+
+void find_edge_faults(const TriangleMesh& mesh, std::vector<std::pair<std::size_t, std::size_t>> shared,
+                      MeshFaults& faults)
+{
+  // each edge is told once a triangle
+  for (auto& edge : shared)
+    edge = { std::min(edge.first, edge.second), std::max(edge.first, edge.second) };
+  std::sort(shared.begin(), shared.end());
+  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+  std::set<std::pair<std::size_t, std::size_t>> unbalanced;
+  for (const auto& edge : unbalanced_edges(mesh))
+    unbalanced.emplace(std::min(edge[0], edge[1]), std::max(edge[0], edge[1]));
+  for (const auto& edge : shared)
+    add(unbalanced.count(edge) != 0 ? faults.fins : faults.touching,
+        0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]));
+}
+
+void find_thin_triangles(const HalfEdgeMesh& mesh, MeshFaults& faults)
+{
+  for (const Face face : mesh.faces())
+  {
+    const auto [a, b, c] = corners(mesh, face);
+    const double longest = std::max({ norm(b - a), norm(c - b), norm(a - c) });
+    const double height = norm(cross(b - a, c - a)) / longest;
+    const Vector3 middle = (1.0 / 3) * (a + b + c);
+    if (CGAL::collinear(Kernel::Point_3(a[0], a[1], a[2]), Kernel::Point_3(b[0], b[1], b[2]),
+                        Kernel::Point_3(c[0], c[1], c[2])))
+      add(faults.flat, middle);
+    else if (height < sliver_height * longest)
+      add(faults.slivers, middle);
+  }
+}
+
+void find_pieces(HalfEdgeMesh& mesh, MeshFaults& faults)
+{
+  const auto piece = mesh.add_property_map<Face, std::size_t>("piece", 0).first;
+  faults.crossing_piece.assign(processing::connected_components(mesh, piece), false);
+  for (const Face face : mesh.faces())
+    faults.piece.push_back(static_cast<std::int32_t>(piece[face]));
+}
+
+void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
+{
+  std::vector<std::pair<Face, Face>> pairs;
+  processing::self_intersections(mesh, std::back_inserter(pairs));
+  faults.crossings.count = pairs.size();
+  if (pairs.empty())
+    return;
+
+  // groups of crossing triangles, by the pairs and by neighbourhood
+  std::vector<std::size_t> group(mesh.number_of_faces(), 0);
+  std::iota(group.begin(), group.end(), std::size_t{ 0 });
+  std::vector<bool> crosses(group.size(), false);
+  const auto leader = [&group](std::size_t face)
+  {
+    while (group[face] != face)
+      face = group[face] = group[group[face]];
+    return face;
+  };
+  for (const auto& [a, b] : pairs)
+  {
+    crosses[a] = crosses[b] = true;
+    group[leader(a)] = leader(b);
+    faults.crossing_piece[static_cast<std::size_t>(faults.piece[a])] = true;
+    faults.crossing_piece[static_cast<std::size_t>(faults.piece[b])] = true;
+  }
+  for (const Face face : mesh.faces())
+  {
+    for (const auto edge : CGAL::halfedges_around_face(mesh.halfedge(face), mesh))
+    {
+      const Face other = mesh.face(mesh.opposite(edge));
+      if (crosses[face] && other != HalfEdgeMesh::null_face() && crosses[other])
+        group[leader(face)] = leader(other);
+    }
+  }
+  std::map<std::size_t, Box> boxes;
+  for (const Face face : mesh.faces())
+  {
+    if (!crosses[face])
+      continue;
+    for (const Vector3& corner : corners(mesh, face))
+      boxes[leader(face)].include(corner);
+  }
+  for (const auto& [first, box] : boxes)
+  {
+    const double extent = norm(box.upper - box.lower);
+    if (extent > faults.crossing_extent)
+    {
+      faults.crossing_extent = extent;
+      faults.crossings.place = box.centre();
+    }
+  }
+}
+
+std::vector<MeshFaults::Hole> holes_of(const HalfEdgeMesh& mesh)
+{
+  std::vector<MeshFaults::Hole> holes;
+  std::vector<HalfEdgeMesh::Halfedge_index> cycles;
+  processing::extract_boundary_cycles(mesh, std::back_inserter(cycles));
+  for (const auto cycle : cycles)
+  {
+    MeshFaults::Hole hole;
+    for (const auto edge : CGAL::halfedges_around_face(cycle, mesh))
+    {
+      const Vector3 p = vector_of(mesh.point(mesh.source(edge))), q = vector_of(mesh.point(mesh.target(edge)));
+      const double length = norm(q - p);
+      hole.length += length;
+      hole.centre = hole.centre + (0.5 * length) * (p + q);
+    }
+    if (hole.length <= 0)
+      continue;
+    hole.centre = (1 / hole.length) * hole.centre;
+    holes.push_back(hole);
+  }
+  std::stable_sort(holes.begin(), holes.end(),
+                   [](const MeshFaults::Hole& a, const MeshFaults::Hole& b) { return a.length > b.length; });
+  return holes;
+}
+
+}  // namespace
+
+MeshFaults find_mesh_faults(const TriangleMesh& mesh)
+{
+  MeshFaults faults;
+  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  HalfEdgeMesh half_edges = half_edge_mesh(mesh, shared);
+  find_edge_faults(mesh, shared, faults);
+  find_thin_triangles(half_edges, faults);
+  find_pieces(half_edges, faults);
+  find_crossings(half_edges, faults);
+  // touching bodies that were taken apart leave slits, which are no holes
+  if (!unbalanced_edges(mesh).empty())
+    faults.holes = holes_of(half_edges);
+  return faults;
+}
+
+std::vector<MeshFaults::Hole> find_holes(const TriangleMesh& mesh)
+{
+  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  return holes_of(half_edge_mesh(mesh, shared));
+}
+
+}  // namespace frontalis

@@ -1,0 +1,95 @@
+#include "bake/voxels/local_frame.hpp"
+
+#include "bake/voxels/voxel_index.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+
+namespace frontalis
+{
+namespace
+{
+
+/// Scene axis along which rows of voxels are longest: the fewest rows.
+int longest_rows(const Grid& grid, const Voxels& voxels)
+{
+  const VoxelIndex index(voxels.place, grid.size);
+  std::array<std::size_t, 3> rows{ { 0, 0, 0 } };
+  for (const auto& place : voxels.place)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      auto before = place;
+      --before[a];
+      if (index.find(before) < 0)
+        ++rows[a];
+    }
+  }
+  return static_cast<int>(std::min_element(rows.begin(), rows.end()) - rows.begin());
+}
+
+}  // namespace
+
+LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
+{
+  LocalFrame frame;
+  frame.first = longest_rows(grid, voxels);
+  const std::size_t count = voxels.place.size();
+
+  // trim the grid to the voxels
+  std::array<std::int32_t, 3> lower = voxels.place.front(), upper = lower;
+  for (const auto& place : voxels.place)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      lower[a] = std::min(lower[a], place[a]);
+      upper[a] = std::max(upper[a], place[a]);
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    frame.origin[a] = grid.lower[a] + lower[a] * grid.spacing[a];
+  model.spacing = frame.turn(grid.spacing);
+  for (std::size_t a = 0; a < 3; ++a)
+    model.size[a] = upper[frame.scene_axis(a)] - lower[frame.scene_axis(a)] + 1;
+
+  std::vector<std::array<std::int32_t, 3>> places(count);
+  for (std::size_t e = 0; e < count; ++e)
+  {
+    places[e] = frame.turn(voxels.place[e]);
+    for (std::size_t a = 0; a < 3; ++a)
+      places[e][a] -= lower[frame.scene_axis(a)];
+  }
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t u, std::uint32_t v)
+            {
+              const auto &p = places[u], &q = places[v];
+              return p[2] != q[2] ? p[2] < q[2] : (p[1] != q[1] ? p[1] < q[1] : p[0] < q[0]);
+            });
+
+  model.mixture_begin.push_back(0);
+  model.fibre_begin.push_back(0);
+  for (const std::uint32_t e : order)
+  {
+    model.voxels.push_back(places[e]);
+    model.fill.push_back(voxels.fill[e]);
+    for (std::uint32_t m = voxels.mixture_begin[e]; m < voxels.mixture_begin[e + 1]; ++m)
+    {
+      model.mixture_material.push_back(voxels.material[m]);
+      model.mixture_proportion.push_back(voxels.proportion[m]);
+    }
+    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
+    for (std::uint32_t m = voxels.muscle_begin[e]; m < voxels.muscle_begin[e + 1]; ++m)
+    {
+      model.fibre_muscle.push_back(voxels.muscle[m]);
+      model.fibre_weight.push_back(voxels.weight[m]);
+      model.fibre_direction.push_back({ 0, 0, 0 });
+    }
+    model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
+  }
+  return frame;
+}
+
+}  // namespace frontalis

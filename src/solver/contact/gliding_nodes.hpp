@@ -1,0 +1,54 @@
+#pragma once
+
+#include "solver/contact/archive_contacts.hpp"
+#include "solver/stepping/constraint_step.hpp"
+#include "frontalis/solver/allocation.hpp"
+#include "solver/contact/surface_contact.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Sliding nodes whose surface follows a bone or has friction: one after the other, in double. A node's contact lives
+/// in the frame of the bone.
+template <class Real>
+class GlidingNodes
+{
+public:
+  struct Node
+  {
+    std::int32_t node;
+    std::int32_t bone;  // -1: still
+    double friction;
+    SurfaceContact::Point rest;
+    SurfaceContact contact;
+    ContactPlane plane;
+    SurfaceContact::Point reference;  // where the plane was found
+    double pressing;                  // reaction over mass that friction knows of [m/s2]
+    // in the latest step
+    SurfaceContact::Point normal;            // outwards
+    SurfaceContact::Point surface_velocity;  // [m/s]
+  };
+
+  void add(Node node) { nodes_.push_back(std::move(node)); }
+  void reset();
+  /// Whether there is friction.
+  void rub(bool on) { rubs_ = on; }
+  void list_allocations(AllocationList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
+  bool empty() const { return nodes_.empty(); }
+  void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }
+  /// Those in [first, last), by node; they were added in the order of their nodes.
+  std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
+  /// As RestrictedNodes::friction_loss.
+  double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const;
+  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step);
+
+private:
+  std::vector<Node> nodes_;
+  bool rubs_ = true;
+};
+
+}  // namespace frontalis

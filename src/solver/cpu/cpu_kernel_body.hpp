@@ -1,0 +1,180 @@
+#pragma once
+
+#include "solver/cpu/cpu_element.hpp"
+
+namespace frontalis
+{
+
+/// Marches over the planes of a slab: forces of a plane of voxels go to two planes of nodes, the lower of which is then
+/// complete and stepped.
+template <class Architecture, class Real>
+struct CpuKernelBody
+{
+  using Element = CpuElement<Architecture, Real>;
+  using Arguments = CpuKernelArguments<Real>;
+  using Batch = typename Element::Batch;
+  using PassLists = typename Element::PassLists;
+  static constexpr int lanes = Element::lanes;
+
+  // visits the batches of a plane's tiles that hold voxels
+  template <class Visit>
+  static FRONTALIS_LAW void each_batch(const Arguments& g, const PassLists& passes, std::int32_t plane, bool owned,
+                                       bool look, Visit&& visit)
+  {
+    for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
+      for (int offset = 0; offset < Tile::width; offset += lanes)
+        if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
+          visit(typename Element::Place{ g.tiles + t, t, offset, owned, look, passes.of[g.tiles[t].passes] });
+  }
+
+  template <Stabilisation Form>
+  static void plane_forces(const Arguments& g, const PassLists& passes, std::int32_t plane, Real* below, Real* above,
+                           bool owned, bool look)
+  {
+    double work = 0;
+    const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
+    each_batch(g, passes, plane, owned, look,
+               [&](const auto& at) { Element::template add_forces<Form>(g, at, below, above, base, work); });
+    if (g.muscle_work != nullptr && owned)
+      g.muscle_work[plane] += work;
+  }
+
+  /// Bound of the highest frequency squared that the nodes of a plane allow; `stiffness`: sums of their voxels'.
+  static Real plane_frequency(const Arguments& g, std::int32_t plane, const Real* stiffness)
+  {
+    const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
+    const float* const mobility = g.mobility + first;
+    // as many maxima at once as a batch has lanes; what is no number shows in the sums of differences
+    Real most[lanes] = {}, odd[lanes] = {};
+    const auto take = [&](std::int32_t n, int lane)
+    {
+      const Real squared = stiffness[n] * static_cast<Real>(mobility[n]);
+      most[lane] = squared > most[lane] ? squared : most[lane];
+      odd[lane] += squared - squared;
+    };
+    std::int32_t n = 0;
+    for (; n + lanes <= count; n += lanes)
+      for (int lane = 0; lane < lanes; ++lane)
+        take(n + lane, lane);
+    for (; n < count; ++n)
+      take(n, 0);
+    Real result = 0;
+    for (int lane = 0; lane < lanes; ++lane)
+      result = physics::larger_or_none(result, most[lane] + odd[lane]);
+    return result;
+  }
+
+  template <bool Compensated, bool Gravity>
+  static void update(const Arguments& g, std::int32_t plane, const Real* force)
+  {
+    const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Real* f = force + c * g.buffer_stride;
+      const Real* u = g.u[c] + first;
+      const float* inverse_mass = g.inverse_mass + first;
+      Real* __restrict v = g.v[c] + first;
+      Real* __restrict next = g.next[c] + first;
+      Real* __restrict rounding = Compensated ? g.rounding[c] + first : nullptr;
+      const Real impulse = g.impulse[c];
+      for (std::int32_t n = 0; n < count; ++n)
+      {
+        const Real kept = g.keep * v[n] - g.gain * inverse_mass[n] * f[n];
+        const Real velocity = Gravity ? kept + impulse : kept;
+        v[n] = velocity;
+        if (Compensated)
+        {
+          // Kahan's summation: what the last sum lost is added first
+          const Real step = g.dt * velocity - rounding[n];
+          const Real sum = u[n] + step;
+          rounding[n] = (sum - u[n]) - step;
+          next[n] = sum;
+        }
+        else
+          next[n] = u[n] + g.dt * velocity;
+      }
+    }
+  }
+
+  static void update_as_asked(const Arguments& g, std::int32_t plane, const Real* force)
+  {
+    const bool gravity = g.gravity;
+    if (g.rounding[0] != nullptr)
+      gravity ? update<true, true>(g, plane, force) : update<true, false>(g, plane, force);
+    else
+      gravity ? update<false, true>(g, plane, force) : update<false, false>(g, plane, force);
+  }
+
+  static void clear(Real* p, std::int32_t count)
+  {
+    for (std::int32_t i = 0; i < count; ++i)
+      p[i] = 0;
+  }
+
+  template <Stabilisation Form>
+  static Real sweep_planes(const Arguments& g, std::int32_t first, std::int32_t last, Real* buffer, KernelTask task)
+  {
+    const PassLists passes = Element::pass_lists(g.passes);
+    Real* below = buffer;
+    Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
+    const bool look = task == KernelTask::step_and_look;
+    const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
+    clear(below, used);
+    Real frequency_squared = 0;
+    // voxel plane k joins node planes k and k + 1; the one below the first plane is computed for its upper nodes alone
+    for (std::int32_t k = first - 1; k < last; ++k)
+    {
+      clear(above, used);
+      if (k >= 0 && k < g.planes - 1)
+        plane_forces<Form>(g, passes, k, below, above, k >= first, look);
+      if (k >= first)
+      {
+        if (look)
+          frequency_squared =
+              physics::larger_or_none(frequency_squared, plane_frequency(g, k, below + 3 * g.buffer_stride));
+        if (task == KernelTask::forces)
+          for (int c = 0; c < 3; ++c)
+            for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)
+              g.next[c][n] = below[c * g.buffer_stride + n - g.plane_nodes[k]];
+        else
+          update_as_asked(g, k, below);
+      }
+      Real* const swapped = below;
+      below = above;
+      above = swapped;
+    }
+    return frequency_squared;
+  }
+
+  static void relax(const Arguments& g, std::int32_t first, std::int32_t last)
+  {
+    for (std::int32_t k = first; k < last && k < g.planes - 1; ++k)
+    {
+      double* const work = g.viscous_work == nullptr ? nullptr : g.viscous_work + 2 * static_cast<std::size_t>(k);
+      if (work != nullptr)
+        work[1] = 0;
+      each_batch(g, {}, k, true, false,
+                 [&](const auto& at)
+                 {
+                   if (at.tile->viscous >= 0)
+                     Element::relax(g, at, work);
+                 });
+    }
+  }
+
+  static Real run(const Arguments& g, std::int32_t first, std::int32_t last, Real* buffer, KernelTask task)
+  {
+    if (task == KernelTask::relax)
+    {
+      relax(g, first, last);
+      return 0;
+    }
+    if (g.selective_reduced)
+      return sweep_planes<Stabilisation::selective_reduced>(g, first, last, buffer, task);
+    if (g.stabilisation != nullptr)
+      return sweep_planes<Stabilisation::assumed_strain>(g, first, last, buffer, task);
+    return sweep_planes<Stabilisation::scalar>(g, first, last, buffer, task);
+  }
+};
+
+}  // namespace frontalis

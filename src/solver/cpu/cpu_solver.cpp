@@ -1,0 +1,269 @@
+#include "solver/cpu/cpu_solver.hpp"
+
+#include "solver/skin/bound_points.hpp"
+#include "frontalis/physics/viscosity.hpp"
+#include "solver/stepping/step_bound.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <type_traits>
+
+namespace frontalis
+{
+namespace
+{
+
+CpuKernel<float> pick(const CpuKernelChoice& choice, float) { return choice.single; }
+CpuKernel<double> pick(const CpuKernelChoice& choice, double) { return choice.wide; }
+SlideKernel<float> slide(const CpuKernelChoice& choice, float) { return choice.slide; }
+SlideKernel<double> slide(const CpuKernelChoice&, double) { return slide_plainly<double>; }
+
+}  // namespace
+
+template <class Real>
+CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                           const std::string& remark)
+    : SteppingSolver(std::move(model), settings),
+      rows_(*model_, discretisation_),
+      mobility_(mobility(discretisation_)),
+      choice_(choose_cpu_kernel()),
+      kernel_(pick(choice_, Real(0))),
+      restricted_(*model_, slide(choice_, Real(0))),
+      loads_(*model_, discretisation_),
+      team_(settings.threads),
+      remark_(remark.empty() ? "" : "; " + remark)
+{
+  for (const double mass : discretisation_.node_mass)
+    inverse_mass_.push_back(static_cast<float>(1 / mass));
+  inverse_mass_.shrink_to_fit();
+  for (const auto& muscle : model_->muscles)
+    with_length_.push_back(muscle.tension_length ? 1.0f : 0.0f);
+  choose_passive();
+  std::int32_t largest = 0;
+  for (std::int32_t k = 0; k < rows_.planes; ++k)
+    largest = std::max(largest, rows_.plane_nodes[k + 1] - rows_.plane_nodes[k]);
+  buffer_stride_ = largest + 2 * Tile::width;
+  buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
+  share_planes(rows_.plane_tiles);
+  if (settings.sleep > 0)
+  {
+    std::ostringstream text;
+    text << "; what is at rest sleeps, within " << settings.sleep << " m";
+    remark_ += text.str();
+    sleep_ = std::make_unique<SleepingTiles>(*model_, rows_, settings.sleep);
+  }
+  if (wants_ledger_)
+  {
+    account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
+    fibre_memory_.resize(rows_.fibres.size());
+  }
+  rest();
+}
+
+template <class Real>
+void CpuSolver<Real>::choose_passive()
+{
+  with_passive_.clear();
+  for (const auto& muscle : model_->muscles)
+    with_passive_.push_back(muscle.passive && runs(Effect::fibre_stiffness) ? 1.0f : 0.0f);
+}
+
+template <class Real>
+void CpuSolver<Real>::effect_switched(Effect effect)
+{
+  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  {
+    choose_passive();
+    rows_.renew_bounds(discretisation_);
+  }
+  if (effect == Effect::viscosity)
+    std::fill(relaxed_.begin(), relaxed_.end(), 0.0f);
+  if (effect == Effect::sliding || effect == Effect::friction)
+    restricted_.run(effects());
+  loads_.run(effects());
+  wake();
+}
+
+template <class Real>
+void CpuSolver<Real>::wake()
+{
+  if (sleep_)
+    sleep_->wake(time());
+}
+
+template <class Real>
+void CpuSolver<Real>::list_allocations(AllocationList& list) const
+{
+  rows_.list_allocations(effect_of_fibres(), list);
+  list.add(Effect::elasticity, "inverse masses", inverse_mass_);
+  list.add(Effect::elasticity, "inverse masses", mobility_);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    for (const auto* field : { &u_, &next_, &v_ })
+      list.add(Effect::elasticity, "motion", (*field)[axis]);
+    list.add(Effect::elasticity, "rounding errors", rounding_[axis]);
+    list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
+    list.add(Effect::elasticity, "displaced nodes", moved_[axis]);
+  }
+  for (const auto& buffer : buffers_)
+    list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);
+  list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
+  list.add(Effect::viscosity, "relaxed stresses", relaxed_);
+  restricted_.list_allocations(list);
+  loads_.list_allocations(list);
+  if (account_)
+    account_->list_allocations(list);
+  if (sleep_)
+    sleep_->list_allocations(list);
+}
+
+// slabs of about equal numbers of tiles
+template <class Real>
+void CpuSolver<Real>::share_planes(const std::vector<std::int32_t>& plane_tiles)
+{
+  const int threads = team_.size();
+  const auto total = static_cast<std::int64_t>(plane_tiles.back());
+  slab_.assign(1, 0);
+  for (int t = 1; t < threads; ++t)
+  {
+    const auto end =
+        std::lower_bound(plane_tiles.begin(), plane_tiles.end(), static_cast<std::int32_t>(total * t / threads));
+    const auto plane = static_cast<std::int32_t>(end - plane_tiles.begin());
+    slab_.push_back(std::clamp(plane, slab_.back(), rows_.planes));
+  }
+  slab_.push_back(rows_.planes);
+}
+
+template <class Real>
+void CpuSolver<Real>::rest()
+{
+  for (auto* field : { &u_, &next_, &v_ })
+    for (auto& component : *field)
+      component.assign(model_->nodes.size() + 2 * Tile::width, 0);
+  if (std::is_same<Real, float>::value && model_->precision == Precision::compensated)
+    for (auto& component : rounding_)
+      component.assign(model_->nodes.size(), 0);
+  relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
+  restricted_.reset();
+  if (sleep_)
+    sleep_->reset();
+}
+
+template <class Real>
+struct CpuSolver<Real>::Kept : SteppingSolver::Fields
+{
+  Components u, v, rounding;
+  typename RestrictedNodes<Real>::Contacts contacts;
+  std::vector<float> relaxed;
+  typename EnergyAccount<Real>::Book book;
+  std::vector<FibreMemory> fibre_memory;
+  SleepingTiles::State sleep;
+
+  void archive(ByteArchive& archive) override
+  {
+    archive(u)(v)(rounding)(relaxed)(fibre_memory);
+    contacts.archive(archive);
+    book.archive(archive);
+    sleep.archive(archive);
+  }
+};
+
+template <class Real>
+void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
+{
+  if (!to)
+    to = std::make_unique<Kept>();
+  Kept& kept = static_cast<Kept&>(*to);
+  kept.u = u_;
+  kept.v = v_;
+  kept.rounding = rounding_;
+  kept.contacts = restricted_.contacts();
+  kept.relaxed = relaxed_;
+  kept.fibre_memory = fibre_memory_;
+  if (account_)
+    kept.book = account_->book();
+  if (sleep_)
+    kept.sleep = sleep_->state();
+}
+
+template <class Real>
+void CpuSolver<Real>::restore_fields(const Fields& from)
+{
+  const Kept& kept = static_cast<const Kept&>(from);
+  u_ = kept.u;
+  v_ = kept.v;
+  rounding_ = kept.rounding;
+  restricted_.restore(kept.contacts);
+  relaxed_ = kept.relaxed;
+  fibre_memory_ = kept.fibre_memory;
+  if (account_)
+    account_->restore(kept.book);
+  if (sleep_)
+    sleep_->restore(kept.sleep);
+}
+
+template <class Real>
+void CpuSolver<Real>::interleave(const Components& in, Vectors& out) const
+{
+  out.resize(model_->nodes.size());
+  for (std::size_t n = 0; n < out.size(); ++n)
+    out[n] = { { in[0][n], in[1][n], in[2][n] } };
+}
+
+template <class Real>
+void CpuSolver<Real>::separate(const Vectors& in, Components& out) const
+{
+  for (std::size_t n = 0; n < in.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      out[axis][n] = static_cast<Real>(in[n][axis]);
+}
+
+template <class Real>
+void CpuSolver<Real>::set_displacements(const Vectors& in)
+{
+  rest();
+  separate(in, u_);
+  displacements_were_set();
+}
+
+template <class Real>
+void CpuSolver<Real>::set_velocities(const Vectors& in)
+{
+  separate(in, v_);
+  wake();
+  velocities_were_set();
+}
+
+template <class Real>
+std::string CpuSolver<Real>::description() const
+{
+  const char* const numbers = !std::is_same<Real, float>::value ? "double"
+                              : rounding_[0].empty()            ? "float"
+                                                                : "float, compensated";
+  return std::string("cpu (") + numbers + ", " + choice_.name + ", " + std::to_string(team_.size()) +
+         (team_.size() == 1 ? " thread" : " threads") + remark_ + ")";
+}
+
+template <class Real>
+void CpuSolver<Real>::skin(SkinState& out)
+{
+  skin_state(*model_, constant(u_).data(), out);
+}
+
+template class CpuSolver<float>;
+template class CpuSolver<double>;
+
+std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                        const std::string& remark)
+{
+  std::unique_ptr<Solver> solver;
+  if (model->precision == Precision::double_precision)
+    solver = std::make_unique<CpuSolver<double>>(std::move(model), settings, remark);
+  else
+    solver = std::make_unique<CpuSolver<float>>(std::move(model), settings, remark);
+  if (settings.ledger)
+    solver->reset();
+  return solver;
+}
+
+}  // namespace frontalis

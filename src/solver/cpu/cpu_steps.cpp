@@ -1,0 +1,314 @@
+#include "solver/cpu/cpu_solver.hpp"
+#include "solver/cpu/flush_denormals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+template <class Real>
+void CpuSolver<Real>::kick(Arguments& g, double seconds) const
+{
+  g.kick = static_cast<Real>(seconds);
+  g.keep = static_cast<Real>(keep(seconds));
+  g.gain = static_cast<Real>(gain(seconds));
+  for (int axis = 0; axis < 3; ++axis)
+    g.impulse[axis] = static_cast<Real>(gain(seconds) * gravity_[axis]);
+}
+
+template <class Real>
+template <class Tiles>
+void CpuSolver<Real>::compute(const Tiles& tiles, Arguments& g)
+{
+  g.tiles = tiles.tiles.data();
+  g.plane_tiles = tiles.plane_tiles.data();
+  g.stiffness = tiles.stiffness.data();
+  g.stabilisation = tiles.stabilisation.empty() ? nullptr : tiles.stabilisation.data();
+}
+
+template <class Real>
+CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* activation)
+{
+  Arguments g{};
+  const auto& h = model_->spacing;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g.u[axis] = u_[axis].data();
+    g.next[axis] = next_[axis].data();
+    g.v[axis] = v_[axis].data();
+    g.rounding[axis] = rounding_[axis].empty() ? nullptr : rounding_[axis].data();
+    g.scale[axis] = static_cast<Real>(0.25 / h[axis]);
+    g.hourglass_weight[axis] = static_cast<Real>(discretisation_.hourglass_weight[axis]);
+    g.stretch_weight[axis] = static_cast<Real>(discretisation_.stretch_weight[axis]);
+  }
+  g.stretch_half_sum = static_cast<Real>(discretisation_.stretch_half_sum);
+  g.inverse_mass = inverse_mass_.data();
+  g.mobility = mobility_.empty() ? g.inverse_mass : mobility_.data();
+  compute(rows_, g);
+  g.plane_nodes = rows_.plane_nodes.data();
+  g.planes = rows_.planes;
+  g.selective_reduced = discretisation_.selective_reduced;
+  g.fibres = rows_.fibres.data();
+  g.laws = rows_.laws.data();
+  g.viscous = rows_.viscous.data();
+  g.relaxed = relaxed_.data();
+  g.viscous_terms = discretisation_.viscous_terms;
+  g.passes = (runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? pass_fibres : 0) |
+             (runs(Effect::viscosity) ? pass_viscosity : 0);
+  g.gravity = runs(Effect::gravity);
+  g.activation = activation;
+  g.with_length = with_length_.data();
+  g.with_passive = with_passive_.data();
+  if (account_)
+  {
+    g.fibre_memory = fibre_memory_.data();
+    g.muscle_work = account_->muscle.data();
+    g.viscous_work = account_->viscous.data();
+  }
+  g.dt = static_cast<Real>(dt);
+  kick(g, dt);
+  g.buffer_stride = buffer_stride_;
+  return g;
+}
+
+template <class Real>
+void CpuSolver<Real>::forces(const Components& at, Vectors& out)
+{
+  const std::vector<float> felt = felt_activation();
+  Arguments g = arguments(0, felt.data());
+  g.fibre_memory = nullptr;
+  for (int axis = 0; axis < 3; ++axis)
+    g.u[axis] = at[axis].data();
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
+  interleave(next_, out);
+}
+
+template <class Real>
+void CpuSolver<Real>::forces_at(const Vectors& at, Vectors& out)
+{
+  for (auto& component : moved_)
+    component.resize(u_[0].size());
+  separate(at, moved_);
+  forces(moved_, out);
+}
+
+template <class Real>
+void CpuSolver<Real>::external_forces(Vectors& out)
+{
+  out.assign(model_->nodes.size(), {});
+  if (loads_.idle())
+    return;
+  loads_.update(time(), constant(u_).data());
+  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
+    out[loads_.nodes()[l]] = loads_.forces()[l];
+}
+
+// the account begins with what fibres and viscous stresses do now
+template <class Real>
+void CpuSolver<Real>::open_account()
+{
+  account_->open();
+  const std::vector<float> felt = felt_activation();
+  Arguments g = arguments(0, felt.data());
+  g.muscle_work = nullptr;
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
+}
+
+template <class Real>
+Work CpuSolver<Real>::work()
+{
+  // what fibres did in the latest step
+  const std::vector<float> felt = felt_activation();
+  const Arguments g = arguments(0, felt.data());
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
+  relax(0);
+  return account_->work();
+}
+
+// viscous stresses relax by the time since they last did
+template <class Real>
+void CpuSolver<Real>::relax(double elapsed)
+{
+  if (!relaxes())
+    return;
+  Arguments g = arguments(0, nullptr);
+  g.viscous_elapsed = static_cast<Real>(elapsed);
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::relax); });
+}
+
+// the update is linear in the force: loads are added after it
+template <class Real>
+void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arguments& g)
+{
+  const auto& nodes = loads_.nodes();
+  for (auto l = std::lower_bound(nodes.begin(), nodes.end(), first) - nodes.begin();
+       l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < last; ++l)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto n = nodes[l];
+      const Real change = g.gain * inverse_mass_[n] * static_cast<Real>(loads_.forces()[l][axis]);
+      g.v[axis][n] += change;
+      g.next[axis][n] += g.dt * change;
+    }
+}
+
+// planes of a thread in which anything is to be done; all of them in a step that may be the first in which nodes are
+// held
+template <class Real>
+template <class Visit>
+void CpuSolver<Real>::each_range(int thread, bool first_step, const Visit& visit) const
+{
+  const std::int32_t begin = slab_[thread], end = slab_[thread + 1];
+  if (!sleep_ || first_step)
+    return visit(begin, end);
+  for (const auto& range : sleep_->planes())
+    if (std::max(range.first, begin) < std::min(range.second, end))
+      visit(std::max(range.first, begin), std::min(range.second, end));
+}
+
+// the work of a step in a thread's planes
+template <class Real>
+void CpuSolver<Real>::account(int thread, const Arguments& g)
+{
+  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, damping_, double(g.dt), double(g.kick));
+  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
+    account_->friction(k, restricted_, g.v);
+  const auto& nodes = loads_.nodes();
+  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
+    for (auto l = std::lower_bound(nodes.begin(), nodes.end(), rows_.plane_nodes[k]) - nodes.begin();
+         l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < rows_.plane_nodes[k + 1]; ++l)
+      account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.kick));
+}
+
+// nodes of tiles that sleep stay where they were before the step
+template <class Real>
+void CpuSolver<Real>::hold(std::int32_t first, std::int32_t last, const Arguments& g) const
+{
+  sleep_->each_held(first, last,
+                    [&](std::int32_t node, std::int32_t count)
+                    {
+                      for (int axis = 0; axis < 3; ++axis)
+                      {
+                        std::copy_n(g.u[axis] + node, count, g.next[axis] + node);
+                        std::fill_n(g.v[axis] + node, count, Real(0));
+                        if (g.rounding[axis] != nullptr)
+                          std::fill_n(g.rounding[axis] + node, count, Real(0));
+                      }
+                    });
+}
+
+template <class Real>
+double CpuSolver<Real>::run(const StepPlan& plan)
+{
+  if (sleep_)
+  {
+    if (settling_)
+      sleep_->wake(plan.time);
+    else
+      sleep_->look(constant(u_), plan);
+    if (sleep_->changed())
+      share_planes(sleep_->any() ? sleep_->awake().plane_tiles : rows_.plane_tiles);
+  }
+  const std::size_t muscles = model_->muscles.size();
+  std::vector<float> activation(plan.steps * muscles, 0);
+  std::vector<ConstraintStep> constraint_steps;
+  for (int step = 0; step < plan.steps; ++step)
+  {
+    if (runs(Effect::contraction))
+      plan.activation(step, activation.data() + step * muscles);
+    constraint_steps.push_back(plan.constraint_step(step));
+    if (sleep_)
+      constraint_steps.back().held = sleep_->held_nodes();
+  }
+  const std::vector<double> elapsed = relaxes() ? relaxations(plan) : std::vector<double>(plan.steps, 0);
+  if (sleep_ && sleep_->all() && !sleep_->changed())
+  {
+    for (const double seconds : elapsed)
+      if (seconds > 0)
+        relax(seconds);
+    return sleep_->frequency(0);
+  }
+  std::vector<Real> seen(team_.size(), 0);
+  Arguments first = arguments(plan.dt, nullptr);
+  kick(first, plan.first_kick);
+  if (sleep_ && sleep_->any())
+    compute(sleep_->awake(), first);
+  team_.run(
+      [&](int t)
+      {
+        const FlushDenormals flush;
+        Arguments g = first;
+        const std::int32_t begin = rows_.plane_nodes[slab_[t]], end = rows_.plane_nodes[slab_[t + 1]];
+        Real* const buffer = buffers_[t].data();
+        for (int step = 0; step < plan.steps; ++step)
+        {
+          if (step == 1)
+            kick(g, plan.dt);
+          g.activation = activation.data() + step * muscles;
+          if (account_)
+            account_->before(begin, end, g.v);
+          if (!loads_.idle())
+          {
+            if (t == 0)
+              loads_.update(plan.time + step * plan.dt, g.u);
+            team_.barrier();
+          }
+          const auto task = plan.closely || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
+          each_range(t, step == 0,
+                     [&](std::int32_t from, std::int32_t to)
+                     {
+                       const Real frequency_squared = kernel_(g, from, to, buffer, task);
+                       if (!(frequency_squared <= seen[t]))
+                         seen[t] = frequency_squared;
+                       if (!loads_.idle())
+                         add_loads(rows_.plane_nodes[from], rows_.plane_nodes[to], g);
+                       // part of their forces alone moves them far, where sliding nodes would meet other surfaces
+                       if (sleep_)
+                         hold(from, to, g);
+                     });
+          if (account_)
+            account_->unconstrained(begin, end, g.v);
+          each_range(t, step == 0,
+                     [&](std::int32_t from, std::int32_t to)
+                     {
+                       if (!restricted_.idle())
+                         restricted_.apply(rows_.plane_nodes[from], rows_.plane_nodes[to], g.next, g.v, g.u,
+                                           constraint_steps[step]);
+                       if (sleep_)
+                         hold(from, to, g);
+                     });
+          if (account_)
+            account(t, g);
+          team_.barrier();
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            Real* const old = const_cast<Real*>(g.u[axis]);
+            g.u[axis] = g.next[axis];
+            g.next[axis] = old;
+          }
+          if (elapsed[step] > 0)
+          {
+            g.viscous_elapsed = static_cast<Real>(elapsed[step]);
+            Arguments whole = g;
+            compute(rows_, whole);
+            kernel_(whole, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
+            team_.barrier();
+          }
+        }
+      });
+  if (plan.steps % 2 == 1)
+    u_.swap(next_);
+  double worst = 0;
+  for (const Real x : seen)
+    worst = std::isfinite(x) ? std::max(worst, static_cast<double>(x)) : static_cast<double>(x);
+  if (!sleep_)
+    return worst;
+  sleep_->held();
+  return sleep_->frequency(worst);
+}
+
+template class CpuSolver<float>;
+template class CpuSolver<double>;
+
+}  // namespace frontalis

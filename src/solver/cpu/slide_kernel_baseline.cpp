@@ -1,0 +1,11 @@
+#include "solver/cpu/slide_kernel_body.hpp"
+
+namespace frontalis
+{
+
+void slide_kernel_baseline(const SlideArguments<float>& arguments, std::int32_t first, std::int32_t last)
+{
+  SlideKernelBody<xsimd::default_arch>::run(arguments, first, last);
+}
+
+}  // namespace frontalis

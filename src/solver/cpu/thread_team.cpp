@@ -1,0 +1,107 @@
+#include "solver/cpu/thread_team.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <algorithm>
+#include <system_error>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr int spins_before_yield = 4000;
+constexpr int most_threads = 1024;
+
+void relax()
+{
+#if defined(__x86_64__)
+  _mm_pause();
+#endif
+}
+
+}  // namespace
+
+ThreadTeam::ThreadTeam(int threads)
+{
+  const int count = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (count > most_threads)
+    throw Error(std::to_string(count) + " threads: allowed are 0 (one a core) to " + std::to_string(most_threads));
+  try
+  {
+    for (int t = 1; t < count; ++t)
+      workers_.emplace_back([this, t] { work(t); });
+  }
+  catch (const std::system_error& error)
+  {
+    stop();
+    throw Error("could not start " + std::to_string(count) + " threads: " + error.what());
+  }
+}
+
+ThreadTeam::~ThreadTeam() { stop(); }
+
+void ThreadTeam::stop()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  for (auto& worker : workers_)
+    worker.join();
+}
+
+void ThreadTeam::run(const std::function<void(int)>& task)
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    task_ = &task;
+    ++generation_;
+  }
+  wake_.notify_all();
+  task(0);
+  barrier();
+}
+
+void ThreadTeam::barrier()
+{
+  const std::uint64_t phase = phase_.load(std::memory_order_acquire);
+  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size())
+  {
+    arrived_.store(0, std::memory_order_relaxed);
+    phase_.store(phase + 1, std::memory_order_release);
+    return;
+  }
+  for (int spin = 0; phase_.load(std::memory_order_acquire) == phase; ++spin)
+  {
+    if (spin < spins_before_yield)
+      relax();
+    else
+      std::this_thread::yield();
+  }
+}
+
+void ThreadTeam::work(int thread)
+{
+  std::uint64_t seen = 0;
+  for (;;)
+  {
+    const std::function<void(int)>* task = nullptr;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      wake_.wait(lock, [&] { return stop_ || generation_ != seen; });
+      if (stop_)
+        return;
+      seen = generation_;
+      task = task_;
+    }
+    (*task)(thread);
+    barrier();
+  }
+}
+
+}  // namespace frontalis

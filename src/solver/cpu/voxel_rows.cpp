@@ -1,0 +1,208 @@
+#include "solver/cpu/voxel_rows.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+using TileVoxels = std::array<VoxelProperties, Tile::width>;
+
+// the fibres of a tile, one slot a muscle, muscles ascending
+void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots)
+{
+  tile.fibre_begin = static_cast<std::int32_t>(slots.size());
+  for (std::int16_t m = 0; m < static_cast<std::int16_t>(model.muscles.size()); ++m)
+  {
+    FibreSlot slot{};
+    slot.muscle = m;
+    bool any = false;
+    for (int lane = 0; lane < Tile::width; ++lane)
+    {
+      const auto e = tile.voxel(lane);
+      if (e < 0)
+        continue;
+      for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+        if (model.fibre_muscle[f] == m)
+        {
+          slot.weight[lane] = static_cast<float>(model.fibre_weight[f] * voxels[lane].tissue_volume *
+                                                 model.muscles[m].stress_reference);
+          slot.x[lane] = model.fibre_direction[f][0];
+          slot.y[lane] = model.fibre_direction[f][1];
+          slot.z[lane] = model.fibre_direction[f][2];
+          any = true;
+        }
+    }
+    if (any)
+      slots.push_back(slot);
+  }
+  tile.fibre_end = static_cast<std::int32_t>(slots.size());
+}
+
+// the laws of a tile beyond neo-Hookean, one slot a law; unused lanes keep valid parameters and weight 0
+void add_laws(const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
+{
+  tile.law_begin = static_cast<std::int32_t>(slots.size());
+  for (int lane = 0; lane < Tile::width; ++lane)
+    for (const auto& part : voxels[lane].laws)
+    {
+      auto slot = std::find_if(slots.begin() + tile.law_begin, slots.end(),
+                               [&](const LawSlot& s) { return s.law == part.law && s.material == part.material; });
+      if (slot == slots.end())
+      {
+        LawSlot empty{};
+        empty.law = part.law;
+        empty.material = part.material;
+        for (std::size_t p = 0; p < part.parameters.size(); ++p)
+          std::fill(empty.parameters[p], empty.parameters[p] + Tile::width, static_cast<float>(part.parameters[p]));
+        slot = slots.insert(slots.end(), empty);
+      }
+      slot->weight[lane] = static_cast<float>(part.weight * voxels[lane].tissue_volume);
+      slot->per_tangent[lane] = static_cast<float>(part.per_tangent);
+      slot->at_rest[lane] = static_cast<float>(part.stiffness_at_rest);
+      for (std::size_t p = 0; p < part.parameters.size(); ++p)
+        slot->parameters[p][lane] = static_cast<float>(part.parameters[p]);
+    }
+  tile.law_end = static_cast<std::int32_t>(slots.size());
+}
+
+void add_viscosity(const TileVoxels& voxels, Tile& tile, std::vector<ViscousSlot>& slots)
+{
+  tile.viscous = -1;
+  ViscousSlot slot{};
+  bool any = false;
+  for (int lane = 0; lane < Tile::width; ++lane)
+    for (int term = 0; term < 2; ++term)
+    {
+      slot.share[term][lane] = static_cast<float>(voxels[lane].viscous_share[term]);
+      slot.rate[term][lane] = static_cast<float>(voxels[lane].viscous_rate[term]);
+      any = any || slot.share[term][lane] > 0;
+    }
+  if (!any)
+    return;
+  tile.viscous = static_cast<std::int32_t>(slots.size());
+  slots.push_back(slot);
+}
+
+TileStiffness stiffness_of(const TileVoxels& voxels)
+{
+  TileStiffness s{};
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const VoxelProperties& v = voxels[lane];
+    s.mu[lane] = static_cast<float>(v.mu * v.tissue_volume);
+    s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
+    s.hourglass[lane] = static_cast<float>(v.hourglass);
+    s.bound[lane] = static_cast<float>(v.stiffness);
+  }
+  return s;
+}
+
+TileStabilisation stabilisation_of(const TileVoxels& voxels)
+{
+  TileStabilisation s{};
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const auto& k = voxels[lane].stabilisation;
+    s.bending[lane] = static_cast<float>(k.bending);
+    s.coupling[lane] = static_cast<float>(k.coupling);
+    s.torsion[lane] = static_cast<float>(k.torsion);
+    s.warping[lane] = static_cast<float>(k.warping);
+  }
+  return s;
+}
+
+// the next tile of voxels from e on, which it moves on
+Tile next_tile(const Model& model, std::int32_t& e)
+{
+  const auto count = static_cast<std::int32_t>(model.voxels.size());
+  const std::int32_t plane = model.voxels[e][2];
+  Tile tile{};
+  for (int strip = 0; strip < Tile::strips; ++strip)
+  {
+    // an empty strip reads and writes zeros where the one before it does
+    const bool any = e < count && model.voxels[e][2] == plane;
+    const auto first = any ? e : tile.first_voxel[strip - 1];
+    tile.first_voxel[strip] = first;
+    for (int row = 0; row < 4; ++row)
+      tile.node[strip][row] = model.voxel_nodes[first][2 * row];
+    while (any && e < count && tile.count[strip] < Tile::strip && model.voxels[e][2] == plane &&
+           model.voxels[e][1] == model.voxels[first][1] &&
+           model.voxels[e][0] == model.voxels[first][0] + tile.count[strip])
+    {
+      ++tile.count[strip];
+      ++e;
+    }
+  }
+  return tile;
+}
+
+}  // namespace
+
+VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
+{
+  planes = model.size[2] + 1;
+  plane_tiles.assign(planes + 1, 0);
+  plane_nodes.assign(planes + 1, 0);
+  for (const auto& node : model.nodes)
+    ++plane_nodes[node[2] + 1];
+  for (std::int32_t k = 0; k < planes; ++k)
+    plane_nodes[k + 1] += plane_nodes[k];
+
+  TileVoxels voxels;
+  for (std::int32_t e = 0; e < static_cast<std::int32_t>(model.voxels.size());)
+  {
+    const std::int32_t plane = model.voxels[e][2];
+    Tile tile = next_tile(model, e);
+    for (int lane = 0; lane < Tile::width; ++lane)
+    {
+      voxels[lane] = {};
+      if (tile.voxel(lane) >= 0)
+        discretisation.voxel(tile.voxel(lane), voxels[lane]);
+    }
+    add_fibres(model, voxels, tile, fibres);
+    add_laws(voxels, tile, laws);
+    add_viscosity(voxels, tile, viscous);
+    tile.passes = (tile.fibre_begin < tile.fibre_end ? pass_fibres : 0) | (tile.viscous >= 0 ? pass_viscosity : 0);
+    stiffness.push_back(stiffness_of(voxels));
+    if (discretisation.assumed_strain)
+      stabilisation.push_back(stabilisation_of(voxels));
+    tiles.push_back(tile);
+    ++plane_tiles[plane + 1];
+  }
+  for (std::int32_t k = 0; k < planes; ++k)
+    plane_tiles[k + 1] += plane_tiles[k];
+  tiles.shrink_to_fit();
+  stiffness.shrink_to_fit();
+  stabilisation.shrink_to_fit();
+  fibres.shrink_to_fit();
+  laws.shrink_to_fit();
+  viscous.shrink_to_fit();
+}
+
+void VoxelRows::renew_bounds(const Discretisation& discretisation)
+{
+  VoxelProperties voxel;
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    for (int lane = 0; lane < Tile::width; ++lane)
+      if (const auto e = tiles[t].voxel(lane); e >= 0)
+      {
+        discretisation.voxel(static_cast<std::size_t>(e), voxel);
+        stiffness[t].bound[lane] = static_cast<float>(voxel.stiffness);
+      }
+}
+
+void VoxelRows::list_allocations(Effect of_fibres, AllocationList& list) const
+{
+  list.add(Effect::elasticity, "tiles", tiles);
+  list.add(Effect::elasticity, "planes", plane_tiles);
+  list.add(Effect::elasticity, "planes", plane_nodes);
+  list.add(Effect::elasticity, "stiffness", stiffness);
+  list.add(Effect::elasticity, "hourglass stiffness", stabilisation);
+  list.add(Effect::elasticity, "laws", laws);
+  list.add(of_fibres, "fibres", fibres);
+  list.add(Effect::viscosity, "Prony terms", viscous);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,104 @@
+#include "solver/energy/energy_account.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+
+template <class Real>
+EnergyAccount<Real>::EnergyAccount(const Model& model, const Discretisation& discretisation)
+    : mass_(discretisation.node_mass), plane_nodes_(static_cast<std::size_t>(model.size[2]) + 2, 0)
+{
+  for (const auto& node : model.nodes)
+    ++plane_nodes_[node[2] + 1];
+  for (std::size_t k = 1; k < plane_nodes_.size(); ++k)
+    plane_nodes_[k] += plane_nodes_[k - 1];
+  for (auto* field : { &before_, &free_ })
+    for (auto& component : *field)
+      component.assign(model.nodes.size(), 0);
+  open();
+}
+
+template <class Real>
+void EnergyAccount<Real>::open()
+{
+  const std::size_t count = plane_nodes_.size() - 1;
+  planes.assign(count, {});
+  for (auto& component : beside)
+    component.assign(mass_.size(), 0);
+  muscle.assign(count, 0);
+  viscous.assign(2 * count, 0);
+}
+
+template <class Real>
+void EnergyAccount<Real>::copy(std::int32_t first, std::int32_t last, const Real* const v[3], Field& to)
+{
+  for (int axis = 0; axis < 3; ++axis)
+    std::copy(v[axis] + first, v[axis] + last, to[axis].begin() + first);
+}
+
+template <class Real>
+void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Real* const u_before[3],
+                                const Real* const u[3], const Real* const v[3], double damping, double dt, double kick)
+{
+  for (auto k = first; k < last; ++k)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Real* const old = before_[axis].data();
+      const Real* const free = free_[axis].data();
+      double damped = 0, constrained = 0, displaced = 0;
+      for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
+      {
+        const double impulse = mass_[n] * 0.5 * (double(old[n]) + double(v[axis][n]));
+        damped += impulse * 0.5 * (double(old[n]) + double(free[n]));
+        constrained += impulse * (double(v[axis][n]) - double(free[n]));
+        const double apart = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
+        const double change =
+            double(free[n]) - double(old[n]) + 0.5 * damping * kick * (double(old[n]) + double(free[n]));
+        displaced += mass_[n] * change * 0.5 * (apart + beside[axis][n]);
+        beside[axis][n] = apart;
+      }
+      planes[k].damping += damping * kick * damped;
+      planes[k].constraint += constrained - displaced / kick;
+    }
+}
+
+template <class Real>
+void EnergyAccount<Real>::load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force,
+                               const Real* const v[3], double kick)
+{
+  for (int axis = 0; axis < 3; ++axis)
+    planes[plane].load += kick * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
+}
+
+template <class Real>
+Work EnergyAccount<Real>::work() const
+{
+  Work sum;
+  for (std::size_t k = 0; k < planes.size(); ++k)
+  {
+    sum.load += planes[k].load;
+    sum.constraint += planes[k].constraint;
+    sum.friction += planes[k].friction;
+    sum.damping += planes[k].damping;
+    sum.muscle += muscle[k];
+    sum.viscous += viscous[2 * k] - viscous[2 * k + 1];
+  }
+  return sum;
+}
+
+template <class Real>
+void EnergyAccount<Real>::list_allocations(AllocationList& list) const
+{
+  for (const auto* field : { &before_, &free_ })
+    for (const auto& component : *field)
+      list.add(Effect::elasticity, "account of energies", component);
+  for (const auto& component : beside)
+    list.add(Effect::elasticity, "account of energies", component);
+  list.add(Effect::elasticity, "account of energies", planes);
+}
+
+template class EnergyAccount<float>;
+template class EnergyAccount<double>;
+
+}  // namespace frontalis

@@ -1,0 +1,104 @@
+#include "solver/energy/energy_bound.hpp"
+
+#include "solver/stepping/discretisation.hpp"
+#include "frontalis/physics/ramp.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+#include "solver/stepping/nodal_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double margin = 2;
+constexpr double active_stretch = 1.2;   // over which a fibre pulls: from 1.6 to 0.4
+constexpr double passive_stretch = 0.3;  // energy of passive fibres at a stretch of 1.6 over tension times volume
+constexpr double small_strain = 1e-4;
+
+}  // namespace
+
+EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.muscles.size(), 0)
+{
+  const Discretisation discretisation(model);
+  viscous_ = discretisation.viscous_terms > 0;
+
+  // what holds each node: bone, then bones + load
+  const auto bones = static_cast<std::int32_t>(model.bones.size());
+  std::vector<std::int32_t> driver(model.nodes.size(), -1);
+  for (const auto& node : model.sliding)
+    driver[node.node] = model.constraint_surfaces[node.surface].bone;
+  for (const auto& node : model.rigid)
+    driver[node.node] = node.bone;
+  for (const auto& node : model.prescribed)
+    driver[node.node] = bones + node.load;
+  std::vector<double> stiffness(model.bones.size() + model.loads.size(), 0);
+
+  const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
+  VoxelProperties voxel;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, voxel);
+    const double own = 8 * voxel.stiffness;
+    floor_ += 0.5 * own * small_strain * small_strain * shortest * shortest;
+    for (auto f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+      fibres_[model.fibre_muscle[f]] +=
+          double(model.fibre_weight[f]) * voxel.tissue_volume * model.muscles[model.fibre_muscle[f]].stress_reference;
+    std::vector<std::int32_t> seen;
+    for (const auto node : model.voxel_nodes[e])
+      if (driver[node] >= 0 && std::find(seen.begin(), seen.end(), driver[node]) == seen.end())
+      {
+        seen.push_back(driver[node]);
+        stiffness[driver[node]] += own;
+      }
+  }
+  for (std::int32_t d = 0; d < static_cast<std::int32_t>(stiffness.size()); ++d)
+    if (stiffness[d] > 0)
+      (d < bones ? bones_ : prescribed_).push_back({ d < bones ? d : d - bones, stiffness[d] });
+
+  double squared = 0;
+  const auto& g = model.gravity;
+  const double pull = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    const double share = discretisation.weight_share.empty() ? 1.0 : double(discretisation.weight_share[n]);
+    squared += 0.5 * discretisation.node_mass[n] * share * share * pull;
+  }
+  NodalLoads loads(model, discretisation);
+  const std::vector<double> rest(model.nodes.size(), 0);
+  const double* const u[3] = { rest.data(), rest.data(), rest.data() };
+  loads.update(1e300, u);
+  double pressed = 0;
+  for (std::size_t l = 0; l < loads.nodes().size(); ++l)
+    for (const double f : loads.surface_forces()[l])
+      pressed += 0.5 * f * f / discretisation.node_mass[loads.nodes()[l]];
+  push_ = std::sqrt(squared) + std::sqrt(pressed);
+}
+
+double EnergyBound::most(const Interval& interval) const
+{
+  double given = floor_ + (viscous_ ? interval.largest_internal : 0);
+  for (std::size_t m = 0; m < fibres_.size(); ++m)
+    given += fibres_[m] *
+             (active_stretch * double(interval.activation[m]) + (model_.muscles[m].passive ? passive_stretch : 0.0));
+  for (const auto& bone : bones_)
+  {
+    const double moved = interval.bone_way[bone.index];
+    given += 0.5 * bone.stiffness * moved * moved;
+  }
+  for (const auto& nodes : prescribed_)
+  {
+    const Load& load = model_.loads[nodes.index];
+    const double part = physics::ramped(interval.end, load.ramp) - physics::ramped(interval.begin, load.ramp);
+    const auto& d = load.value;
+    // nodes whose motion begins at full value jump in the first step
+    const double share = interval.begin == 0 && load.ramp == 0 ? 1 : part;
+    given += 0.5 * nodes.stiffness * share * share * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  }
+  const double root = std::sqrt(interval.energy + given) + push_ * (interval.end - interval.begin);
+  return margin * root * root;
+}
+
+}  // namespace frontalis

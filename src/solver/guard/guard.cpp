@@ -1,0 +1,326 @@
+#include "frontalis/solver/guard.hpp"
+
+#include "solver/stepping/discretisation.hpp"
+#include "solver/energy/energy_bound.hpp"
+#include "frontalis/physics/mutation.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+#include "solver/guard/instability_report.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+// the bound on the time step is renewed every few dozen steps and is on the safe side
+constexpr double step_share_allowed = 1.1;
+// of the largest term of the ledger, in one interval
+constexpr double imbalance_allowed = 0.2;
+
+}  // namespace
+
+struct Guard::Implementation
+{
+  /// A state in which nothing was found.
+  struct Good
+  {
+    std::unique_ptr<Snapshot> snapshot;
+    Monitor monitor;
+    double time = 0;
+    double imbalance = 0;  // [J]
+    std::vector<RigidTransform> bone;
+    std::vector<float> since;  // largest activation of each muscle since the good state before
+    double largest_internal = 0;
+    bool there = false;  // else the snapshot is memory to be used again
+  };
+
+  Solver& solver;
+  std::shared_ptr<const Model> model;
+  GuardSettings settings;
+  EnergyBound bound;
+  Good good, before;              // the latest, and the one before
+  std::vector<float> activation;  // largest of each muscle since `good`
+  std::vector<double> bone_way;   // gone by each bone since `good`, and back [m]
+  std::int64_t checked_at = 0;    // steps
+  int good_checks = 0;            // since the latest rollback
+  int tries = 0;
+  bool settling = false;
+  GuardCounts counts;
+
+  double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass; }
+  std::int64_t steps() const { return solver.profile().steps; }
+  void keep(const Monitor& monitor, double imbalance);
+  Instability judged(const Monitor& monitor, double imbalance, double largest) const;
+  Instability check();
+  void go_back(Instability finding, const Controls& target, double end);
+  InstabilityReport examined(Instability finding, const Controls& target, double end);
+};
+
+void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
+{
+  std::swap(good, before);
+  solver.save(good.snapshot);
+  good.monitor = monitor;
+  good.time = solver.time();
+  good.imbalance = imbalance;
+  good.bone = solver.controls().bone;
+  good.since = activation;
+  good.largest_internal = std::max(before.largest_internal, monitor.internal);
+  good.there = true;
+  activation = solver.activation();
+  bone_way.assign(good.bone.size(), 0);
+}
+
+Instability Guard::Implementation::judged(const Monitor& m, double imbalance, double largest) const
+{
+  if (!m.finite)
+    return Instability::not_finite;
+  const auto voxels = static_cast<double>(model->voxels.size());
+  const double inverted = std::max(settings.inverted_share * voxels, static_cast<double>(good.monitor.inverted));
+  if (static_cast<double>(m.inverted) > inverted)
+    return Instability::inverted;
+  const double most =
+      bound.most({ energy(good.monitor), good.time, solver.time(), activation, bone_way, good.largest_internal });
+  if (m.hourglass > most)
+    return Instability::hourglass;
+  if (energy(m) > most || std::abs(imbalance - good.imbalance) > imbalance_allowed * largest + bound.floor())
+    return Instability::energy;
+  return m.step_share > step_share_allowed ? Instability::time_step : Instability::none;
+}
+
+Instability Guard::Implementation::check()
+{
+  const auto start = std::chrono::steady_clock::now();
+  ++counts.checks;
+  checked_at = steps();
+  const Monitor monitor = solver.monitor();
+  EnergyLedger ledger;
+  if (settings.ledger && monitor.finite && !settling)
+    ledger = solver.ledger();
+  const double imbalance = settling ? good.imbalance : ledger.imbalance();
+  const Instability finding = mutation::blind_guard ? Instability::none : judged(monitor, imbalance, ledger.largest);
+  if (finding == Instability::none)
+  {
+    keep(monitor, imbalance);
+    ++good_checks;
+  }
+  counts.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return finding;
+}
+
+// what a part of a motion, which answers what it found, came to
+template <class Part>
+Instability attempted(const Part& part)
+{
+  try
+  {
+    return part();
+  }
+  catch (const Diverged&)
+  {
+    if (mutation::blind_guard)
+      throw;
+    return Instability::not_finite;
+  }
+}
+
+// the first try begins at the latest good state, later ones earlier: what was found there may have begun before
+void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
+{
+  if (tries > 0 && before.there)
+  {
+    for (std::size_t m = 0; m < activation.size(); ++m)
+      activation[m] = std::max(activation[m], good.since[m]);
+    std::swap(good, before);
+  }
+  if (tries == settings.tries)
+  {
+    const InstabilityReport report = examined(finding, target, end);
+    solver.restore(*good.snapshot);
+    solver.slow_down(1);
+    tries = 0;
+    checked_at = steps();
+    throw Unstable(report);
+  }
+  ++tries;
+  ++counts.rollbacks;
+  counts.latest = finding;
+  solver.restore(*good.snapshot);
+  solver.slow_down(std::pow(settings.slower, tries));
+  before.there = false;
+  checked_at = steps();
+  good_checks = 0;
+  bone_way.assign(good.bone.size(), 0);
+}
+
+// where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
+InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
+{
+  std::vector<bool> moved;
+  for (std::size_t b = 0; b < target.bone.size(); ++b)
+    moved.push_back(target.bone[b].rotation != good.bone[b].rotation ||
+                    target.bone[b].translation != good.bone[b].translation);
+  const double time = solver.time();
+  constexpr double crushed = 0.2;
+  Monitor worst = solver.monitor();
+  if (!worst.finite)
+  {
+    solver.restore(*good.snapshot);
+    worst = good.monitor;
+    for (int step = 0; step < 2 * settings.interval; ++step)
+    {
+      const double left = end - solver.time();
+      const double dt = std::min(solver.time_step(), left);
+      bool diverged = !(left > 0);
+      try
+      {
+        if (!diverged)
+          solver.advance(dt, interpolate(solver.controls(), target, dt / left));
+      }
+      catch (const Diverged&)
+      {
+        diverged = true;
+      }
+      const Monitor now = solver.monitor();
+      const bool shows =
+          worst.worst_jacobian < crushed || worst.critical_time_step < 0.5 * good.monitor.critical_time_step;
+      if (now.finite || !shows)
+        worst = now;
+      if (!now.finite || diverged)
+        break;
+    }
+  }
+  // crushed or no number, or else stretched until it is stiffer than all others
+  const std::int32_t voxel =
+      !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
+  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
+}
+
+Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)
+{
+  const Model& watched = *model;
+  self_.reset(new Implementation{
+      solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, {}, 0, 0, 0, false, {} });
+  const auto refuse = [](const char* what, double value, const char* allowed)
+  { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
+  if (settings.interval < 0)
+    refuse("interval", settings.interval, "0 (the solver's) or more steps");
+  if (!(settings.slower > 0 && settings.slower < 1))
+    refuse("share of the time step", settings.slower, "above 0 and below 1");
+  if (settings.recovery < 1)
+    refuse("recovery", settings.recovery, "1 check or more");
+  if (settings.tries < 0 || settings.tries > 20)
+    refuse("number of tries", settings.tries, "0 to 20");
+  if (!(settings.inverted_share >= 0 && settings.inverted_share <= 1))
+    refuse("share of inverted voxels", settings.inverted_share, "0 to 1");
+  if (settings.interval == 0)
+    self_->settings.interval = solver.steps_a_check();
+  restart();
+}
+
+Guard::~Guard() = default;
+
+void Guard::restart()
+{
+  Implementation& g = *self_;
+  const Monitor monitor = g.solver.monitor();
+  const double imbalance = g.settings.ledger ? g.solver.ledger().imbalance() : 0;
+  g.good.largest_internal = g.before.largest_internal = 0;
+  g.keep(monitor, imbalance);
+  g.before.there = false;
+  g.tries = 0;
+  g.solver.slow_down(1);
+  g.checked_at = g.steps();
+}
+
+void Guard::check()
+{
+  const Instability finding = self_->check();
+  if (finding != Instability::none)
+    self_->go_back(finding, self_->solver.controls(), self_->solver.time());
+}
+
+void Guard::advance(double seconds, const Controls& target)
+{
+  Implementation& g = *self_;
+  g.solver.check(seconds, target);
+  const double end = g.solver.time() + seconds;
+  for (bool done = false; !done;)
+  {
+    const double left = end - g.solver.time();
+    const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
+    done = part >= left;
+    const auto go = [&]
+    {
+      const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
+      const std::vector<RigidTransform> from = g.solver.controls().bone;
+      g.solver.advance(done ? left : part, to);
+      for (std::size_t m = 0; m < to.activation.size(); ++m)
+        g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
+      for (std::size_t b = 0; b < to.bone.size(); ++b)
+        g.bone_way[b] += farthest_way(from[b], to.bone[b], far_corner(*g.model));
+      return g.steps() - g.checked_at >= g.settings.interval ? g.check() : Instability::none;
+    };
+    const Instability finding = attempted(go);
+    if (finding != Instability::none)
+    {
+      g.go_back(finding, target, end);
+      done = false;
+    }
+    else if (g.tries > 0 && g.good_checks >= g.settings.recovery)
+    {
+      g.tries = 0;
+      g.solver.slow_down(1);
+    }
+  }
+}
+
+Equilibrium Guard::settle(const Controls& target, double tolerance, double seconds,
+                          const std::function<bool(const Equilibrium&)>& go_on)
+{
+  Implementation& g = *self_;
+  g.solver.check(seconds, target);
+  const double end = g.solver.time() + seconds;
+  Equilibrium result;
+  for (Instability finding = Instability::time_step; finding != Instability::none;)
+  {
+    // muscles are at once where they are to be
+    for (std::size_t m = 0; m < target.activation.size(); ++m)
+      g.activation[m] = std::max(g.activation[m], target.activation[m]);
+    for (std::size_t b = 0; b < target.bone.size(); ++b)
+      g.bone_way[b] += farthest_way(g.solver.controls().bone[b], target.bone[b], far_corner(*g.model));
+    struct Settling
+    {
+      explicit Settling(bool& it) : on(it) { on = true; }
+      ~Settling() { on = false; }
+      bool& on;
+    };
+    const auto go = [&]
+    {
+      const Settling settling(g.settling);
+      finding = Instability::none;
+      result = g.solver.settle(target, tolerance, end - g.solver.time(),
+                               [&](const Equilibrium& now)
+                               {
+                                 if (g.steps() - g.checked_at >= g.settings.interval)
+                                   finding = g.check();
+                                 return finding == Instability::none && (!go_on || go_on(now));
+                               });
+      return finding == Instability::none ? g.check() : finding;
+    };
+    finding = attempted(go);
+    if (finding != Instability::none)
+      g.go_back(finding, target, end);
+  }
+  restart();
+  return result;
+}
+
+const GuardCounts& Guard::counts() const { return self_->counts; }
+const Monitor& Guard::latest() const { return self_->good.monitor; }
+
+}  // namespace frontalis

@@ -1,0 +1,173 @@
+#include "solver/guard/instability_report.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace frontalis
+{
+namespace
+{
+
+std::array<double, 3> mapped(const RigidTransform& map, const std::array<double, 3>& p)
+{
+  std::array<double, 3> result = map.translation;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      result[i] += map.rotation[3 * i + j] * p[j];
+  return result;
+}
+
+// names in a voxel by weight, the largest first
+template <class Weight>
+std::vector<std::int32_t> by_weight(std::int32_t begin, std::int32_t end, const Weight& weight)
+{
+  std::vector<std::int32_t> order;
+  for (auto i = begin; i < end; ++i)
+    if (weight(i) > 0)
+      order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return weight(a) > weight(b); });
+  return order;
+}
+
+template <class Nodes>
+auto held(const Nodes& nodes, const std::array<std::int32_t, 8>& corners)
+{
+  return std::find_if(nodes.begin(), nodes.end(),
+                      [&](const auto& entry)
+                      { return std::find(corners.begin(), corners.end(), entry.node) != corners.end(); });
+}
+
+struct Cause
+{
+  std::string effect, advice;
+};
+
+Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::vector<std::int32_t>& materials,
+               const std::vector<std::int32_t>& fibres, const std::vector<float>& activation,
+               const std::vector<bool>& moved)
+{
+  if (kind == Instability::time_step)
+    return { "the time step", "lower accuracy's time_step_share" };
+  if (kind == Instability::hourglass)
+    return { "hourglass modes", model.hourglass == HourglassControl::scalar
+                                    ? "set hourglass: assumed_strain, or take smaller voxels"
+                                    : "set integration: selective_reduced, or take smaller voxels" };
+  const auto& corners = model.voxel_nodes[e];
+  const auto rigid = held(model.rigid, corners);
+  if (rigid != model.rigid.end() && rigid->bone >= 0 && moved[rigid->bone])
+    return { "the motion of bone " + model.bones[rigid->bone], "move it in smaller parts" };
+  const auto prescribed = held(model.prescribed, corners);
+  if (prescribed != model.prescribed.end())
+    return { "prescribed displacement " + model.loads[prescribed->load].name,
+             "give it a longer ramp or a smaller value" };
+  double soft = 1e300, stiff = 0;
+  for (const auto m : materials)
+  {
+    const double shear = model.materials[model.mixture_material[m]].parameters[0];
+    soft = std::min(soft, shear);
+    stiff = std::max(stiff, shear);
+  }
+  for (const auto f : fibres)
+  {
+    const auto m = model.fibre_muscle[f];
+    const double tension = double(activation[m]) * double(model.fibre_weight[f]) * model.muscles[m].stress_reference;
+    if (tension > soft)
+      return { "the contraction of muscle " + model.muscles[m].name,
+               "lower its stress_reference or activation, or let it rise more slowly (time's activation_slew, the "
+               "muscle's rise_time)" };
+  }
+  const auto sliding = held(model.sliding, corners);
+  if (sliding != model.sliding.end())
+    return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
+             "smooth the surface there, or take smaller voxels" };
+  for (const auto& load : model.loads)
+    if (std::find(load.binding.voxel.begin(), load.binding.voxel.end(), e) != load.binding.voxel.end())
+      return { "load " + load.name, "give it a longer ramp or a smaller value" };
+  if (stiff > 100 * soft)
+    return { "materials of very different stiffness in one voxel",
+             "take smaller voxels, or scale the mass of the stiff one" };
+  return { "the elasticity of " + model.materials[model.mixture_material[materials.front()]].name,
+           "lower accuracy's time_step_share, or add damping" };
+}
+
+std::string place(const std::array<double, 3>& at)
+{
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << "(" << 1e3 * at[0] << ", " << 1e3 * at[1] << ", " << 1e3 * at[2] << ") mm";
+  return text.str();
+}
+
+std::string joined(const std::vector<std::string>& names)
+{
+  std::string text;
+  for (const auto& name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+std::string words_for(Instability instability)
+{
+  switch (instability)
+  {
+    case Instability::not_finite:
+      return "displacements are no longer finite";
+    case Instability::energy:
+      return "energy grows without a cause";
+    case Instability::hourglass:
+      return "hourglass energy grows without a cause";
+    case Instability::inverted:
+      return "voxels turn inside out";
+    case Instability::time_step:
+      return "the time step is longer than critical";
+    default:
+      return "nothing was found";
+  }
+}
+
+InstabilityReport describe(const Model& model, Instability kind, double time, std::int32_t voxel, double jacobian,
+                           const std::vector<float>& activation, const std::vector<bool>& moved)
+{
+  InstabilityReport report;
+  report.kind = kind;
+  report.time = time;
+  report.voxel = voxel;
+  report.jacobian = jacobian;
+  std::array<double, 3> centre;
+  for (int axis = 0; axis < 3; ++axis)
+    centre[axis] = (model.voxels[voxel][axis] + 0.5) * model.spacing[axis];
+  report.scene = mapped(model.to_scene, centre);
+  report.face = mapped(model.to_face, centre);
+  const auto materials = by_weight(model.mixture_begin[voxel], model.mixture_begin[voxel + 1],
+                                   [&](auto m) { return model.mixture_proportion[m]; });
+  const auto fibres = by_weight(model.fibre_begin[voxel], model.fibre_begin[voxel + 1],
+                                [&](auto f)
+                                {
+                                  const auto m = model.fibre_muscle[f];
+                                  return double(model.fibre_weight[f]) * model.muscles[m].stress_reference *
+                                         (1e-6 + double(activation[m]));
+                                });
+  for (const auto m : materials)
+    report.material.push_back(model.materials[model.mixture_material[m]].name);
+  for (const auto f : fibres)
+    report.muscle.push_back(model.muscles[model.fibre_muscle[f]].name);
+  const Cause cause = cause_of(model, kind, voxel, materials, fibres, activation, moved);
+  report.effect = cause.effect;
+  report.advice = cause.advice;
+  return report;
+}
+
+std::string InstabilityReport::text() const
+{
+  std::ostringstream text;
+  text << "the motion is unstable at " << time << " s: " << words_for(kind)
+       << ", with shorter time steps too. Worst is voxel " << voxel << " at " << place(scene) << " in the scene, "
+       << place(face) << " in the face frame (J " << jacobian << ", material " << joined(material)
+       << (muscle.empty() ? "" : ", muscle " + joined(muscle)) << "). Most likely at fault is " << effect << ": "
+       << advice;
+  return text.str();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,151 @@
+#include "solver/skin/skin_values.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/symmetric_eigen.hpp"
+#include "frontalis/physics/trilinear.hpp"
+#include "frontalis/physics/voxel_element.hpp"
+#include "frontalis/solver/solver.hpp"
+#include "solver/reference/voxel_stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+using physics::Kinematics;
+using physics::Matrix3;
+
+// E = (F^T F - 1) / 2
+double principal_strain(const Kinematics<double>& k)
+{
+  Matrix3<double> E;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      E.a[i][j] = i == j ? -0.5 : 0;
+      for (int l = 0; l < 3; ++l)
+        E.a[i][j] += 0.5 * k.F.a[l][i] * k.F.a[l][j];
+    }
+  const auto eigen = physics::symmetric_eigen(E);
+  return *std::max_element(eigen.value, eigen.value + 3);
+}
+
+// of the Cauchy stress P F^T / J; below a small J the divisor stays
+double von_mises(const Matrix3<double>& P, const Kinematics<double>& k)
+{
+  double s[3][3] = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int l = 0; l < 3; ++l)
+        s[i][j] += P.a[i][l] * k.F.a[j][l] / std::max(k.J, physics::continuation_jacobian);
+  const double a = s[0][0] - s[1][1], b = s[1][1] - s[2][2], c = s[2][2] - s[0][0];
+  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[0][1] * s[0][1] + s[1][2] * s[1][2] + s[2][0] * s[2][0]));
+}
+
+}  // namespace
+
+SkinField skin_field_from_name(const std::string& name)
+{
+  if (name == "strain")
+    return SkinField::strain;
+  if (name == "stress")
+    return SkinField::stress;
+  throw Error("there is no field '" + name + "' of the skin; the fields are strain, stress");
+}
+
+SkinValues::SkinValues(const Model& model, const Discretisation& discretisation)
+    : model_(model), discretisation_(discretisation)
+{
+  std::vector<std::int32_t> rank(model.nodes.size(), -1);
+  for (const auto voxel : model.skin_binding.voxel)
+    for (const auto node : model.voxel_nodes[voxel])
+      rank[node] = 0;
+  for (std::size_t n = 0; n < rank.size(); ++n)
+    if (rank[n] == 0)
+    {
+      rank[n] = static_cast<std::int32_t>(nodes_.size());
+      nodes_.push_back(static_cast<std::int32_t>(n));
+    }
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    std::array<std::int32_t, 8> corner;
+    for (std::size_t b = 0; b < 8; ++b)
+      corner[b] = rank[model.voxel_nodes[e][b]];
+    if (std::all_of(corner.begin(), corner.end(), [](auto r) { return r < 0; }))
+      continue;
+    voxels_.push_back(static_cast<std::int32_t>(e));
+    corner_.push_back(corner);
+  }
+}
+
+void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3>>& u,
+                         const std::vector<float>& activation, EffectSet running, std::vector<float>& out)
+{
+  const auto& h = model_.spacing;
+  const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
+  sum_.assign(nodes_.size(), 0);
+  weight_.assign(nodes_.size(), 0);
+  VoxelProperties voxel;
+  for (std::size_t v = 0; v < voxels_.size(); ++v)
+  {
+    const auto e = static_cast<std::size_t>(voxels_[v]);
+    double mode[3][8];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (int b = 0; b < 8; ++b)
+        mode[axis][b] = u[model_.voxel_nodes[e][b]][axis];
+      physics::walsh_hadamard(mode[axis]);
+    }
+    const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
+    double value = 0;
+    if (field == SkinField::strain)
+      value = principal_strain(k);
+    else
+    {
+      discretisation_.voxel(e, voxel);
+      Matrix3<double> P = elastic_stress(voxel, voxel.kappa, k);
+      for (auto f = model_.fibre_begin[e]; f < model_.fibre_begin[e + 1]; ++f)
+        add_fibre_stress(model_, f, k, activation, running, P);
+      value = von_mises(P, k);
+    }
+    const double tissue = static_cast<double>(model_.fill[e]);
+    for (const auto rank : corner_[v])
+      if (rank >= 0)
+      {
+        sum_[rank] += tissue * value;
+        weight_[rank] += tissue;
+      }
+  }
+  for (std::size_t n = 0; n < nodes_.size(); ++n)
+    sum_[n] /= weight_[n];
+  const auto& binding = model_.skin_binding;
+  out.resize(binding.voxel.size());
+  for (std::size_t p = 0; p < out.size(); ++p)
+  {
+    // a vertex beside its voxel takes the value at its side
+    const auto inside = [](float x) { return std::clamp(static_cast<double>(x), 0.0, 1.0); };
+    const auto& c = binding.coordinates[p];
+    double weight[8];
+    physics::trilinear_weights<double>(inside(c[0]), inside(c[1]), inside(c[2]), weight);
+    const auto v = std::lower_bound(voxels_.begin(), voxels_.end(), binding.voxel[p]) - voxels_.begin();
+    double value = 0;
+    for (int b = 0; b < 8; ++b)
+      value += weight[b] * sum_[corner_[v][b]];
+    out[p] = static_cast<float>(value);
+  }
+}
+
+void SkinValues::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::output_fields, "nodes below the skin", nodes_);
+  list.add(Effect::output_fields, "voxels below the skin", voxels_);
+  list.add(Effect::output_fields, "voxels below the skin", corner_);
+  list.add(Effect::output_fields, "means at nodes", sum_);
+  list.add(Effect::output_fields, "means at nodes", weight_);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,273 @@
+#include "solver/stepping/discretisation.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/time_step.hpp"
+#include "solver/stepping/mass_factors.hpp"
+#include "solver/material_laws.hpp"
+#include "solver/stepping/step_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+// stiffness that the fibres of a voxel can add along one direction, every muscle at full activation
+double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
+{
+  double sum = 0;
+  for (auto f = model.fibre_begin[voxel]; f < model.fibre_begin[voxel + 1]; ++f)
+  {
+    const Muscle& muscle = model.muscles[model.fibre_muscle[f]];
+    const double active = muscle.tension_length ? physics::active_slope_bound : 1.0;
+    const double bound = muscle.passive && running.has(Effect::fibre_stiffness)
+                             ? physics::active_slope_bound + physics::passive_slope_bound
+                         : running.has(Effect::contraction) ? active
+                                                            : 0.0;
+    sum += bound * muscle.stress_reference * model.fibre_weight[f];
+  }
+  return sum;
+}
+
+// a material's parameters in a voxel: with the voxel's own directions where it has some
+std::array<double, 11> parameters_in(const Model& model, std::size_t voxel, const Material& material)
+{
+  auto parameters = material.parameters;
+  if ((material.law == Law::holzapfel || material.law == Law::guccione) && !model.material_directions.empty())
+    for (int family = 0; family < 2; ++family)
+    {
+      const float* const d = model.material_directions[voxel].data() + 3 * family;
+      if (d[0] != 0 || d[1] != 0 || d[2] != 0)
+        std::copy(d, d + 3, parameters.begin() + first_direction + 3 * family);
+    }
+  return parameters;
+}
+
+// adds a material to the part of its law
+void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
+{
+  const Material& material = model.materials[static_cast<std::size_t>(index)];
+  const auto parameters = parameters_in(model, voxel, material);
+  // exponents and directions have no mean
+  const bool averaged = material.law == Law::mooney_rivlin || material.law == Law::fung;
+  const std::int32_t key = averaged ? -1 : index;
+  auto part = std::find_if(parts.begin(), parts.end(),
+                           [&](const auto& p) { return p.law == material.law && p.material == key; });
+  if (part == parts.end())
+    part = parts.insert(parts.end(), { material.law, 0, {}, 0, 0, key });
+  const double before = part->weight;
+  part->weight += proportion;
+  for (std::size_t p = 0; p < part->parameters.size(); ++p)
+    part->parameters[p] = (before * part->parameters[p] + proportion * parameters[p]) / part->weight;
+}
+
+physics::Kinematics<double> at_rest()
+{
+  const double none[8] = {}, scale[3] = {};
+  return physics::kinematics(none, none, none, scale);
+}
+
+bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
+{
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
+    if (model.mixture_proportion[m] > 0 &&
+        std::find(materials.begin(), materials.end(), model.mixture_material[m]) != materials.end())
+      return true;
+  return false;
+}
+
+// shear stiffness of a material at rest [Pa]
+double shear_at_rest(const Material& material)
+{
+  return material.law == Law::neo_hookean ? material.parameters[0]
+                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
+}
+
+// rigid nodes, and those whose displacement is prescribed in every direction; none where no node is left, so that a
+// model that cannot move has a time step too
+std::vector<std::int32_t> held_nodes(const Model& model)
+{
+  std::vector<int> directions(model.nodes.size(), 0);
+  for (const auto& node : model.prescribed)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.loads[node.load].fixed[axis])
+        directions[node.node] |= 1 << axis;
+  for (const auto& node : model.rigid)
+    directions[node.node] = 7;
+  std::vector<std::int32_t> held;
+  for (std::size_t n = 0; n < directions.size(); ++n)
+    if (directions[n] == 7)
+      held.push_back(static_cast<std::int32_t>(n));
+  return held.size() < directions.size() ? held : std::vector<std::int32_t>();
+}
+
+void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
+{
+  double stiffness = 0;
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
+  {
+    const Material& material = model.materials[model.mixture_material[m]];
+    const double part = model.mixture_proportion[m] * shear_at_rest(material);
+    stiffness += part;
+    for (std::size_t term = 0; term < 2; ++term)
+      if (material.viscous_share[term] > 0)
+      {
+        out.viscous_share[term] += part * material.viscous_share[term];
+        out.viscous_rate[term] += part * material.viscous_share[term] / material.viscous_time[term];
+      }
+  }
+  for (std::size_t term = 0; term < 2; ++term)
+    if (out.viscous_share[term] > 0)
+    {
+      out.viscous_rate[term] /= out.viscous_share[term];
+      out.viscous_share[term] /= stiffness;
+    }
+}
+
+}  // namespace
+
+Discretisation::Discretisation(const Model& model)
+    : assumed_strain(model.hourglass == HourglassControl::assumed_strain),
+      selective_reduced(model.integration == Integration::selective_reduced),
+      held(held_nodes(model)),
+      model_(&model),
+      running_(effects_of(model))
+{
+  const auto& h = model.spacing;
+  volume = h[0] * h[1] * h[2];
+  double sum = 0;
+  for (const double edge : h)
+    sum += 1 / (edge * edge);
+  stretch_half_sum = 0.5 * sum;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    hourglass_weight[axis] = 0.25 / (std::sqrt(3.0) * h[axis]);
+    stretch_weight[axis] = 1 / (h[axis] * h[axis]) / sum;
+  }
+  assumed_strain = assumed_strain && !selective_reduced;
+  for (const Material& material : model.materials)
+    for (int term = 0; term < 2 && running_.has(Effect::viscosity); ++term)
+      if (material.viscous_share[term] > 0)
+      {
+        viscous_terms = std::max(viscous_terms, term + 1);
+        const double time = material.viscous_time[term];
+        viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
+      }
+  const MassScalingSettings& scaling = model.mass_scaling;
+  VoxelProperties v;
+  if (scaling.kind == MassScalingSettings::Kind::uniform && scaling.factor != 1)
+    mass_factor_.assign(model.voxels.size(), static_cast<float>(scaling.factor));
+  if (scaling.kind == MassScalingSettings::Kind::selective)
+  {
+    std::vector<ScaledVoxel> voxels;
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    {
+      mix(e, v);
+      voxels.push_back({ v.stiffness, v.density * v.tissue_volume,
+                         scaling.materials.empty() || contains_any(model, e, scaling.materials) });
+    }
+    mass_factor_ = selective_mass_factors(model, voxels, held);
+  }
+
+  node_mass.assign(model.nodes.size(), 0);
+  std::vector<double> weight(mass_factor_.empty() ? 0 : model.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    voxel(e, v);
+    laws = laws || !v.laws.empty();
+    const double mass = v.density * v.tissue_volume;
+    for (const auto node : model.voxel_nodes[e])
+    {
+      node_mass[node] += mass / 8;
+      if (!weight.empty())
+        weight[node] += mass / double(mass_factor_[e]) / 8;
+    }
+  }
+  for (std::size_t n = 0; n < weight.size(); ++n)
+    weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
+  bound_at_rest();
+}
+
+void Discretisation::mix(std::size_t e, VoxelProperties& out) const
+{
+  const Model& model = *model_;
+  const auto& h = model.spacing;
+  out.mu = out.kappa = out.density = 0;
+  out.viscous_share = out.viscous_rate = {};
+  out.laws.clear();
+  for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+  {
+    const Material& material = model.materials[model.mixture_material[m]];
+    const double proportion = model.mixture_proportion[m];
+    if (material.law == Law::neo_hookean)
+      out.mu += proportion * material.parameters[0];
+    else if (proportion > 0)
+      add_law(model, e, model.mixture_material[m], proportion, out.laws);
+    out.kappa += proportion * material.parameters[1];
+    out.density += proportion * material.density;
+  }
+  double shear = out.mu;
+  for (auto& part : out.laws)
+  {
+    part.stiffness_at_rest = law_stiffness(part.law, part.parameters.data(), at_rest());
+    shear += part.weight * part.stiffness_at_rest;
+  }
+  if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
+    throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
+  out.tissue_volume = volume * model.fill[e];
+  const double shortest = std::min({ h[0], h[1], h[2] });
+  for (auto& part : out.laws)
+    part.per_tangent = part.weight * out.tissue_volume / (shortest * shortest);
+  out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
+                                               std::max({ h[0], h[1], h[2] }));
+  if (assumed_strain)
+  {
+    out.stabilisation = physics::assumed_strain(shear, out.kappa, out.tissue_volume);
+    out.hourglass *= physics::assumed_strain_floor;
+  }
+  else if (selective_reduced)
+    out.hourglass = 0;
+  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
+                                           h[0], h[1], h[2]);
+  if (viscous_terms > 0)
+    mix_viscosity(model, e, out);
+}
+
+void Discretisation::bound(EffectSet running)
+{
+  running_ = running;
+  bound_at_rest();
+}
+
+void Discretisation::bound_at_rest()
+{
+  std::vector<double> stiffness(model_->voxels.size());
+  VoxelProperties v;
+  for (std::size_t e = 0; e < stiffness.size(); ++e)
+  {
+    mix(e, v);
+    stiffness[e] = v.stiffness;
+  }
+  frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
+}
+
+void Discretisation::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::elasticity, "masses of nodes", node_mass);
+  list.add(Effect::elasticity, "held nodes", held);
+  list.add(Effect::elasticity, "shares of weight", weight_share);
+  list.add(Effect::elasticity, "mass scaling", mass_factor_);
+}
+
+void Discretisation::voxel(std::size_t e, VoxelProperties& out) const
+{
+  mix(e, out);
+  if (!mass_factor_.empty())
+    out.density *= double(mass_factor_[e]);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,60 @@
+#include "solver/stepping/mass_factors.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+// frequency squared that the voxels that are not chosen allow by themselves [1/s2], as if there were no others; held
+// nodes count only where all of theirs are held
+double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
+                         const std::vector<std::int32_t>& held)
+{
+  std::vector<double> stiffness(model.nodes.size(), 0), mass(model.nodes.size(), 0);
+  for (std::size_t e = 0; e < voxels.size(); ++e)
+    for (const auto n : model.voxel_nodes[e])
+      if (!voxels[e].chosen)
+      {
+        stiffness[n] += voxels[e].stiffness;
+        mass[n] += voxels[e].mass / 8;
+      }
+  const auto largest = [&]
+  {
+    double squared = 0;
+    for (std::size_t n = 0; n < mass.size(); ++n)
+      if (stiffness[n] > 0)
+        squared = std::max(squared, stiffness[n] / mass[n]);
+    return squared;
+  };
+  const double of_all = largest();
+  for (const auto n : held)
+    stiffness[n] = 0;
+  const double of_free = largest();
+  return of_free > 0 ? of_free : of_all;
+}
+
+}  // namespace
+
+std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
+                                          const std::vector<std::int32_t>& held)
+{
+  const MassScalingSettings& settings = model.mass_scaling;
+  const double allowed = settings.time_step > 0 ? 4 * model.time_step_share * model.time_step_share /
+                                                      (settings.time_step * settings.time_step)
+                                                : allowed_by_others(model, voxels, held);
+  if (allowed == 0)
+    return {};
+  std::vector<float> factors;
+  bool any = false;
+  for (const ScaledVoxel& voxel : voxels)
+  {
+    const double factor = voxel.chosen ? std::max(8 * voxel.stiffness / (allowed * voxel.mass), 1.0) : 1;
+    factors.push_back(static_cast<float>(factor));
+    any = any || factor > 1;
+  }
+  return any ? factors : std::vector<float>();
+}
+
+}  // namespace frontalis

@@ -1,0 +1,249 @@
+#include "solver/stepping/restricted_nodes.hpp"
+
+#include "frontalis/physics/ramp.hpp"
+#include "frontalis/physics/sliding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+using Point = SurfaceTree::Point;
+
+template <class Entry>
+auto range(std::vector<Entry>& entries, std::int32_t first, std::int32_t last)
+{
+  const auto before = [](const Entry& entry, std::int32_t node) { return entry.node < node; };
+  return std::make_pair(std::lower_bound(entries.begin(), entries.end(), first, before),
+                        std::lower_bound(entries.begin(), entries.end(), last, before));
+}
+
+template <class Entry>
+void sort_by_node(std::vector<Entry>& entries)
+{
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.node < b.node; });
+}
+
+std::array<double, 3> rest_position(const Model& model, std::int32_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
+
+}  // namespace
+
+template <class Real>
+RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
+    : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)
+{
+  trees_.resize(model.constraint_surfaces.size());
+  for (const auto& node : model.sliding)
+    if (auto& tree = trees_[node.surface]; !tree)
+      tree = std::make_unique<SurfaceTree>(model.constraint_surfaces[node.surface].mesh);
+  sort_by_node(rigid_);
+  sort_by_node(prescribed_);
+  auto sliding = model.sliding;
+  sort_by_node(sliding);
+  const auto plain = std::stable_partition(sliding.begin(), sliding.end(),
+                                           [&](const SlidingNode& node)
+                                           {
+                                             const auto& surface = model.constraint_surfaces[node.surface];
+                                             return surface.bone >= 0 || surface.friction > 0;
+                                           });
+  for (auto node = sliding.begin(); node != plain; ++node)
+  {
+    const auto rest = rest_position(model, node->node);
+    const auto& surface = model.constraint_surfaces[node->surface];
+    contacts_.gliding.add({ node->node,
+                            surface.bone,
+                            surface.friction,
+                            { rest[0], rest[1], rest[2] },
+                            { *trees_[node->surface], node->distance },
+                            {},
+                            {},
+                            0,
+                            {},
+                            {} });
+  }
+  make_blocks({ plain, sliding.end() });
+  reset();
+}
+
+// blocks begin at the first node that is in none yet and stay within its node plane: they go back a little where it
+// ends
+template <class Real>
+void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
+{
+  const auto end_of_plane = [&](std::int32_t node)
+  {
+    const auto above = [](const std::array<std::int32_t, 3>& a, std::int32_t k) { return a[2] <= k; };
+    return static_cast<std::int32_t>(
+        std::lower_bound(model_.nodes.begin() + node, model_.nodes.end(), model_.nodes[node][2], above) -
+        model_.nodes.begin());
+  };
+  std::int32_t covered = 0;
+  for (const auto& node : nodes)
+  {
+    if (node.node >= covered)
+    {
+      const std::int32_t end = end_of_plane(node.node);
+      std::int32_t first = std::min(node.node, std::max(0, end - Block::width));
+      while (model_.nodes[first][2] != model_.nodes[node.node][2])
+        ++first;
+      block_node_.push_back(first);
+      block_count_.push_back(std::min(end - first, std::int32_t{ Block::width }));
+      block_sliding_.emplace_back().fill(-1);
+      covered = first + block_count_.back();
+    }
+    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(contacts_.sliding.size());
+    const auto rest = rest_position(model_, node.node);
+    contacts_.sliding.push_back({ { rest[0], rest[1], rest[2] }, { *trees_[node.surface], node.distance } });
+  }
+}
+
+template <class Real>
+void RestrictedNodes<Real>::run(EffectSet running)
+{
+  slides_ = running.has(Effect::sliding);
+  rubs_ = running.has(Effect::friction);
+  contacts_.gliding.rub(rubs_);
+  reset();
+}
+
+template <class Real>
+void RestrictedNodes<Real>::list_allocations(AllocationList& list) const
+{
+  list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
+  list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
+  for (const auto& tree : trees_)
+    if (tree)
+    {
+      list.add(Effect::sliding, "surfaces", tree->boxes());
+      list.add(Effect::sliding, "surfaces", tree->triangles());
+    }
+  contacts_.gliding.list_allocations(list);
+  list.add(Effect::sliding, "contacts", contacts_.sliding);
+  list.add(Effect::sliding, "tangent planes", contacts_.blocks);
+  list.add(Effect::sliding, "tangent planes", block_node_);
+  list.add(Effect::sliding, "tangent planes", block_count_);
+  list.add(Effect::sliding, "tangent planes", block_sliding_);
+}
+
+template <class Real>
+void RestrictedNodes<Real>::reset()
+{
+  contacts_.gliding.reset();
+  for (auto& sliding : contacts_.sliding)
+    sliding.contact.forget();
+  contacts_.blocks.assign(block_node_.size(), {});
+  for (std::size_t block = 0; block < contacts_.blocks.size(); ++block)
+    for (int lane = 0; lane < Block::width; ++lane)
+      contacts_.blocks[block].slip_squared[lane] =
+          block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
+}
+
+template <class Real>
+void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3])
+{
+  auto& nodes = *static_cast<RestrictedNodes*>(self);
+  const auto index = nodes.block_sliding_[block][lane];
+  // a node that does not slide comes here where its displacement is not a number
+  if (index < 0)
+    return;
+  Sliding& s = nodes.contacts_.sliding[index];
+  Block& b = nodes.contacts_.blocks[block];
+  const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
+  const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
+                                                     plane.normal, { v[0], v[1], v[2] });
+  const double normal[3] = { plane.normal.x, plane.normal.y, plane.normal.z };
+  const double turned[3] = { velocity.x, velocity.y, velocity.z };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    v[axis] = static_cast<Real>(turned[axis]);
+    b.normal[axis][lane] = static_cast<Real>(normal[axis]);
+    b.reference[axis][lane] = u[axis];
+  }
+  b.offset[lane] = static_cast<Real>(plane.height - dot(plane.normal, s.rest));
+  b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
+}
+
+template <class Real>
+void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                  const Real* const before[3], const ConstraintStep& step)
+{
+  const auto block_of = [&](std::int32_t node)
+  {
+    return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -
+                                     block_node_.begin());
+  };
+  if (slides_)
+  {
+    kernel_({ contacts_.blocks.data(),
+              block_node_.data(),
+              block_count_.data(),
+              { u[0], u[1], u[2] },
+              { v[0], v[1], v[2] },
+              renew,
+              this },
+            block_of(first), block_of(last));
+    contacts_.gliding.apply(first, last, u, v, step);
+  }
+
+  if (!prescribed_.empty())
+    follow_paths(first, last, u, v, before, step);
+  if (!rigid_.empty())
+    follow_bones(first, last, u, v, before, step);
+}
+
+template <class Real>
+void RestrictedNodes<Real>::follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                         const Real* const before[3], const ConstraintStep& step)
+{
+  const auto nodes = range(prescribed_, first, last);
+  for (auto p = nodes.first; p != nodes.second; ++p)
+  {
+    const Load& load = model_.loads[p->load];
+    const double now = physics::ramped(step.time, load.ramp);
+    for (int axis = 0; axis < 3; ++axis)
+      if (load.fixed[axis])
+      {
+        u[axis][p->node] = static_cast<Real>(load.value[axis] * now);
+        v[axis][p->node] = (u[axis][p->node] - before[axis][p->node]) / static_cast<Real>(step.dt);
+      }
+  }
+}
+
+template <class Real>
+void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                                         const Real* const before[3], const ConstraintStep& step)
+{
+  const auto nodes = range(rigid_, first, last);
+  for (auto r = nodes.first; r != nodes.second; ++r)
+  {
+    if (r->bone < 0)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+        u[axis][r->node] = v[axis][r->node] = 0;
+      continue;
+    }
+    const auto rest = rest_position(model_, r->node);
+    const RigidTransform& pose = step.bone[r->bone];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      double x = pose.translation[axis] - rest[axis];
+      for (int j = 0; j < 3; ++j)
+        x += pose.rotation[3 * axis + j] * rest[j];
+      u[axis][r->node] = static_cast<Real>(x);
+      v[axis][r->node] = (u[axis][r->node] - before[axis][r->node]) / static_cast<Real>(step.dt);
+    }
+  }
+}
+
+template class RestrictedNodes<float>;
+template class RestrictedNodes<double>;
+
+}  // namespace frontalis

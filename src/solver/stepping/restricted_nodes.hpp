@@ -1,0 +1,90 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "solver/contact/gliding_nodes.hpp"
+#include "solver/cpu/slide_kernel.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
+/// may take disjoint ranges of node planes. Real is the backend's number type.
+template <class Real>
+class RestrictedNodes
+{
+public:
+  using Block = SlidingBlock<Real>;
+  struct Sliding
+  {
+    SurfaceTree::Point rest;
+    SurfaceContact contact;
+  };
+  /// What sliding nodes know of their surfaces.
+  struct Contacts
+  {
+    GlidingNodes<Real> gliding;    ///< those whose surface follows a bone or has friction
+    std::vector<Sliding> sliding;  ///< the others
+    std::vector<Block> blocks;
+
+    void archive(ByteArchive& archive)
+    {
+      gliding.archive(archive);
+      archive_contacts(sliding, archive);
+      archive(blocks);
+    }
+  };
+
+  /// The kernel may read and write, unchanged, what lies between sliding nodes of one node plane.
+  explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
+
+  void reset();
+  const Contacts& contacts() const { return contacts_; }
+  void restore(const Contacts& contacts)
+  {
+    contacts_ = contacts;
+    contacts_.gliding.rub(rubs_);
+  }
+  /// Applies to nodes in [first, last), whole node planes; u holds the displacements after the step's update, before
+  /// those before it.
+  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
+             const ConstraintStep& step);
+  /// Energy [J] that friction took from nodes in [first, last) in the step applied last: -I . (mean of v- and v+ -
+  /// velocity of the surface), where I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints,
+  /// v+: after it [m/s], mass [kg], all of all nodes. Added up node after node.
+  double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
+  {
+    return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
+  }
+  /// Sliding and friction where they run; nodes know of nothing before.
+  void run(EffectSet running);
+  void list_allocations(AllocationList& list) const;
+  bool idle() const
+  {
+    const bool slides = slides_ && !(contacts_.sliding.empty() && contacts_.gliding.empty());
+    return rigid_.empty() && prescribed_.empty() && !slides;
+  }
+
+private:
+  void make_blocks(const std::vector<SlidingNode>& nodes);
+  void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                    const Real* const before[3], const ConstraintStep& step);
+  void follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
+                    const Real* const before[3], const ConstraintStep& step);
+  static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
+
+  const Model& model_;
+  SlideKernel<Real> kernel_;
+  std::vector<std::unique_ptr<SurfaceTree>> trees_;
+  std::vector<RigidNode> rigid_;  // all lists sorted by node
+  std::vector<PrescribedNode> prescribed_;
+  Contacts contacts_;
+  std::vector<std::int32_t> block_node_, block_count_;
+  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into contacts_.sliding; -1: does not slide
+  bool slides_ = true, rubs_ = true;
+};
+
+}  // namespace frontalis

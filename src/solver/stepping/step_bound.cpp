@@ -1,0 +1,68 @@
+#include "solver/stepping/step_bound.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace frontalis
+{
+
+StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
+                         IndexRange voxels, IndexRange nodes, double* sum)
+{
+  std::fill(sum + nodes.first, sum + nodes.last, 0.0);
+  for (auto e = voxels.first; e < voxels.last; ++e)
+    for (const auto node : model.voxel_nodes[e])
+      if (node >= nodes.first && node < nodes.last)
+        sum[node] += stiffness[e];
+  StepBound bound;
+  auto held = std::lower_bound(discretisation.held.begin(), discretisation.held.end(), nodes.first);
+  for (auto n = nodes.first; n < nodes.last; ++n)
+    if (held != discretisation.held.end() && *held == n)
+      ++held;
+    else
+      bound.add({ sum[n] / discretisation.node_mass[n], n });
+  return bound;
+}
+
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness)
+{
+  std::vector<double> sum(model.nodes.size());
+  return bound_of_nodes(discretisation, model, stiffness.data(), { 0, static_cast<std::int32_t>(stiffness.size()) },
+                        { 0, static_cast<std::int32_t>(sum.size()) }, sum.data());
+}
+
+std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness)
+{
+  std::int32_t stiffest = -1;
+  if (node < 0)
+    return stiffest;
+  const auto order = [](const auto& a, const auto& b)
+  { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); };
+  for (int corner = 7; corner >= 0; --corner)
+  {
+    auto at = model.nodes[node];
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] -= corner >> axis & 1;
+    const auto found = std::lower_bound(model.voxels.begin(), model.voxels.end(), at, order);
+    if (found == model.voxels.end() || order(at, *found))
+      continue;
+    const auto e = static_cast<std::int32_t>(found - model.voxels.begin());
+    if (stiffest < 0 || (!(stiffness[e] <= stiffness[stiffest]) && stiffness[stiffest] == stiffness[stiffest]))
+      stiffest = e;
+  }
+  return stiffest;
+}
+
+std::vector<float> mobility(const Discretisation& discretisation)
+{
+  std::vector<float> result;
+  if (discretisation.held.empty())
+    return result;
+  for (const double mass : discretisation.node_mass)
+    result.push_back(static_cast<float>(1 / mass));
+  for (const auto n : discretisation.held)
+    result[n] = 0;
+  return result;
+}
+
+}  // namespace frontalis

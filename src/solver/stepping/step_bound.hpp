@@ -1,0 +1,42 @@
+#pragma once
+
+#include "solver/stepping/discretisation.hpp"
+
+namespace frontalis
+{
+
+/// Bound of the highest frequency of a model, or of a part of it, and the node that sets it (physics/time_step.hpp).
+struct StepBound
+{
+  double frequency_squared = 0;  ///< [1/s2]; NaN where the stiffness of a voxel is no number
+  std::int32_t node = -1;
+
+  /// Parts must be added in the order of their nodes.
+  void add(const StepBound& part)
+  {
+    if (!(part.frequency_squared <= frequency_squared) && frequency_squared == frequency_squared)
+      *this = part;
+  }
+};
+
+/// Indices [first, last).
+struct IndexRange
+{
+  std::int32_t first, last;
+};
+
+/// Of some nodes, from the stiffness bound [N/m] of every voxel. `voxels`: those that can touch the nodes, and more;
+/// sum: room for a number a node of the model, of which these nodes' are used.
+StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
+                         IndexRange voxels, IndexRange nodes, double* sum);
+
+/// Of the whole model.
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
+
+/// The stiffest of the voxels at a node; -1 for node -1.
+std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
+
+/// 1 / mass [1/kg] of every node, 0 where it is held; empty where none is.
+std::vector<float> mobility(const Discretisation& discretisation);
+
+}  // namespace frontalis

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "study/accuracy/accuracy_run.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Thrown where the caller of a study does not want to go on.
+struct StudyInterrupted
+{
+};
+
+struct MeasuredVariant
+{
+  std::string name;
+  AccuracySetting setting;
+  Backend played_by;  ///< another than the setting's where the folder has it of another machine
+  VariantMotion motion;
+  VariantCost cost;
+};
+
+/// Measures variants one by one; what a folder keeps from earlier is taken from there.
+class VariantBench
+{
+public:
+  /// All are kept by reference. Throws Error where the folder cannot be made or the standard setting has no model.
+  VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
+
+  /// Index in done(). Throws Error, StudyInterrupted.
+  std::size_t measure(const AccuracySetting& setting, const std::string& name = {});
+  /// Where it was measured in this study, else nothing.
+  const MeasuredVariant* find(const AccuracySetting& setting) const;
+  const std::vector<MeasuredVariant>& done() const { return done_; }
+
+  /// Wall seconds that it takes, about; 0 where it is kept.
+  double predicted(const AccuracySetting& setting) const;
+  /// Whether the budget has time for it; counts those that it has none for.
+  bool fits(const AccuracySetting& setting);
+  int left_out() const { return left_out_; }
+  /// What is still to come, for the estimate of the time left.
+  void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
+
+  /// Not timed.
+  void set_reference(const AccuracySetting& setting) { reference_ = setting; }
+  /// Time step of the standard setting with `time_step: element`, without scaled mass [s].
+  double critical_time_step() const { return critical_; }
+  const std::string& machine() const { return machine_.at(plan_.standard.backend); }
+
+private:
+  std::string key_of(const AccuracySetting& setting, Backend backend) const;
+  std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
+  bool is_reference(const AccuracySetting& setting) const;
+  std::vector<Backend> backends_of(const AccuracySetting& setting) const;
+  bool is_kept(const AccuracySetting& setting) const;
+  bool is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const;
+  std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
+  void learn(const AccuracySetting& setting, double wall);
+  void look_at_standard();
+
+  const AccuracyPlan& plan_;
+  const ModelMaker& maker_;
+  const AccuracyProgress& progress_;
+  VariantStore store_;
+  double begin_;
+  std::map<Backend, std::string> machine_;
+  double critical_ = 0;
+  std::optional<AccuracySetting> reference_;
+  std::vector<MeasuredVariant> done_;
+  std::map<std::string, std::size_t> index_;  // by key
+  std::vector<AccuracySetting> pending_;
+  // wall seconds: of any variant, for a unit of relative_time(), of what is only timed
+  double overhead_ = 0, rate_ = 0, timing_;
+  int left_out_ = 0;
+};
+
+}  // namespace frontalis

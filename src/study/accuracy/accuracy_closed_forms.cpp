@@ -1,0 +1,175 @@
+// bodies with a closed form, for studies of accuracy
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/closed_form.hpp"
+#include "frontalis/study/voxel_model.hpp"
+#include "study/verification/shape_model.hpp"
+
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+using Point = std::array<double, 3>;
+
+constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;
+constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
+constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
+
+// a box of whole voxels with its upper face and the side beside it as skin, at places that are the same for all edges
+Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
+{
+  const AccuracyProfile& profile = setting.profile;
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.spacing[axis] = profile.voxel[axis];
+    box.size[axis] = static_cast<std::int32_t>(std::lround(size[axis] / box.spacing[axis]));
+    if (std::abs(box.size[axis] * box.spacing[axis] - size[axis]) > 1e-9 * size[axis])
+      throw Error("voxels of " + millimetres(profile.voxel[axis]) + " do not fit an edge of " +
+                  millimetres(size[axis]));
+  }
+  box.materials = { neo_hookean(young, ratio) };
+  Model model = voxel_model(box);
+  model.hourglass = profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
+  model.integration = profile.integration == "one_point" ? Integration::one_point : Integration::selective_reduced;
+  model.precision = profile.precision == "double"        ? Precision::double_precision
+                    : profile.precision == "compensated" ? Precision::compensated
+                                                         : Precision::single;
+  model.time_step_share = profile.time_step_share;
+  model.time_step_estimate = profile.time_step == "assembled" ? TimeStepEstimate::assembled : TimeStepEstimate::element;
+  model.damping = 100;
+  model.skin = grid_mesh(32, 8, [&](double s, double t) -> Point { return { { s * size[0], t * size[1], size[2] } }; });
+  const TriangleMesh side = grid_mesh(32, 8,
+                                      [&](double s, double t) -> Point {
+                                        return { { s * size[0], size[1], t * size[2] } };
+                                      });
+  const auto before = static_cast<std::int32_t>(model.skin.vertices.size());
+  model.skin.vertices.insert(model.skin.vertices.end(), side.vertices.begin(), side.vertices.end());
+  for (const auto& t : side.triangles)
+    model.skin.triangles.push_back({ { t[0] + before, t[1] + before, t[2] + before } });
+  model.skin_binding = bind_points(model, model.skin.vertices);
+  return model;
+}
+
+// faces through the origin keep to their planes
+void hold_in_planes(Model& model)
+{
+  for (int axis = 0; axis < 3; ++axis)
+    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
+              { { axis == 0, axis == 1, axis == 2 } });
+}
+
+// first Piola-Kirchhoff stress [Pa] along the axis of stretch `a`, the others being `b` and `c`
+double principal_stress(double a, double b, double c)
+{
+  const double mu = shear_modulus(young, block_poisson), kappa = bulk_modulus(young, block_poisson);
+  const double J = a * b * c, I1 = a * a + b * b + c * c;
+  return mu * std::pow(J, -2.0 / 3) * (a - I1 / (3 * a)) + kappa * (J - 1) * J / a;
+}
+
+// zero of a function that grows
+double zero(double low, double high, const std::function<double(double)>& f)
+{
+  for (int halving = 0; halving < 60; ++halving)
+    (f(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+double lateral_stretch(double along)
+{
+  return zero(0.3, 3, [=](double side) { return principal_stress(side, along, side); });
+}
+
+ClosedForm of(const std::string& name, const std::string& title, std::vector<double> edges,
+              const std::function<Model(const AccuracySetting&)>& make, const std::function<Point(const Point&)>& exact)
+{
+  ClosedForm form{ name, title, {}, {} };
+  AccuracyPlan& plan = form.plan;
+  plan.exact = exact;
+  plan.edges = std::move(edges);
+  plan.standard.profile.voxel.fill(plan.edges[1]);
+  plan.standard.profile.precision = "double";
+  plan.knobs = { "voxel", "hourglass", "integration", "precision", "share", "time_step" };
+  plan.history = { {}, ramp, hold };
+  form.maker.bake = make;
+  form.maker.content = [name](const AccuracySetting& setting)
+  {
+    AccuracyRow row;
+    row.setting = setting;
+    return name + profile_text(row, name, "");
+  };
+  return form;
+}
+
+ClosedForm uniform(const std::string& name, const std::string& title, double along,
+                   const std::function<void(Model&)>& drive)
+{
+  const double side = lateral_stretch(along);
+  return of(
+      name, title, { 4e-3, 2e-3, 1e-3 },
+      [drive](const AccuracySetting& setting)
+      {
+        Model model = box_model(setting, block_size, block_poisson);
+        hold_in_planes(model);
+        drive(model);
+        return model;
+      },
+      [=](const Point& p) -> Point {
+        return { { (along - 1) * p[0], (side - 1) * p[1], (side - 1) * p[2] } };
+      });
+}
+
+// plane strain in x and z; shear and bending of a force that takes the end down by a thousandth of the length
+Point beam(const Point& p)
+{
+  const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);
+  const double factor = -1e-3 * L / ((4 + 5 * nu) * D * D * L / 4 + 2 * L * L * L);
+  return { { -factor * z * ((6 * L - 3 * x) * x + (2 + nu) * (z * z - D * D / 4)), 0,
+             factor * (3 * nu * z * z * (L - x) + (4 + 5 * nu) * D * D * x / 4 + (3 * L - x) * x * x) } };
+}
+
+Model cantilever(const AccuracySetting& setting)
+{
+  Model model = box_model(setting, bar_size, poisson);
+  prescribe(model, nodes_where(model, [](const auto&) { return true; }), { { false, true, false } });
+  const auto ends = [&](const auto& p) { return p[0] == 0 || p[0] > bar_size[0] - 0.5 * model.spacing[0]; };
+  for (const auto node : nodes_where(model, ends))
+    prescribe(model, { node }, { { true, true, true } }, beam(rest_position(model, static_cast<std::size_t>(node))),
+              ramp);
+  return model;
+}
+
+}  // namespace
+
+std::vector<ClosedForm> closed_forms()
+{
+  constexpr double drawn = 1.3;
+  const double active = shear_modulus(young, block_poisson);
+  const double contracted =
+      zero(0.5, 1,
+           [=](double along)
+           { return principal_stress(along, lateral_stretch(along), lateral_stretch(along)) + active * along; });
+  ClosedForm bar = uniform("active_bar", "active bar", contracted,
+                           [=](Model& model)
+                           {
+                             add_muscle(model, Muscle{ "bar", active, false, false },
+                                        [](std::size_t) {
+                                          return std::array<float, 3>{ { 1, 0, 0 } };
+                                        });
+                           });
+  bar.plan.history.activation = { 1 };
+  return { of("cantilever", "cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
+           uniform("stretched_block", "stretched block", drawn,
+                   [](Model& model)
+                   {
+                     const auto end = [&](const auto& p) { return p[0] > block_size[0] - 0.5 * model.spacing[0]; };
+                     prescribe(model, nodes_where(model, end), { { true, false, false } },
+                               { { (drawn - 1) * block_size[0], 0, 0 } }, ramp);
+                   }),
+           bar };
+}
+
+}  // namespace frontalis

@@ -1,0 +1,133 @@
+// variants beside what they are compared with
+
+#include "study/accuracy/accuracy_comparison.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
+#include "study/verification/verification_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double exactly_represented = 1e-3;  // error over motion
+
+}  // namespace
+
+AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
+                   const SkinAverage* average)
+{
+  AccuracyRow row;
+  row.name = measured.name;
+  row.setting = measured.setting;
+  row.fault = measured.motion.fault;
+  row.voxels = measured.motion.voxels > 0 ? measured.motion.voxels : NAN;
+  if (!row.fault.empty())
+    return row;
+  try
+  {
+    const VariantMotion found = plan.exact ? settled_part(measured.motion) : measured.motion;
+    const VariantMotion truth = plan.exact ? exact_motion(found, plan.exact) : reference;
+    const auto errors = skin_errors(found, truth);
+    row.error = worst(errors);
+    row.settled = errors.back();
+    row.landmark = landmark_error(found, truth);
+    if (average != nullptr)
+      row.averaged = average->error(found).rms;
+  }
+  catch (const Error& error)
+  {
+    row.fault = error.what();
+    return row;
+  }
+  row.energy = measured.motion.energy;
+  row.steps = measured.motion.steps;
+  if (measured.cost.machine.empty())
+    return row;
+  row.step = measured.cost.step;
+  row.cost = row.steps * row.step + plan.frame_rate * measured.cost.skin;
+  row.spread = measured.cost.spread;
+  row.noisy = measured.cost.is_noisy();
+  row.processors = measured.cost.processors;
+  row.memory = measured.cost.memory;
+  row.build = measured.cost.build;
+  return row;
+}
+
+void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
+                              AccuracyFindings& findings)
+{
+  // the finest three levels that were measured
+  std::vector<const MeasuredVariant*> levels;
+  for (const double edge : plan.edges)
+    if (const MeasuredVariant* known = bench.find(reference_setting(plan.standard, edge));
+        known != nullptr && known->motion.fault.empty())
+      levels.push_back(known);
+  if (levels.size() < 2)
+    throw Error("no voxels but the reference's, " + millimetres(plan.edges.back()) +
+                ", gave a motion to compare it with");
+  const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
+  const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
+  const auto apart = [&](std::size_t back)
+  { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
+  findings.reference_error = apart(1);
+  if (levels.size() > 2)
+  {
+    findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
+    findings.extrapolated = findings.order >= 0.5 && findings.order <= 2.5;
+    if (findings.extrapolated)
+      findings.reference_error = richardson(edge(2), edge(1), apart(1), findings.order);
+  }
+  findings.motion = motion_size(level(1)->motion);
+  std::string plain, averaged;
+  for (std::size_t back = levels.size() - 1; back > 0; --back)
+  {
+    const VariantMotion &coarse = level(back + 1)->motion, &fine = level(back)->motion;
+    const std::string comma = plain.empty() ? "" : ", ";
+    plain += comma + readable(1e3 * apart(back), 3);
+    averaged += comma + readable(1e3 * worst(skin_errors(average.of(coarse), average.of(fine))).rms, 3);
+  }
+  findings.notes.push_back("From level to level of its voxels the reference's form moves the skin by " + plain +
+                           " mm RMS, averaged by " + averaged + " mm.");
+}
+
+// in the voxel edge, of the standard setting's form and of the reference's
+void tell_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings)
+{
+  const auto& done = bench.done();
+  const auto sound = std::find_if(done.begin(), done.end(), [](const auto& v) { return v.motion.fault.empty(); });
+  if (sound == done.end())
+    throw Error("no setting could be measured: " + done.front().motion.fault);
+  findings.motion = motion_size(exact_motion(sound->motion, plan.exact));
+  for (const bool refined : { false, true })
+  {
+    std::vector<double> edges, errors;
+    for (const double edge : plan.edges)
+    {
+      AccuracySetting setting = refined ? reference_setting(plan.standard, edge) : plan.standard;
+      setting.profile.voxel.fill(edge);
+      const MeasuredVariant* const known = bench.find(setting);
+      if (known == nullptr || !known->motion.fault.empty())
+        continue;
+      edges.push_back(edge);
+      errors.push_back(row_of(*known, plan, {}, nullptr).error.rms);
+    }
+    if (errors.size() < 2)
+      continue;
+    const std::string form = refined ? "Assumed strain" : "The standard setting's form";
+    const double most = *std::max_element(errors.begin(), errors.end());
+    if (most < exactly_represented * findings.motion)
+      findings.notes.push_back(
+          form + ": at most " + readable(1e6 * most, 2) +
+          " µm at any edge, what settling and rounding leave: voxels represent this deformation exactly.");
+    else
+      findings.notes.push_back(form + ": the error falls with the voxel edge to the power " +
+                               readable(slope(edges, errors), 3) + ".");
+  }
+}
+
+}  // namespace frontalis

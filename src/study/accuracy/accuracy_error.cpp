@@ -1,0 +1,129 @@
+// how far skins are apart, and how the distance falls with the voxel edge
+
+#include "study/accuracy/accuracy_run.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+// distance between displacements from rest
+double apart(const SkinPhase& a, const SkinPhase& a_rest, const SkinPhase& b, const SkinPhase& b_rest, std::size_t v)
+{
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double d = (static_cast<double>(a.vertices[v][axis]) - a_rest.vertices[v][axis]) -
+                     (static_cast<double>(b.vertices[v][axis]) - b_rest.vertices[v][axis]);
+    square += d * d;
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact)
+{
+  if (found.area.size() != exact.area.size() || found.phases.size() != exact.phases.size())
+    throw Error("its skin has " + std::to_string(found.area.size()) + " vertices, that of the reference " +
+                std::to_string(exact.area.size()) + ": crop the skin to where every setting has voxels");
+  std::vector<SkinError> errors;
+  for (std::size_t p = 0; p < found.phases.size(); ++p)
+  {
+    double sum = 0, area = 0, largest = 0;
+    for (std::size_t v = 0; v < found.area.size(); ++v)
+    {
+      const double d = apart(found.phases[p], found.phases[0], exact.phases[p], exact.phases[0], v);
+      sum += exact.area[v] * d * d;
+      area += exact.area[v];
+      largest = std::max(largest, d);
+    }
+    errors.push_back({ area > 0 ? std::sqrt(sum / area) : 0, largest });
+  }
+  return errors;
+}
+
+SkinError worst(const std::vector<SkinError>& errors)
+{
+  SkinError all{ 0, 0 };
+  for (const SkinError& error : errors)
+    all = { std::max(all.rms, error.rms), std::max(all.largest, error.largest) };
+  return all;
+}
+
+double landmark_error(const VariantMotion& found, const VariantMotion& exact)
+{
+  if (found.phases.empty() || found.phases[0].landmarks.empty())
+    return NAN;
+  double largest = 0;
+  for (std::size_t p = 0; p < found.phases.size(); ++p)
+    for (std::size_t l = 0; l < found.phases[p].landmarks.size(); ++l)
+    {
+      double square = 0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double d = static_cast<double>(found.phases[p].landmarks[l][axis]) - found.phases[0].landmarks[l][axis] -
+                         (static_cast<double>(exact.phases[p].landmarks[l][axis]) - exact.phases[0].landmarks[l][axis]);
+        square += d * d;
+      }
+      largest = std::max(largest, std::sqrt(square));
+    }
+  return largest;
+}
+
+double motion_size(const VariantMotion& motion)
+{
+  VariantMotion still = motion;
+  std::fill(still.phases.begin(), still.phases.end(), motion.phases[0]);
+  return worst(skin_errors(motion, still)).rms;
+}
+
+VariantMotion settled_part(const VariantMotion& motion)
+{
+  VariantMotion part = motion;
+  part.phases = { motion.phases.front(), motion.phases.back() };
+  return part;
+}
+
+VariantMotion exact_motion(const VariantMotion& like,
+                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement)
+{
+  VariantMotion exact = settled_part(like);
+  exact.phases.back() = exact.phases.front();
+  for (auto* const places : { &exact.phases.back().vertices, &exact.phases.back().landmarks })
+    for (auto& place : *places)
+    {
+      const auto moved = displacement({ { place[0], place[1], place[2] } });
+      for (int axis = 0; axis < 3; ++axis)
+        place[axis] += static_cast<float>(moved[axis]);
+    }
+  return exact;
+}
+
+double observed_order(const std::array<double, 3>& edges, double coarse, double fine)
+{
+  // (h1^p - h2^p) / (h2^p - h3^p) grows with p
+  const auto excess = [&](double p)
+  {
+    return (std::pow(edges[0], p) - std::pow(edges[1], p)) * fine -
+           (std::pow(edges[1], p) - std::pow(edges[2], p)) * coarse;
+  };
+  double low = 1e-3, high = 8;
+  if (!(excess(low) < 0) || !(excess(high) > 0))
+    return NAN;
+  for (int halving = 0; halving < 60; ++halving)
+    (excess(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+double richardson(double before, double finest, double difference, double order)
+{
+  return difference / (std::pow(before / finest, order) - 1);
+}
+
+}  // namespace frontalis

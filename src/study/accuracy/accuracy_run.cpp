@@ -1,0 +1,278 @@
+// one variant: its motion, and what a step of it costs
+
+#include "study/accuracy/accuracy_run.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/runner/face_frame.hpp"
+#include "frontalis/solver/guard.hpp"
+#include "frontalis/study/step_time.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include <malloc.h>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr int repetitions = 9;
+constexpr double seconds_a_checkpoint = 60;        // at least
+constexpr double share_of_checkpoints = 1 / 40.0;  // of the wall time, at most
+
+int thread_count(int threads)
+{
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Controls controls_at(const Solver& solver, const ActivationHistory& history, double time)
+{
+  Controls controls = solver.controls();
+  controls.activation = history.activation;
+  const auto share = static_cast<float>(history.ramp > 0 ? std::min(time / history.ramp, 1.0) : 1);
+  for (float& a : controls.activation)
+    a *= share;
+  return controls;
+}
+
+SkinPhase look(Solver& solver, const Model& model)
+{
+  SkinState skin;
+  solver.skin(skin);
+  if (!is_finite(skin) || !solver.monitor().finite)
+    throw Diverged("the skin is no longer finite");
+  to_face_frame(model, skin);
+  return { std::move(skin.vertices), std::move(skin.landmarks) };
+}
+
+// a motion that has left the model behind cannot be trusted, finite or not
+void check_size(const VariantMotion& motion, const Model& model)
+{
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, model.size[axis] * model.spacing[axis]);
+  if (motion_size(motion) > size)
+    throw Diverged("the skin has left the model behind");
+}
+
+std::vector<float> vertex_areas(const Model& model)
+{
+  std::vector<float> areas(model.skin.vertices.size(), 0);
+  for (const auto& t : model.skin.triangles)
+  {
+    const auto &a = model.skin.vertices[t[0]], &b = model.skin.vertices[t[1]], &c = model.skin.vertices[t[2]];
+    double square = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double n = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
+      square += n * n;
+    }
+    for (const auto v : t)
+      areas[v] += static_cast<float>(std::sqrt(square) / 6);
+  }
+  return areas;
+}
+
+// false: nothing can be done with it
+bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
+{
+  try
+  {
+    solver.unpack(checkpoint.solver);
+  }
+  catch (const Error&)
+  {
+    return false;
+  }
+  state = checkpoint;
+  return true;
+}
+
+}  // namespace
+
+std::string machine_of(const Solver& solver, int threads)
+{
+  std::ifstream info("/proc/cpuinfo");
+  std::string processor = "unknown processor";
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0)
+    {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  return solver.description() + ", " + processor + ", " + std::to_string(thread_count(threads)) + " threads";
+}
+
+// glibc counts every arena in malloc_info alone: what it has of the system and mapped, less what is free
+double heap_bytes()
+{
+  char* text = nullptr;
+  std::size_t size = 0;
+  FILE* const stream = open_memstream(&text, &size);
+  if (stream == nullptr)
+    return NAN;
+  malloc_info(0, stream);
+  std::fclose(stream);
+  const std::string info(text, size);
+  std::free(text);
+  // the last of each is the sum over arenas
+  const auto bytes = [&info](const std::string& begin)
+  {
+    const std::size_t at = info.rfind(begin), number = info.find("size=\"", at);
+    return at == std::string::npos || number == std::string::npos ? 0 : std::stod(info.substr(number + 6));
+  };
+  return bytes("<system type=\"current\"") + bytes("<total type=\"mmap\"") - bytes("<total type=\"rest\"") -
+         bytes("<total type=\"fast\"");
+}
+
+std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
+                                          const ActivationHistory& history, int threads, bool wants_ledger,
+                                          const Checkpoints& checkpoints, const GoOn& go_on)
+{
+  VariantCheckpoint state;
+  VariantMotion& motion = state.motion;
+  motion.voxels = static_cast<double>(model->voxels.size());
+  motion.area = vertex_areas(*model);
+  try
+  {
+    SolverSettings settings;
+    settings.backend = setting.backend;
+    settings.threads = threads;
+    settings.ledger = wants_ledger;
+    const auto solver = make_solver(model, settings);
+    if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
+      motion.phases.push_back(look(*solver, *model));
+    const double steps_before = motion.steps;
+    double next_checkpoint = wall_seconds() + seconds_a_checkpoint;
+    const auto keep = [&]
+    {
+      const double begin = wall_seconds();
+      state.solver = solver->pack();
+      checkpoints.keep(state);
+      const double end = wall_seconds();
+      next_checkpoint = end + std::max(seconds_a_checkpoint, (end - begin) / share_of_checkpoints);
+    };
+    // where steps are long there are more slices, so that an interruption does not wait for long
+    const std::int64_t slices_a_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
+    const double length = history.ramp + history.hold;
+    const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
+    const auto time_of = [&](std::int64_t slices)
+    {
+      const auto phase = static_cast<std::size_t>(slices / slices_a_phase);
+      const double share = static_cast<double>(slices % slices_a_phase) / static_cast<double>(slices_a_phase);
+      return share > 0 ? ends[phase] + (ends[phase + 1] - ends[phase]) * share : ends[phase];
+    };
+    while (state.slices < 3 * slices_a_phase)
+    {
+      const double time = time_of(state.slices), next = time_of(state.slices + 1);
+      if (next > time)
+        solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
+      ++state.slices;
+      motion.steps = steps_before + static_cast<double>(solver->profile().steps);
+      if (state.slices % slices_a_phase == 0)
+      {
+        motion.phases.push_back(look(*solver, *model));
+        check_size(motion, *model);
+      }
+      const bool interrupted = !go_on(0.8 * next / length);
+      if (interrupted || wall_seconds() > next_checkpoint)
+        keep();
+      if (interrupted)
+        return std::nullopt;
+    }
+    // what settles has no checkpoints of its own
+    state.solver = solver->pack();
+    const VariantCheckpoint played = state;
+    motion.steps /= length;
+    const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
+    motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
+
+    // it is at rest for a viewer when the skin no longer moves, whatever noise the nodes inside have
+    VariantMotion last;
+    last.area = motion.area;
+    last.phases = { motion.phases[0], motion.phases.back() };
+    double looked = 0;
+    bool interrupted = false;
+    const double settling = 2 * length / model->time_scaling;
+    // the guard may go back, and what settles begins anew
+    Guard guard(*solver, model);
+    const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
+                                           [&](const Equilibrium& equilibrium)
+                                           {
+                                             interrupted = !go_on(0.8 + 0.2 * equilibrium.seconds / settling);
+                                             looked = std::min(looked, equilibrium.seconds);
+                                             if (equilibrium.seconds - looked < 0.1 * settling)
+                                               return !interrupted;
+                                             looked = equilibrium.seconds;
+                                             VariantMotion present = last;
+                                             present.phases[1] = look(*solver, *model);
+                                             const double moved = skin_errors(present, last)[1].rms;
+                                             last = std::move(present);
+                                             return !interrupted && moved > 5e-4 * motion_size(last);
+                                           });
+    if (interrupted)
+    {
+      checkpoints.keep(played);
+      return std::nullopt;
+    }
+    motion.residual = found.residual;
+    motion.phases.push_back(look(*solver, *model));
+    check_size(motion, *model);
+  }
+  // what else goes wrong is the machine's, and not kept with the setting
+  catch (const Diverged& error)
+  {
+    motion.fault = std::string("unstable: ") + error.what();
+  }
+  catch (const Unstable& error)
+  {
+    motion.fault = std::string("unstable: ") + error.what();
+  }
+  return motion;
+}
+
+VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
+                         const ActivationHistory& history, int threads, double seconds)
+{
+  VariantCost cost;
+  const double heap = heap_bytes();
+  SolverSettings settings;
+  settings.backend = setting.backend;
+  settings.threads = threads;
+  const auto solver = make_solver(model, settings);
+  cost.machine = machine_of(*solver, threads);
+  Controls controls = solver->controls();
+  controls.activation = history.activation;
+  // what others take from one thread can be told, from several not
+  const bool alone = is_alone(settings);
+  const double used = processor_seconds(), begin = wall_seconds();
+  // the search for an assembled time step is dear while muscles begin to pull, and would pass for the steps' cost
+  const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
+  const bool shared = setting.backend == Backend::cpu && !alone;
+  cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;
+  cost.memory = heap_bytes() - heap;
+  std::vector<double> steps, skins;
+  for (const auto& turn : turns)
+    steps.push_back(turn[0]);
+  SkinState skin;
+  for (int repetition = 0; repetition < repetitions; ++repetition)
+  {
+    const double start = wall_seconds();
+    solver->skin(skin);
+    skins.push_back(wall_seconds() - start);
+  }
+  const Spread step = spread_of(steps);
+  cost.step = step.median;
+  cost.spread = 2 * step.half / step.median;
+  cost.skin = spread_of(skins).median;
+  return cost;
+}
+
+}  // namespace frontalis

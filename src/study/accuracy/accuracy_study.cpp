@@ -1,0 +1,258 @@
+// the reference, the knobs and their combinations, and what they tell
+
+#include "study/accuracy/accuracy_bench.hpp"
+#include "study/accuracy/accuracy_comparison.hpp"
+#include "study/accuracy/accuracy_front.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double averaged_voxels = 1.5;  // of the standard setting
+
+class Study
+{
+public:
+  Study(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
+      : plan_(plan), bench_(plan_, maker, progress)
+  {
+  }
+
+  AccuracyFindings run();
+
+private:
+  void choose_reference();
+  void measure_knobs();
+  void measure_combinations();
+  void check_reference();
+
+  AccuracyRow row(const MeasuredVariant& measured) const
+  {
+    return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
+  }
+  AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
+  // edges that are variants': all but the reference's
+  std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
+  const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
+  bool is_too_fine(const AccuracySetting& setting) const
+  {
+    return !plan_.exact && setting.profile.voxel[0] < 1.01 * plan_.edges.back();
+  }
+  bool wanted(const std::string& knob) const
+  {
+    return plan_.knobs.empty() || std::find(plan_.knobs.begin(), plan_.knobs.end(), knob) != plan_.knobs.end();
+  }
+
+  AccuracyPlan plan_;
+  VariantBench bench_;
+  std::size_t reference_ = 0;
+  std::optional<SkinAverage> average_;  // where there is no closed form
+  AccuracyFindings findings_;
+};
+
+// coarse to fine, each level telling what the next takes; those that the budget does not allow are dropped
+void Study::choose_reference()
+{
+  auto& edges = plan_.edges;
+  std::vector<AccuracySetting> levels;
+  levels.reserve(edges.size());
+  for (const double edge : edges)
+    levels.push_back(reference_at(edge));
+  bench_.expect(levels);
+  for (std::size_t level = 0; level < edges.size(); ++level)
+  {
+    if (level == variant_levels())
+      bench_.set_reference(levels[level]);
+    const double takes = bench_.predicted(levels[level]);
+    const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
+    if (level > 2 && share > 0.4)
+    {
+      findings_.notes.push_back("Voxels of " + millimetres(edges[level]) +
+                                (level + 1 < edges.size() ? " and less" : "") + " were left out: about " +
+                                readable(takes, 2) + " s do not fit the budget.");
+      edges.resize(level);
+      break;
+    }
+    if (share > 0.8)
+      throw Error("a budget of " + readable(plan_.budget, 4) + " s is too small for a comparison: the reference of " +
+                  millimetres(edges[level]) + " alone takes about " + readable(takes, 2) +
+                  " s here; allow more, or begin with larger voxels");
+    bench_.measure(levels[level]);
+  }
+  if (plan_.exact)
+    return;
+  findings_.reference = reference_at(edges.back());
+  bench_.set_reference(findings_.reference);
+  reference_ = bench_.measure(findings_.reference);
+  if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
+    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", is of no use: " + fault);
+  findings_.averaged_over = averaged_voxels * plan_.standard.profile.voxel[0];
+  average_.emplace(motion_of(reference_), findings_.averaged_over);
+}
+
+void Study::measure_knobs()
+{
+  const std::size_t standard = bench_.measure(plan_.standard);
+  const std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  std::vector<AccuracySetting> all;
+  for (const Sweep& sweep : sweeps)
+    if (wanted(sweep.knob))
+      all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
+  bench_.expect(all);
+  for (const Sweep& sweep : sweeps)
+  {
+    if (!wanted(sweep.knob))
+      continue;
+    KnobLine line{ sweep.knob, { standard } };
+    for (const AccuracySetting& setting : sweep.settings)
+    {
+      const std::string& profile = setting.profile.name;
+      if (is_too_fine(setting))
+        findings_.notes.push_back("Profile '" + profile +
+                                  "' was left out: its voxels are as small as the reference's.");
+      else if (bench_.fits(setting))
+        line.rows.push_back(bench_.measure(setting, sweep.knob == "profiles" ? profile : ""));
+    }
+    std::sort(line.rows.begin(), line.rows.end());
+    line.rows.erase(std::unique(line.rows.begin(), line.rows.end()), line.rows.end());
+    if (sweep.knob != "profiles")
+      findings_.knobs.push_back(line);
+  }
+}
+
+// at each edge only what was not clearly beaten at the edge before
+void Study::measure_combinations()
+{
+  std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
+  for (std::size_t level = 0; level < variant_levels(); ++level)
+  {
+    const auto settings = combinations(plan_, plan_.edges[level], bench_.critical_time_step());
+    std::vector<AccuracySetting> coming;
+    for (std::size_t later = level; later < variant_levels(); ++later)
+    {
+      const auto all = combinations(plan_, plan_.edges[later], bench_.critical_time_step());
+      for (std::size_t c = 0; c < all.size(); ++c)
+        if (promising[c])
+          coming.push_back(all[c]);
+    }
+    bench_.expect(coming);
+    std::vector<std::pair<std::size_t, AccuracyRow>> rows;
+    for (std::size_t c = 0; c < settings.size(); ++c)
+      if (promising[c] && bench_.fits(settings[c]))
+        rows.emplace_back(c, row(bench_.done()[bench_.measure(settings[c])]));
+    for (const auto& [c, row] : rows)
+      promising[c] = row.fault.empty() && std::none_of(rows.begin(), rows.end(),
+                                                       [&row = row](const auto& other) {
+                                                         return other.second.cost < 0.9 * row.cost &&
+                                                                other.second.error.rms < 1.02 * row.error.rms;
+                                                       });
+  }
+}
+
+// at the coarsest edge: what double precision and half the time step change
+void Study::check_reference()
+{
+  if (plan_.exact)
+    return;
+  AccuracySetting exact = reference_at(plan_.edges[0]), halved = exact;
+  const std::size_t base = bench_.measure(exact);
+  if (!motion_of(base).fault.empty())
+    return;
+  exact.profile.precision = "double";
+  const bool elsewhere = exact.backend == Backend::cuda;  // which has no double precision
+  if (elsewhere)
+    exact.backend = Backend::cpu;
+  halved.profile.time_step_share *= 0.5;
+  for (const auto& [setting, words] : { std::pair<const AccuracySetting&, const char*>(
+                                            exact, elsewhere ? "double precision on the CPU" : "double precision"),
+                                        std::pair<const AccuracySetting&, const char*>(halved, "half the time step") })
+  {
+    if (!bench_.fits(setting))
+      continue;
+    const VariantMotion& other = motion_of(bench_.measure(setting));
+    if (other.fault.empty())
+      findings_.notes.push_back("The reference's form with voxels of " + millimetres(plan_.edges[0]) + ": " + words +
+                                " moves the skin by " +
+                                readable(1e6 * worst(skin_errors(motion_of(base), other)).rms, 3) + " µm.");
+  }
+}
+
+AccuracyFindings Study::run()
+{
+  const auto known = knob_names();
+  for (const std::string& knob : plan_.knobs)
+    if (std::find(known.begin(), known.end(), knob) == known.end())
+    {
+      std::string list;
+      for (const auto& name : known)
+        list += (list.empty() ? "" : ", ") + name;
+      throw Error("no knob is called '" + knob + "'; the knobs are " + list);
+    }
+  if (plan_.edges.size() < 3 || !std::is_sorted(plan_.edges.rbegin(), plan_.edges.rend()) ||
+      std::adjacent_find(plan_.edges.begin(), plan_.edges.end()) != plan_.edges.end())
+    throw Error(
+        "voxel edges: at least three are needed, each smaller than the one before; the last is the reference's");
+  if (is_too_fine(plan_.standard))
+    throw Error("voxel edges: the smallest, the reference's, is " + millimetres(plan_.edges.back()) +
+                "; it must be smaller than the standard setting's, " + millimetres(plan_.standard.profile.voxel[0]));
+  findings_.standard = plan_.standard;
+  findings_.closed_form = static_cast<bool>(plan_.exact);
+  try
+  {
+    choose_reference();
+    measure_knobs();
+    check_reference();
+    if (plan_.knobs.empty())
+      measure_combinations();
+  }
+  catch (const StudyInterrupted&)
+  {
+    findings_.complete = false;
+    return findings_;
+  }
+  findings_.machine = bench_.machine();
+  if (bench_.left_out() > 0)
+    findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
+  if (plan_.exact)
+    tell_orders(plan_, bench_, findings_);
+  else
+    estimate_reference_error(plan_, bench_, *average_, findings_);
+  std::map<Backend, int> elsewhere;
+  for (const MeasuredVariant& measured : bench_.done())
+  {
+    findings_.rows.push_back(row(measured));
+    if (measured.played_by != measured.setting.backend)
+      ++elsewhere[measured.played_by];
+  }
+  for (const auto& [backend, count] : elsewhere)
+    findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + name_of(backend) +
+                              ", which the folder had.");
+  if (!plan_.exact)
+  {
+    // the reference is no setting among others
+    AccuracyRow& reference = findings_.rows[reference_];
+    reference.name = "reference: " + reference.name;
+    reference.error = reference.settled = {};
+    reference.landmark = reference.averaged = NAN;
+  }
+  findings_.front = pareto_front(findings_.rows, plan_.standard, findings_.reference_error);
+  return findings_;
+}
+
+}  // namespace
+
+AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
+{
+  return Study(plan, maker, progress).run();
+}
+
+}  // namespace frontalis

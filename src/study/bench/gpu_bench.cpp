@@ -1,0 +1,229 @@
+// Kernel time of the CUDA backend on models made in code, beside a yardstick of the same run.
+#include "cuda/backend/device_memory.hpp"
+#include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
+#include "frontalis/solver/solver.hpp"
+#include "frontalis/study/dense_block.hpp"
+#include "study/bench/shell_model.hpp"
+#include "cuda/bench/yardstick.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace frontalis;
+
+namespace
+{
+
+double median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Scene
+{
+  std::string name;
+  std::function<Model()> make;
+  int steps;
+};
+
+struct Timer
+{
+  cudaEvent_t begin = nullptr, end = nullptr;
+
+  Timer()
+  {
+    cuda::require(cudaEventCreate(&begin), "making an event");
+    cuda::require(cudaEventCreate(&end), "making an event");
+  }
+  ~Timer()
+  {
+    cudaEventDestroy(begin);
+    cudaEventDestroy(end);
+  }
+  /// Seconds that the device needs for what `work` queues.
+  template <class Work>
+  double operator()(const Work& work) const
+  {
+    cuda::require(cudaEventRecord(begin), "recording an event");
+    work();
+    cuda::require(cudaEventRecord(end), "recording an event");
+    cuda::require(cudaEventSynchronize(end), "stepping");
+    float time = 0;
+    cuda::require(cudaEventElapsedTime(&time, begin, end), "reading a time");
+    return 1e-3 * time;
+  }
+};
+
+// activations on their way to the wanted ones, reached after 0.3 s as in the published set-up
+Controls ramped(const Controls& wanted, double time)
+{
+  Controls now = wanted;
+  for (auto& a : now.activation)
+    a *= static_cast<float>(std::min(1.0, time / 0.3));
+  return now;
+}
+
+// seconds a step over a run of at least `steps` steps; frame_wall_time > 0: the skin is fetched that often
+double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& controls, int steps, double frame_wall_time)
+{
+  const std::int64_t before = solver.profile().steps;
+  const double time = timer(
+      [&]
+      {
+        auto frame = std::chrono::steady_clock::now();
+        SkinState skin;
+        while (solver.profile().steps - before < steps)
+        {
+          const double slice = 128 * solver.time_step();
+          solver.advance(slice, ramped(controls, solver.time() + slice));
+          const auto now = std::chrono::steady_clock::now();
+          if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
+          {
+            solver.skin(skin);
+            frame = now;
+          }
+        }
+      });
+  return time / static_cast<double>(solver.profile().steps - before);
+}
+
+// median of five runs
+double seconds_a_step(Solver& solver, const Controls& controls, int steps)
+{
+  const Timer timer;
+  std::vector<double> times;
+  times.reserve(5);
+  for (int run = 0; run < 5; ++run)
+    times.push_back(seconds_of_a_run(timer, solver, controls, steps, 0));
+  return median(times);
+}
+
+// What fetching the skin 60 times a wall second adds, as a share: median of nine runs, each beside the mean of the two
+// without it before and after, because the motion goes on meanwhile.
+double share_of_skin(Solver& solver, const Controls& controls, int steps)
+{
+  const Timer timer;
+  std::vector<double> shares;
+  double before = seconds_of_a_run(timer, solver, controls, steps, 0);
+  for (int run = 0; run < 9; ++run)
+  {
+    const double with = seconds_of_a_run(timer, solver, controls, steps, 1.0 / 60);
+    const double after = seconds_of_a_run(timer, solver, controls, steps, 0);
+    shares.push_back(2 * with / (before + after) - 1);
+    before = after;
+  }
+  return median(shares);
+}
+
+// The voxels a second of the dense blocks of this run, by name: what other models are compared with.
+using DenseRates = std::vector<std::pair<std::string, double>>;
+
+void bench(const Scene& scene, DenseRates& dense)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto model = std::make_shared<const Model>(scene.make());
+  std::size_t free_before = 0, free_after = 0, total = 0;
+  cuda::require(cudaMemGetInfo(&free_before, &total), "asking for free memory");
+  const auto solver = make_solver(model, { Backend::cuda, 0, 0 });
+  cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
+  const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Controls controls;
+  controls.activation.assign(model->muscles.size(), 0);
+  // at rest no contact is renewed: the difference is what sliding far costs
+  solver->advance(256 * solver->time_step(), controls);
+  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps);
+  solver->reset();
+  controls.activation.assign(model->muscles.size(), 0.75f);
+  const double warm_up = 256 * solver->time_step();
+  solver->advance(warm_up, ramped(controls, warm_up));
+  const double step = seconds_a_step(*solver, controls, scene.steps);
+  const auto voxels = static_cast<double>(model->voxels.size());
+  std::printf(
+      "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
+      scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
+      static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
+  if (model->skin.vertices.empty())
+    dense.emplace_back(scene.name, voxels / step);
+  else
+  {
+    for (const auto& [name, rate] : dense)
+      std::printf("%-14s %.2f of the rate of %s\n", "", voxels / step / rate, name.c_str());
+    std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
+    const double share = share_of_skin(*solver, controls, static_cast<int>(0.1 / step));
+    std::printf(
+        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
+        model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
+  }
+  const Monitor monitor = solver->monitor();
+  if (!monitor.finite)
+    throw Error(scene.name + ": the motion is not finite");
+  std::fflush(stdout);
+}
+
+std::vector<Scene> scenes()
+{
+  const auto shell = [](double voxel) { return [voxel] { return shell_model({ voxel, 11000, 5e6 }); }; };
+  return { { "block_4k", [] { return dense_block(16, 16, 16); }, 20000 },
+           { "block_1m", [] { return dense_block(102, 102, 102); }, 2000 },
+           { "block_2m", [] { return dense_block(126, 126, 126); }, 2000 },
+           { "block_16m", [] { return dense_block(252, 252, 252); }, 1000 },
+           { "shell_4k", shell(2.8e-3), 20000 },
+           { "shell_30k", shell(1.4e-3), 20000 },
+           { "shell_100k", shell(0.93e-3), 10000 },
+           { "shell_1m", shell(0.45e-3), 2000 },
+           { "block_512", [] { return dense_block(512, 512, 512); }, 100 } };
+}
+
+int run(int count, char** arguments)
+{
+  const std::vector<std::string> wanted(arguments + 1, arguments + count);
+  const auto is_wanted = [&](const std::string& name)
+  {
+    // the largest only by name: it takes minutes to build
+    return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  if (is_wanted("yardstick"))
+  {
+    for (const int n : { 126, 252 })
+    {
+      const YardstickResult y = run_yardstick(n, 1000);
+      std::printf("yardstick      %10.0f voxels  %8.2f us a step  %7.2f G updates a second  copy %.2f TB/s\n",
+                  std::pow(n, 3), y.microseconds_a_step, y.updates_a_second * 1e-9, y.copy_bandwidth * 1e-12);
+    }
+    std::fflush(stdout);
+  }
+  DenseRates dense;
+  for (const Scene& scene : scenes())
+    if (is_wanted(scene.name))
+      bench(scene, dense);
+  // baked models
+  for (const std::string& name : wanted)
+    if (name.find('.') != std::string::npos)
+      bench({ name.substr(name.rfind('/') + 1), [&] { return read_model(name); }, 10000 }, dense);
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+  try
+  {
+    return run(count, arguments);
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,158 @@
+#include "study/stability/guarded_trial.hpp"
+
+#include "frontalis/error.hpp"
+#include "study/stability/stability_file.hpp"
+#include "study/stability/stability_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+GuardedTrial::GuardedTrial(const StabilitySettings& settings, Trial& trial, std::shared_ptr<const Model> model,
+                           bool ledger, const GuardSettings& guard)
+    : settings_(settings), trial_(trial), model_(std::move(model)), wants_ledger_(ledger)
+{
+  settings.model(*model_);
+  // few voxels are not worth a second thread's waiting
+  const int threads = model_->voxels.size() < 2000 ? 1 : 0;
+  SolverSettings own{ settings.backend, threads, 0 };
+  own.ledger = ledger;
+  solver_ = make_solver(model_, own);
+  guard_ = std::make_unique<Guard>(*solver_, model_, guard);
+  trial_.voxels = std::max(trial_.voxels, static_cast<std::int64_t>(model_->voxels.size()));
+}
+
+GuardedTrial::~GuardedTrial()
+{
+  trial_.steps += solver_->profile().steps;
+  trial_.rollbacks += guard_->counts().rollbacks;
+}
+
+Controls GuardedTrial::controls(float activation, const RigidTransform& pose) const
+{
+  return { std::vector<float>(model_->muscles.size(), activation),
+           std::vector<RigidTransform>(model_->bones.size(), pose) };
+}
+
+void GuardedTrial::advance(double seconds, const Controls& target, int looks)
+{
+  for (int i = 0; i < looks; ++i)
+  {
+    // controls go on from where they are: each part gets its share of the way
+    guard_->advance(seconds / looks, interpolate(solver_->controls(), target, 1.0 / (looks - i)));
+    look();
+    settings_.watch((i + 1.0) / looks);
+  }
+}
+
+void GuardedTrial::come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                               const std::string& picture, const std::string& title)
+{
+  for (const Phase& phase : phases)
+    advance(phase.seconds, phase.target, phase.looks);
+  plot(picture, title);
+  advance(file.seconds("in_the_end"), controls(), 20);
+  expect_balance(of, file.bound("energy", "%"));
+  trial_.checks.push_back(
+      absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm")));
+}
+
+void GuardedTrial::settle(const Controls& target, double tolerance, double seconds)
+{
+  const Equilibrium end = guard_->settle(target, tolerance, seconds,
+                                         [&](const Equilibrium& now)
+                                         {
+                                           settings_.watch(now.seconds / seconds);
+                                           return true;
+                                         });
+  if (!end.reached)
+    throw Error("no equilibrium within " + readable(seconds) + " s: " + readable(end.residual, 3) +
+                " of the displacement is still to go");
+  look();
+}
+
+void GuardedTrial::hold_or_stop(const std::function<void()>& play)
+{
+  try
+  {
+    play();
+  }
+  catch (const Unstable& stop)
+  {
+    trial_.stopped = stop.what();
+    const Monitor last = solver_->monitor();
+    trial_.checks.push_back(absolute_check("stopped in a state that is not finite", "", 0, last.finite ? 0 : 1, 0));
+    trial_.checks.push_back(
+        absolute_check("report names no voxel", "", 0, stop.report.voxel < 0 || stop.report.advice.empty() ? 1 : 0, 0));
+  }
+}
+
+void GuardedTrial::set(const Vectors& displacements, const Vectors& velocities)
+{
+  solver_->set_displacements(displacements);
+  if (!velocities.empty())
+    solver_->set_velocities(velocities);
+  guard_->restart();
+  look();
+}
+
+Vectors GuardedTrial::displacements() const
+{
+  Vectors u;
+  solver_->displacements(u);
+  return u;
+}
+
+void GuardedTrial::look()
+{
+  monitor_ = solver_->monitor();
+  if (!monitor_.finite)
+    throw Error("energies are no longer finite at " + readable(solver_->time()) + " s");
+  trial_.worst_jacobian = std::min(trial_.worst_jacobian, monitor_.worst_jacobian);
+  if (!wants_ledger_)
+    return;
+  ledger_ = solver_->ledger();
+  if (!std::isfinite(ledger_.imbalance()))
+    throw Error("the ledger of energies is no longer finite at " + readable(solver_->time()) + " s");
+  worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
+  largest_ = std::max(largest_, ledger_.largest);
+  most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
+  moments_.push_back({ solver_->time(), ledger_.kinetic, ledger_.internal + ledger_.hourglass, ledger_.imbalance(),
+                       monitor_.worst_jacobian });
+}
+
+void GuardedTrial::expect_balance(const std::string& of, double percent)
+{
+  const double error = worst_imbalance_ / largest_;
+  trial_.energy_error = std::fmax(trial_.energy_error, error);
+  trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
+  trial_.checks.push_back(absolute_check("energy unexplained, " + of, "%", 0, 100 * error, percent));
+}
+
+void GuardedTrial::plot(const std::string& file, const std::string& title)
+{
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "time [s]";
+  plot.y_label = "energies over the largest, smallest J [1]";
+  plot.key = "below";
+  plot.curves = { { "kinetic energy", {}, {}, Plot::Style::line },
+                  { "stored energy", {}, {}, Plot::Style::line },
+                  { "unexplained", {}, {}, Plot::Style::line },
+                  { "smallest J", {}, {}, Plot::Style::dashed } };
+  for (const Moment& m : moments_)
+  {
+    const std::array<double, 4> y{ { m.kinetic / largest_, m.stored / largest_, m.unexplained / largest_,
+                                     m.jacobian } };
+    for (std::size_t c = 0; c < y.size(); ++c)
+    {
+      plot.curves[c].x.push_back(m.time);
+      plot.curves[c].y.push_back(y[c]);
+    }
+  }
+  trial_.plots.emplace_back(file, plot);
+}
+
+}  // namespace frontalis

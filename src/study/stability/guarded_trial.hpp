@@ -1,0 +1,87 @@
+#pragma once
+
+#include "frontalis/solver/guard.hpp"
+#include "frontalis/study/stability.hpp"
+#include "frontalis/study/voxel_model.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+class CaseFile;
+
+/// A guarded motion that is looked at as it goes on: energies, worst voxel, hourglass share. What it finds goes into
+/// its trial.
+class GuardedTrial
+{
+public:
+  GuardedTrial(const StabilitySettings& settings, Trial& trial, std::shared_ptr<const Model> model, bool ledger = true,
+               const GuardSettings& guard = {});
+  GuardedTrial(const StabilitySettings& settings, Trial& trial, const Model& model, bool ledger = true)
+      : GuardedTrial(settings, trial, std::make_shared<const Model>(model), ledger)
+  {
+  }
+  GuardedTrial(const GuardedTrial&) = delete;
+  GuardedTrial& operator=(const GuardedTrial&) = delete;
+  ~GuardedTrial();
+
+  Solver& solver() { return *solver_; }
+  const Model& model() const { return *model_; }
+
+  /// Every muscle at an activation, every bone at a pose.
+  Controls controls(float activation = 0, const RigidTransform& pose = {}) const;
+
+  /// Advances in equal parts and looks after each.
+  void advance(double seconds, const Controls& target, int looks = 1);
+  struct Phase
+  {
+    double seconds;
+    Controls target;
+    int looks;
+  };
+  /// Plays phases, plots them and leaves the model alone for a while (the case's in_the_end): energy must be explained
+  /// throughout to a share (bounds.energy), and no node be farther from where it rests in the end than bounds.left.
+  void come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                   const std::string& picture, const std::string& title);
+  /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.
+  void settle(const Controls& target, double tolerance, double seconds);
+  /// Plays a motion that may be too much: where the guard stops it, the trial has its report, and that the state is a
+  /// good one is checked.
+  void hold_or_stop(const std::function<void()>& play);
+  /// Sets displacements [m] and, unless empty, velocities [m/s]; the ledger opens anew.
+  void set(const Vectors& displacements, const Vectors& velocities = {});
+
+  Vectors displacements() const;
+  const Monitor& monitor() const { return monitor_; }       ///< at the latest look
+  const EnergyLedger& energies() const { return ledger_; }  ///< the same
+
+  /// Checks that what the ledger left unexplained stayed within so many percent of its largest term.
+  void expect_balance(const std::string& of, double percent);
+  /// Energies over time and the smallest J, as a picture.
+  void plot(const std::string& file, const std::string& title);
+
+private:
+  struct Moment
+  {
+    double time, kinetic, stored, unexplained, jacobian;
+  };
+
+  void look();
+
+  const StabilitySettings& settings_;
+  Trial& trial_;
+  std::shared_ptr<const Model> model_;
+  std::unique_ptr<Solver> solver_;
+  std::unique_ptr<Guard> guard_;
+  bool wants_ledger_;
+  Monitor monitor_;
+  EnergyLedger ledger_;
+  double worst_imbalance_ = 0, most_hourglass_ = 0,
+         largest_ = 0;  // [J]; the ledger of a guarded motion goes back, these do not
+  std::vector<Moment> moments_;
+};
+
+}  // namespace frontalis

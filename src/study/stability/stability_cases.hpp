@@ -1,0 +1,20 @@
+#pragma once
+
+#include "study/stability/stability_file.hpp"
+#include "study/stability/guarded_trial.hpp"
+
+namespace frontalis
+{
+
+// one function a family, cases by name; stability.cpp puts them together with their files
+using CaseFunctions = std::vector<std::pair<std::string, void (*)(const StabilitySettings&, const CaseFile&, Trial&)>>;
+CaseFunctions hard_materials();
+CaseFunctions hard_shapes();
+CaseFunctions hard_muscles();
+CaseFunctions hard_constraints();
+CaseFunctions hard_times();
+
+/// "held", "stopped with a report: ...", "skipped: ..." or "FAILED: ...".
+std::string verdict_of(const Trial& trial);
+
+}  // namespace frontalis
