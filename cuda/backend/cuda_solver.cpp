@@ -221,7 +221,7 @@ std::string CudaSolver::description() const
          (launch_.patches ? std::to_string(device_.patches()) + " patches"
                           : std::to_string(device_.strips()) + " strips, " +
                                 std::to_string(std::lround(100 * device_.filled())) + " % filled") +
-         computes_all() + ")";
+         ")";
 }
 
 }  // namespace cuda

@@ -97,9 +97,6 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   out.runner.solver.threads = reader.value("threads", 0, "a whole number, 0: one a core");
   reader.check(out.runner.solver.threads >= 0, "threads", std::to_string(out.runner.solver.threads),
                "0 (one a core) or more");
-  out.runner.solver.sleep = reader.value("sleep", 0.0, "a length [m], 0: all is computed");
-  reader.check(std::isfinite(out.runner.solver.sleep) && out.runner.solver.sleep >= 0, "sleep",
-               std::to_string(out.runner.solver.sleep), "0 (all is computed) or more [m]");
 
   const std::string pace = reader.text("pace", "real_time");
   if (pace == "real_time")

@@ -71,9 +71,6 @@ std::vector<Backend> available_backends()
 
 std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
 {
-  if (!(settings.sleep >= 0) || !std::isfinite(settings.sleep))
-    throw Error("sleep within " + std::to_string(settings.sleep) +
-                " m: allowed are finite lengths from 0 (all is computed)");
   switch (settings.backend)
   {
     case Backend::reference:

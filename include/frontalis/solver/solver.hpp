@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Of motions: raised whenever the same model and controls give another one than before (other steps, other laws) or
 /// Solver::pack() other bytes. What was kept of another generation is not taken for this one's.
-constexpr int motion_generation = 9;
+constexpr int motion_generation = 10;
 
 enum class Backend
 {
@@ -40,9 +40,6 @@ struct SolverSettings
   int threads = 0;       ///< CPU threads; 0: one a core
   double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
   bool ledger = false;   ///< keep account of energies (Solver::ledger); costs a part of a step
-  /// Backend cpu: what is at rest is not computed, so that no node errs by more than about so much [m]; 0: all is.
-  /// Other backends compute all and say so in their description.
-  double sleep = 0;
 };
 
 /// What constraint_steps the model from outside.

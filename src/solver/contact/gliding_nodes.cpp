@@ -64,8 +64,6 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
   {
     const auto n = node->node;
     // what friction knows of the pressure stays too
-    if (step.held != nullptr && step.held[n] != 0)
-      continue;
     const RigidTransform& now = node->bone < 0 ? still : step.bone[node->bone];
     const RigidTransform& before = node->bone < 0 ? still : step.bone_before[node->bone];
     // in the frame of the bone, relative to it
