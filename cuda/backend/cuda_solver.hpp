@@ -27,7 +27,7 @@ struct PlanSlot
 class CudaSolver : public SteppingSolver
 {
 public:
-  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
+  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark);
   ~CudaSolver() override;
 
   void skin(SkinState& out) override;
@@ -78,6 +78,7 @@ private:
     void operator()(Mode* mode) const;
   };
 
+  const std::string remark_;  // of the description
   DeviceModel device_;
   DeviceArray<float4> u_[2];
   DeviceArray<float> v_[3];

@@ -1,7 +1,10 @@
 #include "cuda/backend/device_model.hpp"
 
+#include "frontalis/solver/backend.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/contact/surface_tree.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -52,8 +55,8 @@ void expect_room(const Model& model, const VoxelCut& cut)
   std::size_t free = 0, total = 0;
   require(cudaMemGetInfo(&free, &total), "asking for free memory");
   if (wanted > free)
-    throw Error("backend cuda: the model needs " + std::to_string(wanted) + " bytes of device memory, " +
-                std::to_string(free) + " of " + std::to_string(total) + " are free");
+    throw BackendUnavailable(
+        fmt::format("backend cuda: the model needs {} bytes of device memory, {} of {} are free", wanted, free, total));
 }
 
 }  // namespace

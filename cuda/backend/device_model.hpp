@@ -21,12 +21,13 @@ std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 /// What a model's voxels need of the kernels.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Patches where there are any, else strips.
+/// Patches where the shared memory holds them, else strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };
+  PatchSettings patches{ 0, 0 };  ///< with the least number of turns that is tried; 0 turns: strips
+  std::size_t patch_bytes = 0;    ///< of shared memory that the device has for a block's patches
   StripSettings strips;
-  std::uint32_t searches = search_group;  ///< StepArguments::searches
+  std::uint32_t searches = search_group;  ///< StepArguments::searches of strips
 };
 
 /// A model, cut up.
@@ -36,7 +37,7 @@ struct VoxelCut
 
   std::unique_ptr<VoxelPatches> patches;
   std::unique_ptr<VoxelStrips> strips;  ///< one of both
-  std::uint32_t searches;               ///< as in CutChoice
+  std::uint32_t searches = 0;           ///< StepArguments::searches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
   /// 1 + the model voxel at each place, 0: none.

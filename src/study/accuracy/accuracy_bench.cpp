@@ -26,7 +26,7 @@ VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, co
 
 std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend) const
 {
-  std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + name_of(backend);
+  std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)
     text += " " + std::to_string(activation);
   return content_hash(text + " " + std::to_string(plan_.history.ramp) + " " + std::to_string(plan_.history.hold));
@@ -38,7 +38,7 @@ std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) c
 {
   std::vector<Backend> backends{ setting.backend };
   if (setting.backend == plan_.standard.backend && setting.profile.precision == "single")
-    backends.insert(backends.end(), { Backend::cuda, Backend::cpu });
+    backends.insert(backends.end(), { Backend("cuda"), Backend("cpu") });
   return backends;
 }
 

@@ -4,7 +4,7 @@
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/dense_block.hpp"
-#include "study/bench/shell_model.hpp"
+#include "cuda/bench/shell_model.hpp"
 #include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>
@@ -134,7 +134,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const auto model = std::make_shared<const Model>(scene.make());
   std::size_t free_before = 0, free_after = 0, total = 0;
   cuda::require(cudaMemGetInfo(&free_before, &total), "asking for free memory");
-  const auto solver = make_solver(model, { Backend::cuda, 0, 0 });
+  const auto solver = make_solver(model, { "cuda", 0, 0 });
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
   const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Controls controls;

@@ -1,0 +1,28 @@
+# Sets CMAKE_CUDA_ARCHITECTURES, unless it is given, from FRONTALIS_CUDA_ARCHITECTURES: "native" takes the GPUs of this
+# machine; where there is none, or with "portable", machine code is made for sm_80 and sm_90, and PTX of the oldest
+# architecture that the toolkit knows, which the driver compiles for every other GPU.
+set(FRONTALIS_CUDA_ARCHITECTURES native CACHE STRING "GPUs to build for: native, portable, or as CMAKE_CUDA_ARCHITECTURES")
+
+if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+  execute_process(COMMAND ${CMAKE_CUDA_COMPILER} --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
+  string(REGEX MATCHALL "[0-9]+" known "${known}")
+  list(SORT known COMPARE NATURAL)
+  set(CMAKE_CUDA_ARCHITECTURES ${FRONTALIS_CUDA_ARCHITECTURES})
+  if(CMAKE_CUDA_ARCHITECTURES STREQUAL "native")
+    set(CMAKE_CUDA_ARCHITECTURES)
+    execute_process(COMMAND nvidia-smi --query-gpu=compute_cap --format=csv,noheader OUTPUT_VARIABLE present ERROR_QUIET)
+    string(REGEX MATCHALL "[0-9]+\\.[0-9]" present "${present}")
+    list(REMOVE_DUPLICATES present)
+    foreach(capability ${present})
+      string(REPLACE "." "" capability ${capability})
+      if(capability IN_LIST known)
+        list(APPEND CMAKE_CUDA_ARCHITECTURES ${capability}-real)
+      endif()
+    endforeach()
+  endif()
+  if(NOT CMAKE_CUDA_ARCHITECTURES OR CMAKE_CUDA_ARCHITECTURES STREQUAL "portable")
+    list(GET known 0 oldest)
+    set(CMAKE_CUDA_ARCHITECTURES ${oldest}-virtual 80-real 90-real)
+  endif()
+  message(STATUS "GPU architectures: ${CMAKE_CUDA_ARCHITECTURES}")
+endif()
