@@ -1,5 +1,6 @@
 #include "cuda/backend/cuda_solver.hpp"
 
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ void CudaSolver::kick(StepArguments& g, double seconds) const
   g.keep = static_cast<float>(keep(seconds));
   g.gain = static_cast<float>(gain(seconds));
   for (int axis = 0; axis < 3; ++axis)
-    g.impulse[axis] = static_cast<float>(gain(seconds) * gravity_[axis]);
+    g.impulse[axis] = mutation::no_gpu_gravity ? 0 : static_cast<float>(gain(seconds) * gravity_[axis]);
 }
 
 StepArguments CudaSolver::arguments(double dt) const

@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
+#include "frontalis/physics/mutation.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -267,7 +268,7 @@ void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::
     {
       const std::uint32_t node = device_node[model.voxel_nodes[voxels[v]][b]];
       const bool own = node >= patch.first_node && node < patch.first_node + patch.nodes;
-      if (own)
+      if (own && !(mutation::lost_corner && b == 0))
         node_voxel[node][b] = static_cast<std::uint16_t>(v);
       places[b] = static_cast<std::uint16_t>(
           own ? first_place + node - patch.first_node

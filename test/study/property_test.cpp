@@ -13,7 +13,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#if __has_include(<rapidcheck.h>)
+#if defined(FRONTALIS_WITH_RAPIDCHECK)
 #include <rapidcheck.h>
 #endif
 
@@ -220,7 +220,7 @@ TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
   expect_sound(scene);
 }
 
-#if __has_include(<rapidcheck.h>)
+#if defined(FRONTALIS_WITH_RAPIDCHECK)
 
 namespace
 {
