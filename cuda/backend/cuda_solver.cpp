@@ -112,7 +112,7 @@ void CudaSolver::effect_switched(Effect effect)
     device_.viscosity().reset();
   if (effect == Effect::sliding || effect == Effect::friction)
     device_.reset_contacts();
-  // what the plans under way saw is of no use any more
+  // the bounds that plans under way will report are those of other effects
   plans_ = 0;
 }
 

@@ -33,7 +33,7 @@ int multiprocessors()
   return from_environment("FRONTALIS_CUDA_MULTIPROCESSORS", all, 1, all);
 }
 
-// what a block may have for its patches, besides the kernels' own arrays: activations, and what searches share
+// Shared memory of a block, less the kernels' own arrays: activations, and 9 KB for searches of tangent planes.
 std::size_t bytes_for_patches(const Model& model)
 {
   const int all = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
@@ -68,7 +68,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
   cut.searches = static_cast<std::uint32_t>(from_environment(
       "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
-  // all strips at once, where rows are full: what is left over for a second round would take as long as the first
+  // full strips run all at once with a tenth to spare: a second round of few would take as long as the first
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;

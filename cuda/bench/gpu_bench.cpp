@@ -64,7 +64,7 @@ struct Timer
   }
 };
 
-// activations on their way to the wanted ones, reached after 0.3 s as in the published set-up
+// Activations rise linearly to the wanted ones within 0.3 s, as in the published set-up.
 Controls ramped(const Controls& wanted, double time)
 {
   Controls now = wanted;
@@ -73,7 +73,8 @@ Controls ramped(const Controls& wanted, double time)
   return now;
 }
 
-// seconds a step over a run of at least `steps` steps; frame_wall_time > 0: the skin is fetched that often
+// Seconds per step over a run of at least `steps` steps; the skin is fetched every `frame_wall_time` seconds, if above
+// 0.
 double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& controls, int steps, double frame_wall_time)
 {
   const std::int64_t before = solver.profile().steps;
@@ -108,8 +109,8 @@ double seconds_a_step(Solver& solver, const Controls& controls, int steps)
   return median(times);
 }
 
-// What fetching the skin 60 times a wall second adds, as a share: median of nine runs, each beside the mean of the two
-// without it before and after, because the motion goes on meanwhile.
+// The share that fetching the skin 60 times per wall second adds: median of nine runs, each compared with the mean of
+// the runs without it before and after, because the motion goes on meanwhile.
 double share_of_skin(Solver& solver, const Controls& controls, int steps)
 {
   const Timer timer;
@@ -125,7 +126,7 @@ double share_of_skin(Solver& solver, const Controls& controls, int steps)
   return median(shares);
 }
 
-// The voxels a second of the dense blocks of this run, by name: what other models are compared with.
+// Voxels per second of the dense blocks of this run, by name; other models are compared with them.
 using DenseRates = std::vector<std::pair<std::string, double>>;
 
 void bench(const Scene& scene, DenseRates& dense)
@@ -139,7 +140,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no contact is renewed: the difference is what sliding far costs
+  // at rest no tangent plane is renewed: the difference to the motion is the cost of sliding far
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps);
   solver->reset();

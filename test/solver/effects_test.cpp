@@ -63,7 +63,7 @@ TEST(Effects, every_combination_moves_like_the_reference)
     const Model model = test::scene_of(effects);
     const bool active = effects & test::contraction;
     const Vectors expected = motion(model, "reference", 1, active);
-    for (const Backend backend : backends)
+    for (const Backend& backend : backends)
       EXPECT_LT(difference(motion(model, backend, 1, active), expected), 2e-3) << backend << " " << effects;
   }
 }
@@ -71,7 +71,7 @@ TEST(Effects, every_combination_moves_like_the_reference)
 // energies balance whatever acts together; without a drive there are only rounding errors
 TEST(Effects, every_combination_balances_its_energies)
 {
-  for (const Backend backend : available_backends())
+  for (const Backend& backend : available_backends())
     for (const unsigned effects : every_combination())
     {
       const auto solver = make_solver(std::make_shared<const Model>(scene_of(effects)), { backend, 1, 4e-6, true });

@@ -44,7 +44,7 @@ std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) c
 
 std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting, Backend& played_by) const
 {
-  for (const Backend backend : backends_of(setting))
+  for (const Backend& backend : backends_of(setting))
     if (std::optional<VariantMotion> motion = store_.motion(key_of(setting, backend)))
     {
       played_by = backend;
@@ -55,7 +55,7 @@ std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& se
 
 bool VariantBench::is_kept(const AccuracySetting& setting) const
 {
-  for (const Backend backend : backends_of(setting))
+  for (const Backend& backend : backends_of(setting))
     if (store_.has_motion(key_of(setting, backend)))
       return true;
   return false;
@@ -170,7 +170,7 @@ void VariantBench::look_at_standard()
   setting.profile.mass_scaling = {};
   setting.profile.time_step = "element";
   const auto model = std::make_shared<const Model>(maker_.bake(setting));
-  for (const Backend backend : available_backends())
+  for (const Backend& backend : available_backends())
   {
     SolverSettings settings;
     settings.backend = backend;
