@@ -99,7 +99,7 @@ double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& cont
 }
 
 // median of five runs
-double seconds_a_step(Solver& solver, const Controls& controls, int steps)
+double seconds_per_step(Solver& solver, const Controls& controls, int steps)
 {
   const Timer timer;
   std::vector<double> times;
@@ -142,15 +142,16 @@ void bench(const Scene& scene, DenseRates& dense)
   controls.activation.assign(model->muscles.size(), 0);
   // at rest no tangent plane is renewed: the difference to the motion is the cost of sliding far
   solver->advance(256 * solver->time_step(), controls);
-  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps);
+  const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();
   controls.activation.assign(model->muscles.size(), 0.75f);
   const double warm_up = 256 * solver->time_step();
   solver->advance(warm_up, ramped(controls, warm_up));
-  const double step = seconds_a_step(*solver, controls, scene.steps);
+  const double step = seconds_per_step(*solver, controls, scene.steps);
   const auto voxels = static_cast<double>(model->voxels.size());
   std::printf(
-      "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
+      "%-14s %10.0f voxels  %8.2f us per step  %7.2f G updates per second  %5.0f bytes per voxel  built in %.1f s  "
+      "%s\n",
       scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
   if (model->skin.vertices.empty())
@@ -159,11 +160,11 @@ void bench(const Scene& scene, DenseRates& dense)
   {
     for (const auto& [name, rate] : dense)
       std::printf("%-14s %.2f of the rate of %s\n", "", voxels / step / rate, name.c_str());
-    std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
+    std::printf("%-14s at rest %.2f us per step\n", "", 1e6 * still);
     const double share = share_of_skin(*solver, controls, static_cast<int>(0.1 / step));
     std::printf(
-        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
-        model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
+        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds per simulated second\n",
+        "", model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
   }
   const Monitor monitor = solver->monitor();
   if (!monitor.finite)
@@ -198,8 +199,8 @@ int run(int count, char** arguments)
     for (const int n : { 126, 252 })
     {
       const YardstickResult y = run_yardstick(n, 1000);
-      std::printf("yardstick      %10.0f voxels  %8.2f us a step  %7.2f G updates a second  copy %.2f TB/s\n",
-                  std::pow(n, 3), y.microseconds_a_step, y.updates_a_second * 1e-9, y.copy_bandwidth * 1e-12);
+      std::printf("yardstick      %10.0f voxels  %8.2f us per step  %7.2f G updates per second  copy %.2f TB/s\n",
+                  std::pow(n, 3), y.microseconds_per_step, y.updates_per_second * 1e-9, y.copy_bandwidth * 1e-12);
     }
     std::fflush(stdout);
   }

@@ -9,8 +9,8 @@ namespace frontalis
 struct YardstickResult
 {
   double copy_bandwidth = 0;  ///< device to device, bytes read and written per second
-  double microseconds_a_step = 0;
-  double updates_a_second = 0;  ///< elements per second
+  double microseconds_per_step = 0;
+  double updates_per_second = 0;  ///< elements per second
 };
 
 /// A dense block of n^3 reduced-integration neo-Hookean voxels without other effects. Blocks of threads walk along z,
