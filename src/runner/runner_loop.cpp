@@ -24,6 +24,19 @@ bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
          std::equal(a.translation.begin(), a.translation.end(), b.translation.begin(), within(1e-6));
 }
 
+constexpr const char* ended_early = "the step was ended early";
+
+// ends a request, if there is one, with an error for its caller
+template <class Request>
+void refuse(Request*& request, const std::string& error)
+{
+  if (request == nullptr)
+    return;
+  request->error = error;
+  request->done = true;
+  request = nullptr;
+}
+
 }  // namespace
 
 double Runner::Implementation::slice() const { return steps_per_slice * solver->time_step() * model->time_scaling; }
@@ -165,7 +178,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
     if (stop || reset_wanted || cancel_wanted)
-      request.error = "the step was ended early";
+      request.error = ended_early;
     else if (switch_request != nullptr)
       serve_switch(*switch_request);
   }
@@ -205,16 +218,8 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
 // the caller holds the mutex
 void Runner::Implementation::refuse_requests(const std::string& error)
 {
-  const auto refuse = [&](auto*& request)
-  {
-    if (request == nullptr)
-      return;
-    request->error = error;
-    request->done = true;
-    request = nullptr;
-  };
-  refuse(step_request);
-  refuse(switch_request);
+  refuse(step_request, error);
+  refuse(switch_request, error);
   cancel_wanted = false;
   wake.notify_all();
 }
@@ -255,6 +260,12 @@ void Runner::Implementation::serve_until_stopped()
           continue;
       }
       std::swap(reset_now, reset_wanted);
+      // a step that was requested before the reset but has not begun yet is ended too
+      if (reset_now)
+      {
+        refuse(step_request, ended_early);
+        cancel_wanted = false;
+      }
       request = step_request;
     }
     if (reset_now)
