@@ -39,6 +39,7 @@ void set_cloud_layout(std::size_t points, sensor_msgs::PointCloud2& out)
 std::vector<std::array<float, 3>> rest_in_face(const Model& model)
 {
   SkinState skin;
+  skin.vertices.reserve(model.skin.vertices.size());
   for (const auto& vertex : model.skin.vertices)
     skin.vertices.push_back(
         { { static_cast<float>(vertex[0]), static_cast<float>(vertex[1]), static_cast<float>(vertex[2]) } });

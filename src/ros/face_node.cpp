@@ -14,12 +14,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double demo_period = 1.0 / 30;          // between two settings of the demo's activations [s]
-constexpr double repetition_period = 0.5;         // after which the frame of a face that stands still is sent again [s]
-constexpr double diagnostics_period = 1.0;        // [s]
-constexpr double stalled_after = 3.0;             // without a frame, diagnostics warn [s]
-constexpr double speed_settled_after = 3.0;       // of running, when the real-time factor is logged [s]
-constexpr double warned_real_time_factor = 0.95;  // a lower factor is logged as a warning
+constexpr double demo_period = 1.0 / 30;     // time between two settings of the demo's activations [s]
+constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
+constexpr double diagnostics_period = 1.0;   // time between two messages [s]
+constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
+constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 
 }  // namespace
 
@@ -192,7 +191,7 @@ void FaceNode::log_speed_once()
       frame_.wall_time < speed_settled_after || !(frame_.real_time_factor > 0))
     return;
   speed_report_ = speed_report(*publisher_.model(), frame_.real_time_factor);
-  if (frame_.real_time_factor < warned_real_time_factor)
+  if (frame_.real_time_factor < sufficient_real_time_factor)
     ROS_WARN_STREAM(name_ << ": " << speed_report_);
   else
     ROS_INFO_STREAM(name_ << ": " << speed_report_);

@@ -39,7 +39,7 @@ namespace asio = boost::asio;
 namespace bp = boost::process;
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds cancellation_period(50);  // time between two looks at whether the bake is cancelled
+constexpr std::chrono::milliseconds cancellation_period(50);  // between two checks whether the bake is cancelled
 
 bool is_program(const fs::path& path)
 {
@@ -114,7 +114,7 @@ private:
   std::string line_;
 };
 
-/// Starts a program whose output and error streams go to two readers. Throws Error if it cannot be run.
+/// Starts a program and connects its output and error streams to two readers. Throws an Error if it cannot be run.
 bp::child start(const std::string& program, const std::vector<std::string>& arguments, LineReader& output,
                 LineReader& errors)
 {
@@ -143,7 +143,7 @@ bp::child start(const std::string& program, const std::vector<std::string>& argu
   }
 }
 
-/// Runs a program to its end. Throws Error if it was cancelled, crashed, or did not exit with 0.
+/// Runs a program to its end. Throws an Error if it is cancelled, crashes or does not exit with 0.
 void run(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
          const std::atomic<bool>& cancelled)
 {
@@ -165,7 +165,7 @@ void run(const std::string& program, const std::vector<std::string>& arguments, 
   errors.read();
   while (!context.stopped() && !cancelled)  // the context stops when both streams have ended
     context.run_for(cancellation_period);
-  // not child.terminate(), which leaves a dead process behind
+  // child.terminate() would leave a zombie process, since it does not wait
   if (cancelled)
     kill(child.id(), SIGKILL);
   std::error_code fault;

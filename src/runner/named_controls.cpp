@@ -23,6 +23,7 @@ template <class Named>
 std::string names_of(const std::vector<Named>& all)
 {
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Named& named : all)
     names.push_back(name_of(named));
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));

@@ -7,8 +7,6 @@ namespace frontalis
 namespace
 {
 
-constexpr double real_time = 0.95;  // real-time factor from which on a face counts as running in real time
-
 // the profile that the model was baked with; null if its cost was not measured
 const Model::AccuracyProfile* present_profile(const Model& model)
 {
@@ -35,7 +33,7 @@ std::string speed_report(const Model& model, double real_time_factor)
 {
   std::string report = fmt::format("real-time factor {:.2g}", real_time_factor);
   const Model::AccuracyProfile* const present = present_profile(model);
-  if (real_time_factor >= real_time || !(real_time_factor > 0) || present == nullptr)
+  if (real_time_factor >= sufficient_real_time_factor || !(real_time_factor > 0) || present == nullptr)
     return report;
   report += ", too slow for real time; ";
   const double slower_than_measured = 1 / real_time_factor / present->cost;

@@ -11,9 +11,10 @@ namespace frontalis
 namespace
 {
 
-// time steps per slice; reading the clock and taking the mutex once per slice costs little beside them
+// time steps per slice: few enough that requests do not wait, and enough that reading the clock and taking the mutex
+// once per slice cost little
 constexpr int steps_per_slice = 32;
-// [s] of wall time between two frames whose energies and volume ratios are computed anew
+// wall time after which a frame has its energies and volume ratios computed anew
 constexpr std::chrono::seconds monitor_period(1);
 
 // whether two poses of a bone differ by less than one can see: 1e-5 rad, 1e-6 m
@@ -110,8 +111,8 @@ void Runner::Implementation::publish(bool renew_monitor)
     on_frame(frame);
 }
 
-// Controls at the end of the next slice. They approach the target by three times the slice's share of a frame, so that
-// they jump in no step and the rest of the way, once it is too small to be seen, is gone within a few frames.
+// Controls at the end of the next slice. They approach their targets gradually, so that they do not jump within a time
+// step: a slice covers three times its share of a frame, so that a frame covers 95 % of the way (1 - exp(-3)).
 Controls Runner::Implementation::controls_after(double seconds) const
 {
   Controls next = target;

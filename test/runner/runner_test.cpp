@@ -151,7 +151,7 @@ TEST(Runner, BonesMoveInTheFaceFrame)
   motion.translation = { { 0, 2e-3, 0 } };
   runner.set_bone("jaw", motion);
   runner.step(0.3);
-  const Frame frame = runner.step(0.5);  // it swings a while
+  const Frame frame = runner.step(0.5);  // the bar swings at first
   const auto& tip_now = frame.skin.landmarks[0];
   EXPECT_NEAR(tip_now[0], 1.006, 1e-3);
   EXPECT_NEAR(tip_now[1], 2e-3, 1e-3);
@@ -369,7 +369,7 @@ TEST(Runner, TimeScalingPlaysTheSameClock)
   auto model = std::make_shared<Model>(*bar());
   model->time_scaling = 4;
   Runner runner(model, settings(Pace::lock_step), {});
-  // little: where voxels stiffen fast, steps are shorter
+  // a small activation, since time steps are shorter while voxels stiffen fast
   runner.set_activation({ { "puller", 0.2 } });
   const Frame scaled = runner.step(0.04);
   EXPECT_NEAR(scaled.time, 0.04, 1e-12);
