@@ -1,10 +1,10 @@
 #pragma once
 
 #include "frontalis/physics/exponential.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Transversely isotropic Fung-type solid (Guccione, McCulloch & Waldman 1991, J. Biomech. Eng. 113:42) of the
@@ -17,7 +17,27 @@ struct Guccione
   T bf;   ///< along the fibre, > 0 [-]
   T bt;   ///< across it, > 0 [-]
   T bfs;  ///< shear between the two, > 0 [-]
+
+  static constexpr MaterialDescription description{
+    "guccione",
+    "Guccione",
+    "c/2 times the largest of bf, bt and bfs",
+    false,  // averaged
+    1,      // directions
+    { { "c", "stiffness", Measure::pressure, above_zero, 2e3 },
+      { "bf", "stiffening along the fibre", Measure::number, above_zero, 8 },
+      { "bt", "stiffening across the fibre", Measure::number, above_zero, 2 },
+      { "bfs", "stiffening in shear between the two", Measure::number, above_zero, 4 } },
+  };
 };
+
+/// That of the stiffest direction.
+template <class T>
+FRONTALIS_LAW T shear_modulus(const Guccione<T>& material)
+{
+  using N = Number<T>;
+  return N::of(0.5) * material.c * N::max(material.bf, N::max(material.bt, material.bfs));
+}
 
 /// Isochoric strain, Q and half of its gradient.
 template <class T>
@@ -31,19 +51,18 @@ struct GuccioneStrain
 
 template <class T>
 FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, const Kinematics<T>& k, T g,
-                                                const Vec3<T>& fibre)
+                                                const Vec3<T>* fibre)
 {
   using N = Number<T>;
-  const auto& F = k.F.a;
-  const T a[3] = { fibre.x, fibre.y, fibre.z };
+  const T a[3] = { fibre->x, fibre->y, fibre->z };
   GuccioneStrain<T> s;
   T E[3][3], along[3];
+  s.C = right_cauchy_green(k.F);
   s.squared = N::of(0);
   for (int i = 0; i < 3; ++i)
   {
     for (int j = 0; j < 3; ++j)
     {
-      s.C.a[i][j] = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
       E[i][j] = N::of(0.5) * (i == j ? g * s.C.a[i][j] - N::of(1) : g * s.C.a[i][j]);
       s.squared = s.squared + E[i][j] * E[i][j];
     }
@@ -64,7 +83,7 @@ FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, con
 
 /// Adds the first Piola-Kirchhoff stress [Pa] of the solid with fibres along `fibre` (unit length, at rest) to P.
 template <class T>
-FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre, Matrix3<T>& P)
+FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre, Matrix3<T>& P)
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
@@ -82,9 +101,9 @@ FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& 
                                k.F.a[i][2] * s.gradient.a[2][j]);
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
-FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {
   using N = Number<T>;
   const GuccioneStrain<T> s = guccione_strain(material, k, isochoric_scale(k.J).value, fibre);
@@ -95,7 +114,7 @@ FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, cons
 /// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact, d2Q is bounded by the norms of dE and d2E: the former's square is 1 at rest, as
 /// it is exactly, with what its bound has grown since.
 template <class T>
-FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
@@ -131,5 +150,4 @@ FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<
          (first_squared + N::of(2) * largest * change_squared + N::of(2) * N::sqrt(gradient_squared) * bent);
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics
