@@ -35,8 +35,7 @@ struct Guccione
 template <class T>
 FRONTALIS_LAW T shear_modulus(const Guccione<T>& material)
 {
-  using N = Number<T>;
-  return N::of(0.5) * material.c * N::max(material.bf, N::max(material.bt, material.bfs));
+  return Number<T>::of(0.5) * material.c * Number<T>::max(material.bf, Number<T>::max(material.bt, material.bfs));
 }
 
 /// Isochoric strain, Q and half of its gradient.
@@ -45,8 +44,7 @@ struct GuccioneStrain
 {
   Matrix3<T> C;         ///< F^T F
   Matrix3<T> gradient;  ///< 1/2 dQ/dE
-  T Q;
-  T squared;  ///< E : E
+  T Q, squared;         ///< squared: E : E
 };
 
 template <class T>
@@ -105,9 +103,8 @@ FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& 
 template <class T>
 FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {
-  using N = Number<T>;
-  const GuccioneStrain<T> s = guccione_strain(material, k, isochoric_scale(k.J).value, fibre);
-  return N::of(0.5) * material.c * (bounded_exponential(s.Q) - N::of(1));
+  const T Q = guccione_strain(material, k, isochoric_scale(k.J).value, fibre).Q;
+  return Number<T>::of(0.5) * material.c * (bounded_exponential(Q) - Number<T>::of(1));
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F,
@@ -141,8 +138,8 @@ FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<
     }
   const T stretch = N::sqrt(k.I1), turn = -g.slope * N::sqrt(cofactor_squared), C = N::sqrt(strain_squared);
   const T change = g.value * stretch + N::of(0.5) * turn * C;
-  // at rest the square is (1 + sqrt(3))^2
-  const T change_squared = N::of(1) + N::max(change * change - N::of(7.4641016151377544), N::of(0));
+  const double at_rest = 7.4641016151377544;  // (1 + sqrt(3))^2
+  const T change_squared = N::of(1) + N::max(change * change - N::of(at_rest), N::of(0));
   const T bent = g.value + N::of(2) * turn * stretch + N::of(0.5) * bend * cofactor_squared * C -
                  N::of(1 / 1.7320508075688772) * g.slope * stretch * C;
   const T largest = N::max(material.bf, N::max(material.bt, material.bfs));
