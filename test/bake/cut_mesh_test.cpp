@@ -31,9 +31,8 @@ double area(const TriangleMesh& mesh)
   double sum = 0;
   for (const auto& t : mesh.triangles)
   {
-    const Vector3 a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    sum += 0.5 * cross(mesh.vertices[static_cast<std::size_t>(t[1])] - a,
-                       mesh.vertices[static_cast<std::size_t>(t[2])] - a)[2];
+    const Vector3d a = mesh.vertices[t[0]];
+    sum += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a)[2];
   }
   return sum;
 }
@@ -60,7 +59,7 @@ TEST(CutMesh, NeighboursShareTheNewVertices)
   const auto rim = unbalanced_edges(part);
   double length = 0;
   for (const auto& edge : rim)
-    length += norm(part.vertices[static_cast<std::size_t>(edge[1])] - part.vertices[static_cast<std::size_t>(edge[0])]);
+    length += (part.vertices[edge[1]] - part.vertices[edge[0]]).norm();
   EXPECT_NEAR(length, 2 * (2.3 + 4), 1e-12);
 }
 

@@ -32,7 +32,7 @@ protected:
     join_vertices(mesh);
     std::ofstream out(folder_ / (name + ".obj"));
     char line[128];
-    for (const Vector3& v : mesh.vertices)
+    for (const Vector3d& v : mesh.vertices)
     {
       std::snprintf(line, sizeof(line), "v %.9g %.9g %.9g\n", v[0], v[1], v[2]);
       out << line;
@@ -41,7 +41,7 @@ protected:
     {
       bool left = false;
       for (const std::int32_t v : t)
-        left = left || leave(mesh.vertices[static_cast<std::size_t>(v)]);
+        left = left || leave(mesh.vertices[v]);
       if (!left)
         out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
     }
@@ -54,7 +54,7 @@ protected:
 TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
 {
   Scene scene = plain_scene(1e-3);
-  scene.surfaces = { sphere_file("head", 20e-3, [](const Vector3& v) { return v[2] < -0.9 || v[0] > 0.985; }) };
+  scene.surfaces = { sphere_file("head", 20e-3, [](const Vector3d& v) { return v[2] < -0.9 || v[0] > 0.985; }) };
   scene.volumes = { volume_inside("tissue", { "head" }, "fat", true) };
   BakeReport report;
   const Model model = bake(scene, &report);
@@ -71,8 +71,8 @@ TEST_F(OpenSurfaces, GapsBetweenTwoBonesLetNothingThrough)
   Scene scene = plain_scene(1e-3);
   // two halves of a skull, half a millimetre apart, around what must not become tissue
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),
-                     sphere_file("upper", 14e-3, [](const Vector3& v) { return v[2] < 0.03; }),
-                     sphere_file("lower", 14e-3, [](const Vector3& v) { return v[2] > -0.03; }) };
+                     sphere_file("upper", 14e-3, [](const Vector3d& v) { return v[2] < 0.03; }),
+                     sphere_file("lower", 14e-3, [](const Vector3d& v) { return v[2] > -0.03; }) };
   Volume tissue = volume_inside("tissue", { "skin" }, "fat", true);
   scene.volumes = { tissue, volume_inside("bone", {}, "muscle", false, 1) };
   scene.volumes[1].closed_by = { "upper", "lower" };
@@ -92,7 +92,7 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   for (const Triangle& t : inner.triangles)
     shell.triangles.push_back({ base + t[0], base + t[1], base + t[2] });
   std::ofstream out(folder_ / "bone.obj");
-  for (const Vector3& v : shell.vertices)
+  for (const Vector3d& v : shell.vertices)
     out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
   for (const Triangle& t : shell.triangles)
     out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";

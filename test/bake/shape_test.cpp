@@ -120,10 +120,10 @@ TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
   {
     const TriangleMesh mesh = joined(import_mesh(file, 1));
     ASSERT_EQ(mesh.triangles.size(), 1u) << file;
-    const Vector3& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][0])];
-    const Vector3& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][1])];
-    const Vector3& c = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][2])];
-    EXPECT_NEAR(cross(b - a, c - a)[2], 1, 1e-6) << file;
+    const Vector3d& a = mesh.vertices[mesh.triangles[0][0]];
+    const Vector3d& b = mesh.vertices[mesh.triangles[0][1]];
+    const Vector3d& c = mesh.vertices[mesh.triangles[0][2]];
+    EXPECT_NEAR((b - a).cross(c - a)[2], 1, 1e-6) << file;
   }
 }
 
@@ -157,7 +157,7 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
     if (one_turned)
       std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
     std::string text;
-    for (const Vector3& v : mesh.vertices)
+    for (const Vector3d& v : mesh.vertices)
       text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
     for (const Triangle& t : mesh.triangles)
       text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
@@ -169,8 +169,8 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
                      file_surface("mixed", write_box("mixed.obj", false, true)) };
   BakeReport report;
   const BakeProgress progress;
-  BakeStages stages(&report, progress);
-  for (const auto& surface : prepare_surfaces(scene, stages))
+  BakeMonitor monitor(&report, progress);
+  for (const auto& surface : prepare_surfaces(scene, monitor))
     EXPECT_NEAR(signed_volume(surface->mesh()), 1, 1e-6) << surface->name();
   const auto reported = [&](const std::string& name, const std::string& text)
   {
@@ -206,23 +206,22 @@ TEST(Forehead, HasTheStatedDimensions)
 {
   const TriangleMesh skin = forehead("skin");
   const Box box = bounding_box(skin);
-  EXPECT_NEAR(box.upper[2], 88e-3, 3e-3);  // hairline: brow height and forehead height over the sellion
-  EXPECT_NEAR(box.lower[2], -3e-3, 1e-3);
-  EXPECT_NEAR(box.upper[1], -box.lower[1], 1e-12);
-  EXPECT_GT(box.upper[1], 60e-3);
-  EXPECT_LT(box.upper[1], 75e-3);
+  EXPECT_NEAR(box.max()[2], 88e-3, 3e-3);  // hairline: brow height and forehead height over the sellion
+  EXPECT_NEAR(box.min()[2], -3e-3, 1e-3);
+  EXPECT_NEAR(box.max()[1], -box.min()[1], 1e-12);
+  EXPECT_GT(box.max()[1], 60e-3);
+  EXPECT_LT(box.max()[1], 75e-3);
   // the sellion is the origin, and the skin faces forwards
   const PreparedSurface surface("skin", skin, 0);
   EXPECT_LT(surface.tree().closest({ 0, 0, 0 }).distance, 0.2e-3);
   double area_x = 0;
   for (const Triangle& t : skin.triangles)
-    area_x += cross(skin.vertices[static_cast<std::size_t>(t[1])] - skin.vertices[static_cast<std::size_t>(t[0])],
-                    skin.vertices[static_cast<std::size_t>(t[2])] - skin.vertices[static_cast<std::size_t>(t[0])])[0];
+    area_x += (skin.vertices[t[1]] - skin.vertices[t[0]]).cross(skin.vertices[t[2]] - skin.vertices[t[0]])[0];
   EXPECT_GT(area_x, 0.01);
   // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
   const PreparedSurface skull("skull", forehead("skull"), 0);
   double thinnest = 1, thickest = 0;
-  for (const Vector3& v : skin.vertices)
+  for (const Vector3d& v : skin.vertices)
   {
     const ClosestPoint closest = skull.tree().closest(v);
     EXPECT_GT(skull.signed_distance(v, closest), 0);
@@ -242,8 +241,7 @@ TEST(Forehead, SkinIsEvenlyTriangulated)
   {
     for (std::size_t c = 0; c < 3; ++c)
     {
-      const double edge =
-          norm(skin.vertices[static_cast<std::size_t>(t[c])] - skin.vertices[static_cast<std::size_t>(t[(c + 1) % 3])]);
+      const double edge = (skin.vertices[t[c]] - skin.vertices[t[(c + 1) % 3]]).norm();
       shortest = std::min(shortest, edge);
       longest = std::max(longest, edge);
     }
@@ -259,7 +257,7 @@ TEST(Forehead, MusclesLieBetweenSkinAndBone)
   {
     const TriangleMesh mesh = forehead(part);
     std::size_t outside = 0;
-    for (const Vector3& v : mesh.vertices)
+    for (const Vector3d& v : mesh.vertices)
       outside += tissue.tree().winding_number(v) < 0.5 ? 1 : 0;
     EXPECT_LT(static_cast<double>(outside), 0.25 * static_cast<double>(mesh.vertices.size())) << part;
   }

@@ -57,7 +57,7 @@ TEST(ForeheadScene, BakesWithAllItsParts)
   double lowest = 1;
   for (const RigidNode& node : model.rigid)
   {
-    const Vector3 p = transformed(model.to_face, node_position(model, node.node));
+    const Vector3d p = transformed(model.to_face, node_position(model, node.node));
     if (std::abs(p[1]) > 15e-3 && std::abs(p[1]) < 55e-3)
       lowest = std::min(lowest, p[2]);
   }
@@ -66,7 +66,7 @@ TEST(ForeheadScene, BakesWithAllItsParts)
   EXPECT_GT(model.skin.vertices.size(), 3000u);
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
   {
-    const Vector3 p = transformed(model.to_face, model.landmark_positions[l]);
+    const Vector3d p = transformed(model.to_face, model.landmark_positions[l]);
     if (model.landmarks[l] == "brow_left")
     {
       EXPECT_GT(p[1], 20e-3);
@@ -107,7 +107,7 @@ TEST(RealHead, BakesFromSegmentedMeshes)
   EXPECT_LT(tissue_volume(model), 160e-6);
   for (const auto& voxel : model.voxels)
   {
-    const Vector3 p =
+    const Vector3d p =
         transformed(model.to_scene, { (voxel[0] + 0.5) * model.spacing[0], (voxel[1] + 0.5) * model.spacing[1],
                                       (voxel[2] + 0.5) * model.spacing[2] });
     if (std::abs(p[0]) < 20e-3 && p[2] > 1.560 && p[2] < 1.585)

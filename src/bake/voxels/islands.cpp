@@ -1,3 +1,4 @@
+#include "bake/messages.hpp"
 #include "bake/voxels/restricted_nodes.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
@@ -9,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-/// Number of each voxel's component, components joined by faces; the sizes in `sizes`.
+/// Number of the connected part that each voxel belongs to. `sizes` receives the numbers of voxels of the parts.
 std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
 {
   const VoxelIndex index(model.voxels, model.size);
@@ -31,12 +32,12 @@ std::vector<std::int32_t> face_components(const Model& model, std::vector<std::s
       for (int side = 0; side < 6; ++side)
       {
         auto place = model.voxels[e];
-        place[static_cast<std::size_t>(side / 2)] += side % 2 == 0 ? -1 : 1;
+        place[side / 2] += side % 2 == 0 ? -1 : 1;
         const std::int32_t other = index.find(place);
-        if (other < 0 || component[static_cast<std::size_t>(other)] >= 0)
+        if (other < 0 || component[other] >= 0)
           continue;
-        component[static_cast<std::size_t>(other)] = number;
-        front.push_back(static_cast<std::size_t>(other));
+        component[other] = number;
+        front.push_back(other);
       }
     }
     sizes.push_back(size);
@@ -44,14 +45,14 @@ std::vector<std::int32_t> face_components(const Model& model, std::vector<std::s
   return component;
 }
 
-/// Keeps those of the restricted nodes that are still there, with their new numbers.
+/// Gives the restricted nodes their new numbers and removes those that are gone.
 template <class Restricted>
 void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& number)
 {
   std::size_t kept = 0;
   for (Restricted entry : list)
   {
-    entry.node = number[static_cast<std::size_t>(entry.node)];
+    entry.node = number[entry.node];
     if (entry.node >= 0)
       list[kept++] = entry;
   }
@@ -69,15 +70,13 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
       continue;
     kept.voxels.push_back(model.voxels[e]);
     kept.fill.push_back(model.fill[e]);
-    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
-         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
+    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
     {
       kept.mixture_material.push_back(model.mixture_material[m]);
       kept.mixture_proportion.push_back(model.mixture_proportion[m]);
     }
     kept.mixture_begin.push_back(static_cast<std::int32_t>(kept.mixture_material.size()));
-    for (auto m = static_cast<std::size_t>(model.fibre_begin[e]);
-         m < static_cast<std::size_t>(model.fibre_begin[e + 1]); ++m)
+    for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
     {
       kept.fibre_muscle.push_back(model.fibre_muscle[m]);
       kept.fibre_weight.push_back(model.fibre_weight[m]);
@@ -95,7 +94,7 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
   model.fibre_weight = std::move(kept.fibre_weight);
   model.fibre_direction = std::move(kept.fibre_direction);
 
-  // nodes stay in the same order, so old and new lists are merged
+  // the nodes that stay are in the same order as before
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);
   build_nodes(model);
   std::vector<std::int32_t> number(old.size(), -1);
@@ -112,30 +111,32 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
 
 }  // namespace
 
-void remove_islands(Model& model, BakeStages& stages)
+void remove_islands(Model& model, BakeMonitor& monitor)
 {
   std::vector<std::size_t> sizes;
   const std::vector<std::int32_t> component = face_components(model, sizes);
   if (sizes.size() < 2)
     return;
   std::vector<bool> restricted(model.nodes.size(), false);
-  for (const RigidNode& node : model.rigid)
-    restricted[static_cast<std::size_t>(node.node)] = true;
-  for (const SlidingNode& node : model.sliding)
-    restricted[static_cast<std::size_t>(node.node)] = true;
-  for (const PrescribedNode& node : model.prescribed)
-    restricted[static_cast<std::size_t>(node.node)] = true;
+  const auto mark = [&restricted](const auto& nodes)
+  {
+    for (const auto& entry : nodes)
+      restricted[entry.node] = true;
+  };
+  mark(model.rigid);
+  mark(model.sliding);
+  mark(model.prescribed);
   std::vector<bool> held(sizes.size(), false);
   for (std::size_t e = 0; e < component.size(); ++e)
   {
     for (const std::int32_t n : model.voxel_nodes[e])
     {
-      if (restricted[static_cast<std::size_t>(n)])
-        held[static_cast<std::size_t>(component[e])] = true;
+      if (restricted[n])
+        held[component[e]] = true;
     }
   }
 
-  const auto largest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  const std::size_t largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
   std::vector<bool> stays(sizes.size());
   std::size_t islands = 0, crumbs = 0, voxels = 0;
   for (std::size_t c = 0; c < sizes.size(); ++c)
@@ -143,18 +144,19 @@ void remove_islands(Model& model, BakeStages& stages)
     stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
     if (stays[c])
       continue;
-    (held[c] ? crumbs : islands) += 1;
+    (held[c] ? crumbs : islands) += 1;  // a crumb has restricted nodes but is small
     voxels += sizes[c];
   }
   if (voxels == 0)
     return;
   std::vector<bool> keep(component.size());
   for (std::size_t e = 0; e < keep.size(); ++e)
-    keep[e] = stays[static_cast<std::size_t>(component[e])];
+    keep[e] = stays[component[e]];
   keep_voxels(model, keep);
-  stages.found(std::to_string(voxels) + " voxels removed: " + std::to_string(islands) +
-               " islands that nothing holds and " + std::to_string(crumbs) +
-               " small parts that hang on by an edge or a corner or not at all");
+  monitor.found(
+      fmt::format("{} voxels removed: {} islands that nothing holds and {} small parts that hang on by an edge "
+                  "or a corner or not at all",
+                  voxels, islands, crumbs));
 }
 
 }  // namespace frontalis
