@@ -14,10 +14,10 @@ namespace frontalis
 namespace
 {
 
-using Map = std::function<Vector3d(double, double, double)>;
-using Field = std::function<Vector3d(const Vector3d&)>;
+using Map = std::function<Vector3(double, double, double)>;
+using Field = std::function<Vector3(const Vector3&)>;
 
-double(const Vector3d& a).dot(const Vector3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Writes the surface of the unit cube as mapped into space, in millimetres; n facets an edge.
 std::string block_file(const std::string& name, int n, const Map& map)
@@ -33,7 +33,7 @@ std::string block_file(const std::string& name, int n, const Map& map)
     for (int i = 0; i <= n; ++i)
       for (int j = 0; j <= n; ++j)
       {
-        Vector3d p{};
+        Vector3 p{};
         p[a] = face % 2;
         p[b] = static_cast<double>(i) / n;
         p[c] = static_cast<double>(j) / n;
@@ -70,15 +70,15 @@ Scene muscle_scene(const Surface& surface, double voxel)
   return scene;
 }
 
-Vector3d voxel_centre(const Model& model, std::size_t e)
+Vector3 voxel_centre(const Model& model, std::size_t e)
 {
-  Vector3d p{};
+  Vector3 p{};
   for (std::size_t a = 0; a < 3; ++a)
     p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
   return transformed(model.to_scene, p);
 }
 
-Vector3d scene_direction(const Model& model, std::size_t entry)
+Vector3 scene_direction(const Model& model, std::size_t entry)
 {
   RigidTransform turn = model.to_scene;
   turn.translation = { 0, 0, 0 };
@@ -101,8 +101,8 @@ Angles angles(const Model& model, const Field& field)
     const auto entry = static_cast<std::size_t>(model.fibre_begin[e]);
     if (model.fibre_begin[e + 1] == model.fibre_begin[e])
       continue;
-    const Vector3d expected = field(voxel_centre(model, e));
-    const double cosine = std::abs(scene_direction(model, entry).dot(expected)) / std::sqrt(expected.dot(expected));
+    const Vector3 expected = field(voxel_centre(model, e));
+    const double cosine = std::abs(dot(scene_direction(model, entry), expected)) / std::sqrt(dot(expected, expected));
     const double angle = 180 / pi * std::acos(std::min(1.0, cosine));
     const double weight = static_cast<double>(model.fibre_weight[entry]) * static_cast<double>(model.fill[e]);
     result.mean += weight * angle;
@@ -120,7 +120,7 @@ void expect_near(const char* shape, const Model& model, const Field& field, doub
   EXPECT_LE(found.mean, mean) << shape;
 }
 
-Vector3d around_z(const Vector3d& p) { return { -p[1], p[0], 0 }; }
+Vector3 around_z(const Vector3& p) { return { -p[1], p[0], 0 }; }
 
 Surface bent_cylinder()
 {
@@ -134,7 +134,7 @@ Surface bent_cylinder()
             const double angle = (u - 0.5) * 120 * pi / 180;
             const double x = 2 * v - 1, y = 2 * w - 1;
             const double radius = 30 + 5 * x * std::sqrt(1 - y * y / 2);
-            return Vector3d{ radius * std::cos(angle), radius * std::sin(angle), 5 * y * std::sqrt(1 - x * x / 2) };
+            return Vector3{ radius * std::cos(angle), radius * std::sin(angle), 5 * y * std::sqrt(1 - x * x / 2) };
           }),
       1e-3);
 }
@@ -147,7 +147,7 @@ Surface fan(double half_angle)
                                  {
                                    const double angle = (2 * v - 1) * half_angle * pi / 180;
                                    const double radius = 10 + 30 * u;
-                                   return Vector3d{ radius * std::cos(angle), radius * std::sin(angle), 3 * w };
+                                   return Vector3{ radius * std::cos(angle), radius * std::sin(angle), 3 * w };
                                  }),
                       1e-3);
 }
@@ -172,8 +172,8 @@ TEST(Fibres, SpreadInAFan)
 {
   expect_near(
       "fan of 44 degrees", bake(muscle_scene(fan(22), 1e-3)),
-      [](const Vector3d& p) {
-        return Vector3d{ p[0], p[1], 0 };
+      [](const Vector3& p) {
+        return Vector3{ p[0], p[1], 0 };
       },
       5);
 }
@@ -187,10 +187,10 @@ TEST(Fibres, GoAroundATorusThatIsTilted)
   surface.shape->centre = { 10e-3, -5e-3, 1.5 };
   expect_near(
       "tilted torus", bake(muscle_scene(surface, 1e-3)),
-      [](const Vector3d& p)
+      [](const Vector3& p)
       {
-        const Vector3d d{ p[0] - 10e-3, p[1] + 5e-3, p[2] - 1.5 };
-        return Vector3d{ 2 * d[1] - 2 * d[2], d[2] - 2 * d[0], 2 * d[0] - d[1] };
+        const Vector3 d{ p[0] - 10e-3, p[1] + 5e-3, p[2] - 1.5 };
+        return Vector3{ 2 * d[1] - 2 * d[2], d[2] - 2 * d[0], 2 * d[0] - d[1] };
       },
       5);
 }
@@ -202,9 +202,9 @@ TEST(Fibres, FollowStriationsAcrossTheLongWay)
                                       [](double u, double v, double w)
                                       {
                                         const double groove = 0.25 * std::sin(2 * pi * 20 * v);
-                                        return Vector3d{ 30 * u, 36 * v, (w - 0.5) * (3 + 2 * groove) };
+                                        return Vector3{ 30 * u, 36 * v, (w - 0.5) * (3 + 2 * groove) };
                                       });
-  const auto along_x = [](const Vector3d&) { return Vector3d{ 1, 0, 0 }; };
+  const auto along_x = [](const Vector3&) { return Vector3{ 1, 0, 0 }; };
   expect_near("grooved plate", bake(muscle_scene(file_surface("plate", file, 1e-3), 1.5e-3)), along_x, 5);
 }
 
@@ -213,8 +213,8 @@ TEST(Fibres, RunFromOriginToInsertion)
   Scene scene = muscle_scene(box_surface("plate", { 0, 0, 0 }, { 24e-3, 40e-3, 4e-3 }), 1e-3);
   expect_near(
       "plate", bake(scene),
-      [](const Vector3d&) {
-        return Vector3d{ 0, 1, 0 };
+      [](const Vector3&) {
+        return Vector3{ 0, 1, 0 };
       },
       5);
   scene.muscles[0].origin.points = { { -12e-3, -20e-3, 0 }, { -12e-3, 20e-3, 0 } };
@@ -222,8 +222,8 @@ TEST(Fibres, RunFromOriginToInsertion)
   scene.muscles[0].insertion.surface = "bone";
   expect_near(
       "plate from line to surface", bake(scene),
-      [](const Vector3d&) {
-        return Vector3d{ 1, 0, 0 };
+      [](const Vector3&) {
+        return Vector3{ 1, 0, 0 };
       },
       5);
 
@@ -237,8 +237,8 @@ TEST(Fibres, RunFromOriginToInsertion)
   }
   expect_near(
       "fan of 90 degrees between its ends", bake(scene),
-      [](const Vector3d& p) {
-        return Vector3d{ p[0], p[1], 0 };
+      [](const Vector3& p) {
+        return Vector3{ p[0], p[1], 0 };
       },
       5);
 }
@@ -249,7 +249,7 @@ TEST(Fibres, FollowAControlNet)
   Scene scene = muscle_scene(bent_cylinder(), 1e-3);
   ControlNet net;
   net.size = { 3, 2, 2 };
-  for (const Vector3d& corner : { Vector3d{ 0, -1, 0 }, Vector3d{ 1.4142135623730951, 0, 0 }, Vector3d{ 0, 1, 0 } })
+  for (const Vector3& corner : { Vector3{ 0, -1, 0 }, Vector3{ 1.4142135623730951, 0, 0 }, Vector3{ 0, 1, 0 } })
     for (const double radius : { 20e-3, 40e-3 })
       for (const double z : { -10e-3, 10e-3 })
       {
@@ -261,10 +261,10 @@ TEST(Fibres, FollowAControlNet)
       }
   scene.muscles[0].net = net;
   // the cylinder is longer than the net: its ends take the net's last direction
-  const auto clamped = [](const Vector3d& p)
+  const auto clamped = [](const Vector3& p)
   {
     const double angle = std::max(-pi / 4, std::min(pi / 4, std::atan2(p[1], p[0])));
-    return Vector3d{ -std::sin(angle), std::cos(angle), 0 };
+    return Vector3{ -std::sin(angle), std::cos(angle), 0 };
   };
   expect_near("net of a quarter circle", bake(scene), clamped, 0.5);
 
@@ -299,7 +299,7 @@ TEST(Fibres, OfEveryMuscleInAVoxelAreKept)
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     const auto begin = static_cast<std::size_t>(model.fibre_begin[e]);
-    const Vector3d p = voxel_centre(model, e);
+    const Vector3 p = voxel_centre(model, e);
     const bool in_first = std::abs(p[0]) < 20e-3 && std::abs(p[1]) < 4e-3 && std::abs(p[2]) < 4e-3;
     const bool in_second = std::abs(p[0]) < 4e-3 && std::abs(p[1]) < 20e-3 && p[2] > 0 && p[2] < 4e-3;
     const auto count = static_cast<std::size_t>(model.fibre_begin[e + 1]) - begin;
@@ -382,7 +382,7 @@ TEST(Fibres, ThatCannotBeFoundAreToldWithWhatToGive)
   expect_fault(scene, "insertion: there is no surface 'nowhere'");
 
   scene.muscles[0].origin = scene.muscles[0].insertion = {};
-  scene.muscles[0].net = ControlNet{ { 2, 2, 2 }, false, std::vector<Vector3d>(8, Vector3d{ 0, 0, 0 }), {} };
+  scene.muscles[0].net = ControlNet{ { 2, 2, 2 }, false, std::vector<Vector3>(8, Vector3{ 0, 0, 0 }), {} };
   expect_fault(scene, "no direction at");
 }
 

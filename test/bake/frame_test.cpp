@@ -13,7 +13,7 @@ using namespace frontalis;
 Scene ellipsoid_scene(std::size_t axis)
 {
   Scene scene = plain_scene(1e-3);
-  Vector3d size{ 6e-3, 6e-3, 6e-3 };
+  Vector3 size{ 6e-3, 6e-3, 6e-3 };
   size[axis] = 15e-3;
   Surface surface = box_surface("body", { 0.3, -0.2, 1.5 }, size, 0.8e-3);
   surface.shape->kind = Shape::Kind::ellipsoid;
@@ -51,7 +51,7 @@ TEST_P(Frame, LocalAxesArePermutedConsistently)
   // skin, landmark, muscle and gravity come back in scene coordinates
   for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
   {
-    const Vector3d p = transformed(model.to_scene, model.skin.vertices[v]);
+    const Vector3 p = transformed(model.to_scene, model.skin.vertices[v]);
     double sum = 0;
     for (std::size_t a = 0; a < 3; ++a)
     {
@@ -61,30 +61,30 @@ TEST_P(Frame, LocalAxesArePermutedConsistently)
     }
     EXPECT_NEAR(sum, 1, 1e-9);
   }
-  const Vector3d tip = transformed(model.to_scene, model.landmark_positions.at(0));
+  const Vector3 tip = transformed(model.to_scene, model.landmark_positions.at(0));
   EXPECT_NEAR(tip[axis], scene.surfaces[0].shape->centre[axis] + 15e-3, 0.1e-3);
   RigidTransform turn = model.to_scene;
   turn.translation = { 0, 0, 0 };
   const auto& fibre = model.fibre_direction.at(0);
-  const Vector3d direction = transformed(turn, { fibre[0], fibre[1], fibre[2] });
+  const Vector3 direction = transformed(turn, { fibre[0], fibre[1], fibre[2] });
   EXPECT_NEAR(direction[0], 1 / std::sqrt(14.0), 1e-6);
   EXPECT_NEAR(direction[1], 2 / std::sqrt(14.0), 1e-6);
   EXPECT_NEAR(direction[2], -3 / std::sqrt(14.0), 1e-6);
-  const Vector3d gravity = transformed(turn, model.gravity);
+  const Vector3 gravity = transformed(turn, model.gravity);
   EXPECT_EQ(gravity, scene.gravity);
 
   // the face frame: x forward, z up made square to it, and its origin
-  const auto face_of = [&](const Vector3d& scene_point)
+  const auto face_of = [&](const Vector3& scene_point)
   {
-    Vector3d local{};
+    Vector3 local{};
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t row = 0; row < 3; ++row)
         local[c] += r[3 * row + c] * (scene_point[row] - model.to_scene.translation[row]);
     return transformed(model.to_face, local);
   };
-  const Vector3d origin = face_of(scene.frame.origin);
-  const Vector3d forward = face_of({ 0.1, 0.2 - 1, 0.3 }), left = face_of({ 1.1, 0.2, 0.3 });
-  const Vector3d up = face_of({ 0.1, 0.2, 1.3 });
+  const Vector3 origin = face_of(scene.frame.origin);
+  const Vector3 forward = face_of({ 0.1, 0.2 - 1, 0.3 }), left = face_of({ 1.1, 0.2, 0.3 });
+  const Vector3 up = face_of({ 0.1, 0.2, 1.3 });
   for (std::size_t a = 0; a < 3; ++a)
   {
     EXPECT_NEAR(origin[a], 0, 1e-12);
@@ -100,16 +100,16 @@ TEST(Binding, ReproducesAffineMotion)
 {
   const Model model = bake(ellipsoid_scene(1));
   ASSERT_FALSE(model.skin.vertices.empty());
-  const auto field = [](const Vector3d& p)
+  const auto field = [](const Vector3& p)
   {
-    return Vector3d{ 0.01 + 1.1 * p[0] - 0.2 * p[1] + 0.3 * p[2], -0.02 + 0.4 * p[0] + 0.9 * p[1] - 0.1 * p[2],
-                     0.05 * p[0] + 0.07 * p[1] + 1.3 * p[2] };
+    return Vector3{ 0.01 + 1.1 * p[0] - 0.2 * p[1] + 0.3 * p[2], -0.02 + 0.4 * p[0] + 0.9 * p[1] - 0.1 * p[2],
+                    0.05 * p[0] + 0.07 * p[1] + 1.3 * p[2] };
   };
   double farthest = 0;
   for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
   {
-    const Vector3d expected = field(model.skin.vertices[v]);
-    const Vector3d found = interpolated(model, model.skin_binding, v, field);
+    const Vector3 expected = field(model.skin.vertices[v]);
+    const Vector3 found = interpolated(model, model.skin_binding, v, field);
     for (std::size_t a = 0; a < 3; ++a)
     {
       EXPECT_NEAR(found[a], expected[a], 1e-9);
@@ -119,8 +119,8 @@ TEST(Binding, ReproducesAffineMotion)
   }
   EXPECT_LT(farthest, 2);
   // the landmark too
-  const Vector3d expected = field(model.landmark_positions[0]);
-  const Vector3d found = interpolated(model, model.landmark_binding, 0, field);
+  const Vector3 expected = field(model.landmark_positions[0]);
+  const Vector3 found = interpolated(model, model.landmark_binding, 0, field);
   for (std::size_t a = 0; a < 3; ++a)
     EXPECT_NEAR(found[a], expected[a], 1e-9);
 }
@@ -147,14 +147,14 @@ TEST(Binding, KeepsTheOrderOfTheSurface)
   const Model cut = bake(scene);
   EXPECT_LT(cut.skin.triangles.size(), whole.skin.triangles.size());
   std::size_t at = 0;
-  for (const Vector3d& v : cut.skin.vertices)
+  for (const Vector3& v : cut.skin.vertices)
   {
-    const Vector3d p = transformed(cut.to_scene, v);
+    const Vector3 p = transformed(cut.to_scene, v);
     if (std::abs(p[0] - scene.skin.crop.upper[0]) < 1e-9)
       continue;  // new on the cut
-    const auto same = [&](const Vector3d& w)
+    const auto same = [&](const Vector3& w)
     {
-      const Vector3d q = transformed(whole.to_scene, w);
+      const Vector3 q = transformed(whole.to_scene, w);
       return std::abs(p[0] - q[0]) + std::abs(p[1] - q[1]) + std::abs(p[2] - q[2]) < 1e-9;
     };
     while (at < whole.skin.vertices.size() && !same(whole.skin.vertices[at]))
@@ -194,9 +194,9 @@ TEST(Loads, SurfacesAreCutAndBound)
   EXPECT_EQ(transformed(turn, model.loads[0].value), pull.value);
   EXPECT_EQ(model.loads[1].value[0], 500);
   EXPECT_FALSE(model.loads[0].mesh.triangles.empty());
-  for (const Vector3d& v : model.loads[0].mesh.vertices)
+  for (const Vector3& v : model.loads[0].mesh.vertices)
     EXPECT_GE(transformed(model.to_scene, v)[2], 1.5 - 1e-12);
-  const auto place = [](const Vector3d& p) { return p; };
+  const auto place = [](const Vector3& p) { return p; };
   for (std::size_t v = 0; v < model.loads[0].mesh.vertices.size(); ++v)
     EXPECT_NEAR(interpolated(model, model.loads[0].binding, v, place)[0], model.loads[0].mesh.vertices[v][0], 1e-9);
 }

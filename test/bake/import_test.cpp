@@ -21,14 +21,14 @@ namespace
 
 using namespace frontalis;
 
-TriangleMesh sphere(const Vector3d& centre, double radius)
+TriangleMesh sphere(const Vector3& centre, double radius)
 {
   TriangleMesh mesh = make_shape(*sphere_surface("", centre, radius, 0.3 * radius).shape);
   join_vertices(mesh);
   return mesh;
 }
 
-TriangleMesh box(const Vector3d& centre, const Vector3d& size)
+TriangleMesh box(const Vector3& centre, const Vector3& size)
 {
   TriangleMesh mesh = make_shape(*box_surface("", centre, size).shape);
   join_vertices(mesh);
@@ -60,7 +60,7 @@ protected:
     const std::string file = (folder_ / "mesh.obj").string();
     std::ofstream out(file);
     char line[128];
-    for (const Vector3d& v : mesh.vertices)
+    for (const Vector3& v : mesh.vertices)
     {
       std::snprintf(line, sizeof(line), "v %.9g %.9g %.9g\n", v[0], v[1], v[2]);
       out << line;
@@ -143,8 +143,8 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
   const Triangle split = mesh.triangles[0];
   const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
-  const Vector3d a = mesh.vertices[split[0]], b = mesh.vertices[split[1]];
-  mesh.vertices.push_back(0.5 * (a + b));
+  const Vector3d a = vertex(mesh, split[0]), b = vertex(mesh, split[1]);
+  mesh.vertices.push_back(to_array(0.5 * (a + b)));
   mesh.triangles[0] = { split[0], middle, split[2] };
   mesh.triangles.push_back({ middle, split[1], split[2] });
   mesh.triangles.push_back({ split[0], split[1], middle });

@@ -102,7 +102,7 @@ TEST(Materials, FibreFamiliesFollowASurface)
   double most_normal = 0;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    Vector3d p{}, out{};
+    Vector3 p{}, out{};
     for (std::size_t a = 0; a < 3; ++a)
       p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
     out = transformed(model.to_scene, p);
@@ -129,7 +129,7 @@ TEST(Materials, FibreFamiliesFollowASurface)
   // on the side that the plane faces they are as given
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    Vector3d p{};
+    Vector3 p{};
     for (std::size_t a = 0; a < 3; ++a)
       p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
     p = transformed(model.to_scene, p);

@@ -1,17 +1,17 @@
 #pragma once
 
+#include "bake/vector.hpp"
 #include "frontalis/bake/bake.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
 
-constexpr double pi = 3.14159265358979323846;
-
-inline Surface box_surface(const std::string& name, const Vector3d& centre, const Vector3d& size, double edge = 0)
+inline Surface box_surface(const std::string& name, const Vector3& centre, const Vector3& size, double edge = 0)
 {
   Surface surface;
   surface.name = name;
@@ -23,7 +23,7 @@ inline Surface box_surface(const std::string& name, const Vector3d& centre, cons
   return surface;
 }
 
-inline Surface sphere_surface(const std::string& name, const Vector3d& centre, double radius, double edge = 0)
+inline Surface sphere_surface(const std::string& name, const Vector3& centre, double radius, double edge = 0)
 {
   Surface surface;
   surface.name = name;
@@ -42,6 +42,21 @@ inline Surface file_surface(const std::string& name, const std::string& file, do
   surface.file = file;
   surface.unit = unit;
   return surface;
+}
+
+/// Writes an OBJ file of the triangles that `keep` accepts.
+template <class Keep>
+void write_obj(const TriangleMesh& mesh, const std::string& path, const Keep& keep)
+{
+  std::ofstream out(path);
+  out.precision(9);
+  for (const Vector3& v : mesh.vertices)
+    out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles)
+  {
+    if (keep(t))
+      out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  }
 }
 
 inline Surface forehead_surface(const std::string& part)
@@ -94,9 +109,10 @@ inline double tissue_volume(const Model& model, const std::string& material = ""
   double sum = 0;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
+         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
     {
-      if (material.empty() || model.materials[model.mixture_material[m]].name == material)
+      if (material.empty() || model.materials[static_cast<std::size_t>(model.mixture_material[m])].name == material)
         sum += static_cast<double>(model.fill[e]) * static_cast<double>(model.mixture_proportion[m]);
     }
   }
@@ -109,7 +125,8 @@ inline double muscle_volume(const Model& model, int muscle)
   double sum = 0;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
+    for (auto m = static_cast<std::size_t>(model.fibre_begin[e]);
+         m < static_cast<std::size_t>(model.fibre_begin[e + 1]); ++m)
     {
       if (model.fibre_muscle[m] == muscle)
         sum += static_cast<double>(model.fill[e]) * static_cast<double>(model.fibre_weight[m]);
@@ -118,27 +135,27 @@ inline double muscle_volume(const Model& model, int muscle)
   return sum * voxel_volume(model);
 }
 
-inline Vector3d transformed(const RigidTransform& t, const Vector3d& p)
+inline Vector3 transformed(const RigidTransform& t, const Vector3& p)
 {
-  Vector3d out = t.translation;
+  Vector3 out = t.translation;
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = 0; c < 3; ++c)
       out[r] += t.rotation[3 * r + c] * p[c];
   return out;
 }
 
-inline Vector3d node_position(const Model& model, std::int32_t node)
+inline Vector3 node_position(const Model& model, std::int32_t node)
 {
-  const auto& n = model.nodes[node];
+  const auto& n = model.nodes[static_cast<std::size_t>(node)];
   return { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] };
 }
 
 /// Trilinear interpolation of a nodal field at a bound point.
 template <class Field>
-Vector3d interpolated(const Model& model, const Binding& binding, std::size_t point, const Field& field)
+Vector3 interpolated(const Model& model, const Binding& binding, std::size_t point, const Field& field)
 {
-  Vector3d sum{ 0, 0, 0 };
-  const auto& nodes = model.voxel_nodes[binding.voxel[point]];
+  Vector3 sum{ 0, 0, 0 };
+  const auto& nodes = model.voxel_nodes[static_cast<std::size_t>(binding.voxel[point])];
   for (std::size_t b = 0; b < 8; ++b)
   {
     double weight = 1;
@@ -147,7 +164,7 @@ Vector3d interpolated(const Model& model, const Binding& binding, std::size_t po
       const auto c = static_cast<double>(binding.coordinates[point][a]);
       weight *= (b >> a & 1) != 0 ? c : 1 - c;
     }
-    const Vector3d value = field(node_position(model, nodes[b]));
+    const Vector3 value = field(node_position(model, nodes[b]));
     for (std::size_t a = 0; a < 3; ++a)
       sum[a] += weight * value[a];
   }

@@ -103,7 +103,7 @@ TEST_F(MeshFile, QuadsAreSplitAndUnitsApplied)
   const TriangleMesh mesh = joined(import_mesh(file, 1e-3));
   EXPECT_EQ(mesh.triangles.size(), 2u);
   ASSERT_EQ(mesh.vertices.size(), 4u);
-  EXPECT_NEAR(bounding_box(mesh).upper[1], 3e-3, 1e-9);
+  EXPECT_NEAR(bounding_box(mesh).max()[1], 3e-3, 1e-9);
 }
 
 TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
@@ -120,9 +120,7 @@ TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
   {
     const TriangleMesh mesh = joined(import_mesh(file, 1));
     ASSERT_EQ(mesh.triangles.size(), 1u) << file;
-    const Vector3d& a = mesh.vertices[mesh.triangles[0][0]];
-    const Vector3d& b = mesh.vertices[mesh.triangles[0][1]];
-    const Vector3d& c = mesh.vertices[mesh.triangles[0][2]];
+    const auto [a, b, c] = corners(mesh, mesh.triangles[0]);
     EXPECT_NEAR((b - a).cross(c - a)[2], 1, 1e-6) << file;
   }
 }
@@ -157,7 +155,7 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
     if (one_turned)
       std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
     std::string text;
-    for (const Vector3d& v : mesh.vertices)
+    for (const Vector3& v : mesh.vertices)
       text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
     for (const Triangle& t : mesh.triangles)
       text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
@@ -216,15 +214,18 @@ TEST(Forehead, HasTheStatedDimensions)
   EXPECT_LT(surface.tree().closest({ 0, 0, 0 }).distance, 0.2e-3);
   double area_x = 0;
   for (const Triangle& t : skin.triangles)
-    area_x += (skin.vertices[t[1]] - skin.vertices[t[0]]).cross(skin.vertices[t[2]] - skin.vertices[t[0]])[0];
+  {
+    const auto [a, b, c] = corners(skin, t);
+    area_x += (b - a).cross(c - a)[0];
+  }
   EXPECT_GT(area_x, 0.01);
   // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
   const PreparedSurface skull("skull", forehead("skull"), 0);
   double thinnest = 1, thickest = 0;
-  for (const Vector3d& v : skin.vertices)
+  for (const Vector3& v : skin.vertices)
   {
-    const ClosestPoint closest = skull.tree().closest(v);
-    EXPECT_GT(skull.signed_distance(v, closest), 0);
+    const ClosestPoint closest = skull.tree().closest(to_vector(v));
+    EXPECT_GT(skull.signed_distance(to_vector(v), closest), 0);
     EXPECT_FALSE(skull.rim_within(closest.point, 1e-3));
     thinnest = std::min(thinnest, closest.distance);
     thickest = std::max(thickest, closest.distance);
@@ -241,7 +242,7 @@ TEST(Forehead, SkinIsEvenlyTriangulated)
   {
     for (std::size_t c = 0; c < 3; ++c)
     {
-      const double edge = (skin.vertices[t[c]] - skin.vertices[t[(c + 1) % 3]]).norm();
+      const double edge = (vertex(skin, t[c]) - vertex(skin, t[(c + 1) % 3])).norm();
       shortest = std::min(shortest, edge);
       longest = std::max(longest, edge);
     }
@@ -257,8 +258,8 @@ TEST(Forehead, MusclesLieBetweenSkinAndBone)
   {
     const TriangleMesh mesh = forehead(part);
     std::size_t outside = 0;
-    for (const Vector3d& v : mesh.vertices)
-      outside += tissue.tree().winding_number(v) < 0.5 ? 1 : 0;
+    for (const Vector3& v : mesh.vertices)
+      outside += tissue.tree().winding_number(to_vector(v)) < 0.5 ? 1 : 0;
     EXPECT_LT(static_cast<double>(outside), 0.25 * static_cast<double>(mesh.vertices.size())) << part;
   }
 }
@@ -266,8 +267,8 @@ TEST(Forehead, MusclesLieBetweenSkinAndBone)
 TEST(Forehead, LeftAndRightMirror)
 {
   EXPECT_NEAR(signed_volume(forehead("frontalis_left")), signed_volume(forehead("frontalis_right")), 1e-12);
-  EXPECT_GT(bounding_box(forehead("corrugator_left")).lower[1], 0);
-  EXPECT_NEAR(bounding_box(forehead("corrugator_left")).upper[1], -bounding_box(forehead("corrugator_right")).lower[1],
+  EXPECT_GT(bounding_box(forehead("corrugator_left")).min()[1], 0);
+  EXPECT_NEAR(bounding_box(forehead("corrugator_left")).max()[1], -bounding_box(forehead("corrugator_right")).min()[1],
               1e-12);
 }
 

@@ -69,12 +69,13 @@ TEST(Voxelise, ShellLayersHaveTheirVolumes)
   // only voxels at the surface carry the thin layer
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    Vector3d centre;
+    Vector3 centre;
     for (std::size_t a = 0; a < 3; ++a)
       centre[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
-    const Vector3d p = transformed(model.to_scene, centre);
+    const Vector3 p = transformed(model.to_scene, centre);
     const double radius = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
+         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
     {
       if (model.mixture_material[m] == 3)
       {
@@ -211,15 +212,15 @@ TEST(Voxelise, StopsWhenAskedTo)
   Scene scene = plain_scene(1e-3);
   scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 10e-3, 10e-3, 10e-3 }) };
   scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
-  std::vector<std::string> monitor;
+  std::vector<std::string> stages;
   bake(scene, nullptr,
        [&](const std::string& stage, double)
        {
-         if (monitor.empty() || monitor.back() != stage)
-           monitor.push_back(stage);
+         if (stages.empty() || stages.back() != stage)
+           stages.push_back(stage);
          return true;
        });
-  EXPECT_GE(monitor.size(), 4u);
+  EXPECT_GE(stages.size(), 4u);
   try
   {
     bake(scene, nullptr, [](const std::string& stage, double) { return stage != "voxels"; });

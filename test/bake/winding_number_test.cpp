@@ -20,7 +20,7 @@ TriangleMesh sphere_with_holes()
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {
-    const Vector3d& v = mesh.vertices[t[0]];
+    const Vector3d v = vertex(mesh, t[0]);
     keep.push_back(v[2] < 0.8 && v[0] < 0.95 && v[1] > -0.97);
   }
   return keep_triangles(mesh, keep);
@@ -30,7 +30,10 @@ double exact_winding(const TriangleMesh& mesh, const Vector3d& p)
 {
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
-    sum += winding_of_triangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    sum += winding_of_triangle(p, a, b, c);
+  }
   return sum;
 }
 
