@@ -64,11 +64,11 @@ TriangleMesh read_stl(const std::string& path)
 // distance of a made skull's outer or inner table from its centre, in a direction of length 1 [mm]
 double table_radius(const Point& d, bool outer)
 {
-  const double waves = std::sin(15 * d[0] + 1) * std::sin(13 * d[1]) * std::sin(14 * d[2] + 2);
+  const double waves = std::sin(15 * d.x + 1) * std::sin(13 * d.y) * std::sin(14 * d.z + 2);
   // a ridge at each brow, as high as wide
-  const double brow = std::hypot(70 * (d[2] - 0.1) / 6, 70 * (std::abs(d[1]) - 0.3) / 15);
-  const double ridge = d[0] > 0 ? 4 * std::exp(-brow * brow) : 0;
-  return outer ? 70 + waves + ridge : 64 + 0.7 * std::sin(17 * d[0]) * std::sin(16 * d[1] + 1) * std::sin(12 * d[2]);
+  const double brow = std::hypot(70 * (d.z - 0.1) / 6, 70 * (std::abs(d.y) - 0.3) / 15);
+  const double ridge = d.x > 0 ? 4 * std::exp(-brow * brow) : 0;
+  return outer ? 70 + waves + ridge : 64 + 0.7 * std::sin(17 * d.x) * std::sin(16 * d.y + 1) * std::sin(12 * d.z);
 }
 
 // A closed skull of two tables, 4 to 10 mm apart, with brow ridges and bumps: about as many triangles as the real bone
@@ -84,14 +84,14 @@ TriangleMesh made_bone()
     const bool outer = face < 6;
     const auto at = [&](int i, int j)
     {
-      const double quarter = std::atan(1.0);
-      Point d{ 0, 0, 0 };
-      d[axis] = side;
-      d[(axis + 1) % 3] = i == squares ? 1 : i == 0 ? -1 : std::tan(quarter * (2.0 * i / squares - 1));
-      d[(axis + 2) % 3] = j == squares ? 1 : j == 0 ? -1 : std::tan(quarter * (2.0 * j / squares - 1));
+      const auto along = [](int k) {
+        return k == squares ? 1 : k == 0 ? -1 : std::tan(std::atan(1.0) * (2.0 * k / squares - 1));
+      };
+      const double u = along(i), v = along(j);
+      Point d = axis == 0 ? Point{ side, u, v } : axis == 1 ? Point{ v, side, u } : Point{ u, v, side };
       d = 1 / norm(d) * d;
       const Point p = table_radius(d, outer) * d;
-      return MeshBuilder::Corner{ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) };
+      return MeshBuilder::Corner{ static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) };
     };
     for (int i = 0; i < squares; ++i)
     {

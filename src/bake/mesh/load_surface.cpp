@@ -24,7 +24,7 @@ constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// An open mesh is inside-out where the largest winding number in its bounding box is negative.
+/// Whether an open mesh is inside-out: its winding number of largest magnitude, in its bounding box, is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);

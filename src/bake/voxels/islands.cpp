@@ -59,40 +59,38 @@ void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& nu
   list.resize(kept);
 }
 
-void keep_voxels(Model& model, const std::vector<bool>& keep)
+/// Keeps the entries of the voxels that stay, in lists that `begin` divides up by voxels.
+template <class... Lists>
+void keep_entries(const std::vector<bool>& keep, std::vector<std::int32_t>& begin, Lists&... lists)
 {
-  Model kept;
-  kept.mixture_begin.push_back(0);
-  kept.fibre_begin.push_back(0);
+  std::vector<std::int32_t> kept{ 0 };
+  std::int32_t count = 0;
   for (std::size_t e = 0; e < keep.size(); ++e)
   {
     if (!keep[e])
       continue;
-    kept.voxels.push_back(model.voxels[e]);
-    kept.fill.push_back(model.fill[e]);
-    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-    {
-      kept.mixture_material.push_back(model.mixture_material[m]);
-      kept.mixture_proportion.push_back(model.mixture_proportion[m]);
-    }
-    kept.mixture_begin.push_back(static_cast<std::int32_t>(kept.mixture_material.size()));
-    for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
-    {
-      kept.fibre_muscle.push_back(model.fibre_muscle[m]);
-      kept.fibre_weight.push_back(model.fibre_weight[m]);
-      kept.fibre_direction.push_back(model.fibre_direction[m]);
-    }
-    kept.fibre_begin.push_back(static_cast<std::int32_t>(kept.fibre_muscle.size()));
+    for (std::int32_t m = begin[e]; m < begin[e + 1]; ++m, ++count)
+      ((lists[count] = lists[m]), ...);
+    kept.push_back(count);
   }
-  model.voxels = std::move(kept.voxels);
-  model.fill = std::move(kept.fill);
-  model.mixture_begin = std::move(kept.mixture_begin);
-  model.mixture_material = std::move(kept.mixture_material);
-  model.mixture_proportion = std::move(kept.mixture_proportion);
-  model.fibre_begin = std::move(kept.fibre_begin);
-  model.fibre_muscle = std::move(kept.fibre_muscle);
-  model.fibre_weight = std::move(kept.fibre_weight);
-  model.fibre_direction = std::move(kept.fibre_direction);
+  begin = std::move(kept);
+  (lists.resize(count), ...);
+}
+
+void keep_voxels(Model& model, const std::vector<bool>& keep)
+{
+  keep_entries(keep, model.mixture_begin, model.mixture_material, model.mixture_proportion);
+  keep_entries(keep, model.fibre_begin, model.fibre_muscle, model.fibre_weight, model.fibre_direction);
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < keep.size(); ++e)
+  {
+    if (!keep[e])
+      continue;
+    model.voxels[kept] = model.voxels[e];
+    model.fill[kept++] = model.fill[e];
+  }
+  model.voxels.resize(kept);
+  model.fill.resize(kept);
 
   // the nodes that stay are in the same order as before
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);

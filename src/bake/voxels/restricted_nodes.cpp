@@ -25,9 +25,8 @@ using Distances = std::vector<double>;
 class NodeFinder
 {
 public:
-  NodeFinder(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, const Model& model,
-             BakeMonitor& monitor)
-      : scene_(scene), surfaces_(surfaces), frame_(frame), model_(model), monitor_(monitor)
+  NodeFinder(const LocalFrame& frame, const Model& model, BakeMonitor& monitor)
+      : frame_(frame), model_(model), monitor_(monitor)
   {
     edge_ = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
     positions_.reserve(model.nodes.size());
@@ -35,7 +34,7 @@ public:
       positions_.push_back(frame.grid_point(model, node[0], node[1], node[2]));
   }
 
-  /// The distances of nodes from a surface, for a constraint or a load of the scene. `within` below 0: the default.
+  /// Distances of nodes from a surface of a constraint or a load. `within` below 0 stands for the default.
   Distances find(const PreparedSurface& surface, double within, const Region& crop)
   {
     const double reach = reach_of(within);
@@ -60,18 +59,7 @@ public:
     return distances;
   }
 
-  const PreparedSurface& surface(const std::string& name, const std::string& place) const
-  {
-    return named_surface(surfaces_, name, place);
-  }
-
-  [[noreturn]] void refuse(const std::string& place, double within) const
-  {
-    throw Error(
-        fmt::format("{}: no tissue node lies within {} of its surface inside its crop; check the surface, the "
-                    "crop and 'within'",
-                    place, length_text(reach_of(within), scene_.unit)));
-  }
+  double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
 
   /// The part of a surface that tissue can touch, in local coordinates; of one that moves, all of it.
   TriangleMesh local_mesh(const PreparedSurface& surface, bool moves) const
@@ -94,8 +82,6 @@ public:
   }
 
 private:
-  double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
-
   /// +1: the tissue lies on the side of the outward normals, -1: on the other, 0: on both.
   double tissue_side(const PreparedSurface& surface)
   {
@@ -130,8 +116,6 @@ private:
     return side;
   }
 
-  const Scene& scene_;
-  const PreparedSurfaces& surfaces_;
   const LocalFrame& frame_;
   const Model& model_;
   BakeMonitor& monitor_;
@@ -157,7 +141,7 @@ std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                     BakeMonitor& monitor)
 {
-  NodeFinder finder(scene, surfaces, frame, model, monitor);
+  NodeFinder finder(frame, model, monitor);
   const std::size_t nodes = model.nodes.size();
   enum class Kind : std::int8_t
   {
@@ -170,20 +154,28 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   std::vector<std::int32_t> of(nodes, -1);  // bone of a rigid node, surface of a sliding one
   std::vector<std::int32_t> held_by(nodes, -1);
   std::vector<double> distance(nodes, 0);
-  // calls restrict(node, distance) for the nodes that a surface restricts; returns whether there are any
+  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict
   const auto for_each_node =
-      [&](const PreparedSurface& surface, double within, const Region& crop, const auto& restrict)
+      [&](const std::string& place, const std::vector<std::string>& names, const auto& part, const auto& restrict)
   {
-    const Distances distances = finder.find(surface, within, crop);
     bool any = false;
-    for (std::size_t n = 0; n < nodes; ++n)
+    for (const std::string& name : names)
     {
-      if (std::isnan(distances[n]))
-        continue;
-      any = true;
-      restrict(n, distances[n]);
+      const PreparedSurface& surface = named_surface(surfaces, name, place);
+      const Distances distances = finder.find(surface, part.within, part.crop);
+      for (std::size_t n = 0; n < nodes; ++n)
+      {
+        if (std::isnan(distances[n]))
+          continue;
+        any = true;
+        restrict(n, distances[n], surface);
+      }
     }
-    return any;
+    if (!any)
+      throw Error(
+          fmt::format("{}: no tissue node lies within {} of its surface inside its crop; check the surface, the "
+                      "crop and 'within'",
+                      place, length_text(finder.reach_of(part.within), scene.unit)));
   };
 
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
@@ -193,20 +185,15 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    const std::string place = place_in_scene(scene, "constraint", constraint);
-    bool any = false;
-    for (const std::string& name : constraint.surfaces)
-      any |= for_each_node(finder.surface(name, place), constraint.within, constraint.crop,
-                           [&](std::size_t n, double)
-                           {
-                             if (kind[n] == Kind::rigid)
-                               return;
-                             kind[n] = Kind::rigid;
-                             of[n] = bone;
-                             held_by[n] = static_cast<std::int32_t>(c);
-                           });
-    if (!any)
-      finder.refuse(place, constraint.within);
+    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
+                  [&](std::size_t n, double, const PreparedSurface&)
+                  {
+                    if (kind[n] == Kind::rigid)
+                      return;
+                    kind[n] = Kind::rigid;
+                    of[n] = bone;
+                    held_by[n] = static_cast<std::int32_t>(c);
+                  });
   }
 
   for (std::size_t l = 0; l < scene.loads.size(); ++l)
@@ -214,18 +201,14 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     const SceneLoad& load = scene.loads[l];
     if (load.kind != SceneLoad::Kind::displacement)
       continue;
-    const std::string place = place_in_scene(scene, "load", load);
-    const bool any =
-        for_each_node(finder.surface(load.surface, place), load.within, load.crop,
-                      [&](std::size_t n, double)
-                      {
-                        if (kind[n] == Kind::rigid)
-                          return;
-                        kind[n] = Kind::prescribed;
-                        model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
-                      });
-    if (!any)
-      finder.refuse(place, load.within);
+    for_each_node(place_in_scene(scene, "load", load), { load.surface }, load,
+                  [&](std::size_t n, double, const PreparedSurface&)
+                  {
+                    if (kind[n] == Kind::rigid)
+                      return;
+                    kind[n] = Kind::prescribed;
+                    model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
+                  });
   }
 
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
@@ -234,33 +217,28 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    const std::string place = place_in_scene(scene, "constraint", constraint);
-    bool any = false;
-    for (const std::string& name : constraint.surfaces)
+    // index of a surface among the model's, which it becomes one of
+    const auto index_of = [&](const PreparedSurface& surface)
     {
-      const PreparedSurface& surface = finder.surface(name, place);
-      const auto known =
-          std::find_if(model.constraint_surfaces.begin(), model.constraint_surfaces.end(),
-                       [&](const ConstraintSurface& other)
-                       { return other.name == name && other.bone == bone && other.friction == constraint.friction; });
-      const auto index = static_cast<std::int32_t>(known - model.constraint_surfaces.begin());
-      const bool found = for_each_node(
-          surface, constraint.within, constraint.crop,
-          [&](std::size_t n, double d)
-          {
-            if (kind[n] > Kind::sliding || (kind[n] == Kind::sliding && std::abs(distance[n]) <= std::abs(d)))
-              return;
-            kind[n] = Kind::sliding;
-            of[n] = index;
-            held_by[n] = static_cast<std::int32_t>(c);
-            distance[n] = d;
-          });
-      if (found && known == model.constraint_surfaces.end())
-        model.constraint_surfaces.push_back({ name, finder.local_mesh(surface, bone >= 0), bone, constraint.friction });
-      any = any || found;
-    }
-    if (!any)
-      finder.refuse(place, constraint.within);
+      auto& list = model.constraint_surfaces;
+      const auto same = [&](const ConstraintSurface& other)
+      { return other.name == surface.name() && other.bone == bone && other.friction == constraint.friction; };
+      const auto index = static_cast<std::size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
+      if (index == list.size())
+        list.push_back({ surface.name(), finder.local_mesh(surface, bone >= 0), bone, constraint.friction });
+      return static_cast<std::int32_t>(index);
+    };
+    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
+                  [&](std::size_t n, double d, const PreparedSurface& surface)
+                  {
+                    const std::int32_t index = index_of(surface);
+                    if (kind[n] > Kind::sliding || (kind[n] == Kind::sliding && std::abs(distance[n]) <= std::abs(d)))
+                      return;
+                    kind[n] = Kind::sliding;
+                    of[n] = index;
+                    held_by[n] = static_cast<std::int32_t>(c);
+                    distance[n] = d;
+                  });
   }
 
   for (std::size_t n = 0; n < nodes; ++n)

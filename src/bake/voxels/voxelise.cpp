@@ -18,12 +18,13 @@ void Voxels::append(const Voxels& other)
 {
   const auto mixtures = static_cast<std::uint32_t>(material.size());
   const auto muscles = static_cast<std::uint32_t>(muscle.size());
-  place.insert(place.end(), other.place.begin(), other.place.end());
-  fill.insert(fill.end(), other.fill.begin(), other.fill.end());
-  material.insert(material.end(), other.material.begin(), other.material.end());
-  proportion.insert(proportion.end(), other.proportion.begin(), other.proportion.end());
-  muscle.insert(muscle.end(), other.muscle.begin(), other.muscle.end());
-  weight.insert(weight.end(), other.weight.begin(), other.weight.end());
+  const auto join = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
+  join(place, other.place);
+  join(fill, other.fill);
+  join(material, other.material);
+  join(proportion, other.proportion);
+  join(muscle, other.muscle);
+  join(weight, other.weight);
   for (std::size_t e = 1; e < other.mixture_begin.size(); ++e)
     mixture_begin.push_back(mixtures + other.mixture_begin[e]);
   for (std::size_t e = 1; e < other.muscle_begin.size(); ++e)
