@@ -58,13 +58,13 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
 }
 
 /// Rows of the face frame: forward, left, up, in scene axes.
-std::array<Vector3, 3> face_axes(const Scene& scene)
+std::array<Vector3d, 3> face_axes(const Scene& scene)
 {
-  const Vector3 forward = normalised(scene.frame.forward);
-  const Vector3 up = normalised(scene.frame.up - dot(scene.frame.up, forward) * forward);
-  if (norm(forward) < 0.5 || norm(up) < 0.5)
+  const Vector3d forward = to_vector(scene.frame.forward).normalized(), upwards = to_vector(scene.frame.up);
+  const Vector3d up = (upwards - upwards.dot(forward) * forward).normalized();
+  if (forward.norm() < 0.5 || up.norm() < 0.5)
     throw Error(scene.file + ": frame: 'forward' and 'up' must have a length and must not be parallel");
-  return { forward, cross(up, forward), up };
+  return { forward, up.cross(forward), up };
 }
 
 void copy_presets(const Scene& scene, Model& model)
@@ -121,13 +121,13 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.to_scene.rotation.fill(0);
   for (std::size_t local = 0; local < 3; ++local)
     model.to_scene.rotation[3 * frame.scene_axis(local) + local] = 1;
-  model.to_scene.translation = frame.origin;
+  model.to_scene.translation = to_array(frame.origin);
   for (std::size_t row = 0; row < 3; ++row)
   {
-    const Vector3 turned = frame.turn(axes[row]);
+    const Vector3d turned = frame.turn(axes[row]);
     for (std::size_t column = 0; column < 3; ++column)
       model.to_face.rotation[3 * row + column] = turned[column];
-    model.to_face.translation[row] = dot(axes[row], frame.origin - scene.frame.origin);
+    model.to_face.translation[row] = axes[row].dot(frame.origin - to_vector(scene.frame.origin));
   }
   model.face_frame = scene.frame.id;
   model.gravity = frame.turn(scene.gravity);
