@@ -48,7 +48,7 @@ std::shared_ptr<const Model> bar()
 
 double tip(const Frame& frame) { return frame.skin.landmarks[0][2] - 1; }
 
-RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { Backend::cpu, 1, 0 }, pace, frame_rate }; }
+RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { "cpu", 1, 0 }, pace, frame_rate }; }
 
 /// The bar with so much simulated time per time step that any machine can run it in real time.
 std::shared_ptr<const Model> fast_bar()

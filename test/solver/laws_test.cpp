@@ -61,7 +61,12 @@ Vectors random_displacements(const Model& model, double amplitude)
 
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
 {
+<<<<<<< HEAD
+  const char* names[] = { "neo_hookean", "mooney_rivlin", "ogden", "fung", "holzapfel", "guccione" };
+  return std::get<0>(info.param) + "_" + names[static_cast<int>(std::get<1>(info.param))];
+=======
   return name_of(std::get<0>(info.param)) + "_" + physics::description_of(std::get<1>(info.param)).name;
+>>>>>>> main
 }
 
 }  // namespace
@@ -78,7 +83,7 @@ protected:
 TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
-  const auto energies = make_solver(std::make_shared<const Model>(model), { Backend::reference, 0, 0 });
+  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = solver(model);
   const Vectors u = random_displacements(model, 1.5e-4);
   solver_->set_displacements(u);
@@ -151,7 +156,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
         error = std::max(error, std::abs(f_turned[n][i] - expected));
       }
     // single precision rounds displacements of millimetres: 1e-7 of strain times the bulk modulus
-    EXPECT_LT(error / largest, std::get<0>(GetParam()) == Backend::reference ? 1e-9 : 1e-4);
+    EXPECT_LT(error / largest, std::get<0>(GetParam()) == "reference" ? 1e-9 : 1e-4);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "solver/cpu/cpu_solver.hpp"
 
 #include "solver/skin/bound_points.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "frontalis/physics/viscosity.hpp"
 #include "solver/stepping/step_bound.hpp"
 
@@ -227,6 +228,9 @@ void CpuSolver<Real>::skin(SkinState& out)
 template class CpuSolver<float>;
 template class CpuSolver<double>;
 
+namespace
+{
+
 std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                         const std::string& remark)
 {
@@ -239,5 +243,9 @@ std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, cons
     solver->reset();
   return solver;
 }
+
+}  // namespace
+
+BackendDescription cpu_backend() { return { "cpu", make_cpu_solver }; }
 
 }  // namespace frontalis

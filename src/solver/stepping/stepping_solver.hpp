@@ -204,9 +204,4 @@ private:
 /// Controls at rest: no activation, bones in place.
 Controls rest_controls(const Model& model);
 
-std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings);
-/// `remark` is added to its description.
-std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
-                                        const std::string& remark = {});
-
 }  // namespace frontalis
