@@ -10,6 +10,8 @@
 namespace frontalis
 {
 
+std::vector<std::string> backend_names() { return { "auto", "reference", "cpu", "cuda" }; }
+
 Backend backend_from_name(const std::string& name)
 {
   for (const Backend backend : { Backend::automatic, Backend::reference, Backend::cpu, Backend::cuda })

@@ -27,7 +27,9 @@ enum class Backend
   cuda
 };
 
-/// "auto", "reference", "cpu" or "cuda"; throws Error naming those that exist.
+/// The names that SolverSettings can ask for, "auto" first: what a command line offers.
+std::vector<std::string> backend_names();
+/// One of backend_names(); throws Error naming them.
 Backend backend_from_name(const std::string& name);
 SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
 std::string name_of(Backend backend);
