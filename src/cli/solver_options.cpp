@@ -1,0 +1,38 @@
+#include "cli/solver_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace frontalis
+{
+
+void add_backend_option(CLI::App& command, std::string& backend, std::vector<std::string> names)
+{
+  const std::string description = fmt::format("{} ({})", fmt::join(names, ", "), backend);
+  command.add_option("--backend", backend, description)->check(CLI::IsMember(std::move(names)));
+}
+
+std::vector<std::string> named_backends()
+{
+  std::vector<std::string> names = backend_names();
+  names.erase(std::remove(names.begin(), names.end(), name_of(Backend::automatic)), names.end());
+  return names;
+}
+
+SolverSettings SolverOptions::settings() const
+{
+  SolverSettings settings;
+  settings.backend = backend_from_name(backend);
+  settings.threads = threads;
+  return settings;
+}
+
+void add_solver_options(CLI::App& command, SolverOptions& options)
+{
+  add_backend_option(command, options.backend);
+  command.add_option("--threads", options.threads, "CPU threads (0: one per core)")->check(CLI::Range(0, 1024));
+}
+
+}  // namespace frontalis
