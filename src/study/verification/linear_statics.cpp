@@ -3,7 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <map>
@@ -78,12 +78,49 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
 
 }  // namespace
 
+// Voxels join only neighbouring planes of nodes, so the stiffness is block tridiagonal in the planes across the longest
+// axis of the grid. Its Cholesky factors are those of the dense blocks of planes.
 struct LinearStatics::System
 {
-  std::vector<std::array<int, 3>> unknown;  // of each component of each node; -1: fixed
-  Vectors fixed;                            // prescribed displacements
-  Eigen::VectorXd forces;                   // that the prescribed displacements exert on the unknowns
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
+  struct Unknown
+  {
+    int plane = 0, row = -1;  // row in the plane's block; -1: the component is fixed
+  };
+  std::vector<std::array<Unknown, 3>> unknowns;    // of each component of each node
+  Vectors fixed;                                   // prescribed displacements
+  std::vector<Eigen::VectorXd> forces;             // of each plane: exerted by the prescribed displacements
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // factor of the block of each plane
+  std::vector<Eigen::MatrixXd> next;               // factor of the block that joins a plane to the next one
+  bool positive_definite = true;
+
+  void factorise(std::vector<Eigen::MatrixXd> diagonal)
+  {
+    for (std::size_t p = 0; p < diagonal.size() && positive_definite; ++p)
+    {
+      plane.emplace_back(diagonal[p]);
+      positive_definite = plane.back().info() == Eigen::Success;
+      if (p + 1 == diagonal.size() || !positive_definite)
+        continue;
+      plane[p].matrixU().solveInPlace<Eigen::OnTheRight>(next[p]);
+      diagonal[p + 1].noalias() -= next[p] * next[p].transpose();
+    }
+  }
+
+  void solve_in_place(std::vector<Eigen::VectorXd>& x) const
+  {
+    for (std::size_t p = 0; p < x.size(); ++p)
+    {
+      if (p > 0)
+        x[p].noalias() -= next[p - 1] * x[p - 1];
+      plane[p].matrixL().solveInPlace(x[p]);
+    }
+    for (std::size_t p = x.size(); p-- > 0;)
+    {
+      if (p + 1 < x.size())
+        x[p].noalias() -= next[p].transpose() * x[p + 1];
+      plane[p].matrixU().solveInPlace(x[p]);
+    }
+  }
 };
 
 LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gradient)
@@ -91,70 +128,80 @@ LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gr
 {
   if (!model.muscles.empty() || !model.sliding.empty())
     throw Error("linear statics: the model has muscles or sliding nodes; it must have neither");
-  auto& [unknown, fixed, forces, factor] = *system_;
-  unknown.assign(model.nodes.size(), { { 0, 0, 0 } });
-  fixed.assign(model.nodes.size(), { { 0, 0, 0 } });
+  std::vector<std::array<bool, 3>> held(model.nodes.size(), { { false, false, false } });
+  system_->fixed.assign(model.nodes.size(), { { 0, 0, 0 } });
   for (const auto& rigid : model.rigid)
-    unknown[rigid.node] = { { -1, -1, -1 } };
+    held[rigid.node] = { { true, true, true } };
   for (const auto& [node, load] : model.prescribed)
     for (int axis = 0; axis < 3; ++axis)
       if (model.loads[load].fixed[axis])
       {
-        unknown[node][axis] = -1;
-        fixed[node][axis] = model.loads[load].value[axis];
+        held[node][axis] = true;
+        system_->fixed[node][axis] = model.loads[load].value[axis];
       }
-  int count = 0;
-  for (auto& node : unknown)
-    for (int& component : node)
-      component = component < 0 ? -1 : count++;
+  const auto along = std::max_element(model.size.begin(), model.size.end()) - model.size.begin();
+  const std::size_t planes = static_cast<std::size_t>(model.size[along]) + 1;
+  std::vector<int> rows(planes, 0);
+  system_->unknowns.resize(model.nodes.size());
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int plane = model.nodes[n][along];
+      system_->unknowns[n][axis] = { plane, held[n][axis] ? -1 : rows[plane]++ };
+    }
 
-  forces = Eigen::VectorXd::Zero(count);
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<Eigen::MatrixXd> diagonal;
+  for (std::size_t p = 0; p < planes; ++p)
+  {
+    diagonal.emplace_back(Eigen::MatrixXd::Zero(rows[p], rows[p]));
+    system_->forces.emplace_back(Eigen::VectorXd::Zero(rows[p]));
+    if (p + 1 < planes)
+      system_->next.emplace_back(Eigen::MatrixXd::Zero(rows[p + 1], rows[p]));
+  }
   std::map<std::vector<float>, ElementMatrix> known;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     const auto [entry, is_new] = known.try_emplace(make_of(model, e));
     if (is_new)
       entry->second = element_stiffness(model, e, gradient);
+    const ElementMatrix& k = entry->second;
     for (int row = 0; row < 24; ++row)
     {
-      const int i = unknown[model.voxel_nodes[e][row / 3]][row % 3];
+      const auto [plane, i] = system_->unknowns[model.voxel_nodes[e][row / 3]][row % 3];
       for (int column = 0; i >= 0 && column < 24; ++column)
       {
         const auto node = model.voxel_nodes[e][column / 3];
-        const int j = unknown[node][column % 3];
+        const auto [other, j] = system_->unknowns[node][column % 3];
         if (j < 0)
-          forces[i] -= entry->second(row, column) * fixed[node][column % 3];
-        else if (j <= i)
-          entries.emplace_back(i, j, entry->second(row, column));
+          system_->forces[plane][i] -= k(row, column) * system_->fixed[node][column % 3];
+        else if (other <= plane)
+          (other == plane ? diagonal[plane] : system_->next[other])(i, j) += k(row, column);
       }
     }
   }
-  Eigen::SparseMatrix<double> stiffness(count, count);
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  factor.compute(stiffness);
+  system_->factorise(std::move(diagonal));
 }
 
 LinearStatics::~LinearStatics() = default;
 
-bool LinearStatics::positive_definite() const { return system_->factor.info() == Eigen::Success; }
+bool LinearStatics::positive_definite() const { return system_->positive_definite; }
 
 Vectors LinearStatics::solve(const Vectors& forces) const
 {
   if (!positive_definite())
     throw Error("linear statics: the stiffness is not positive definite");
-  Eigen::VectorXd right = system_->forces;
+  std::vector<Eigen::VectorXd> x = system_->forces;
   Vectors u = system_->fixed;
-  const auto for_each_unknown = [this](const auto& visit)
+  const auto for_each_unknown = [&](const auto& visit)
   {
-    for (std::size_t n = 0; n < system_->unknown.size(); ++n)
+    for (std::size_t n = 0; n < u.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
-        if (system_->unknown[n][axis] >= 0)
-          visit(n, axis, system_->unknown[n][axis]);
+        if (const auto [plane, row] = system_->unknowns[n][axis]; row >= 0)
+          visit(x[plane][row], n, axis);
   };
-  for_each_unknown([&](std::size_t n, int axis, int i) { right[i] += forces[n][axis]; });
-  const Eigen::VectorXd solution = system_->factor.solve(right);
-  for_each_unknown([&](std::size_t n, int axis, int i) { u[n][axis] = solution[i]; });
+  for_each_unknown([&](double& value, std::size_t n, int axis) { value += forces[n][axis]; });
+  system_->solve_in_place(x);
+  for_each_unknown([&](double value, std::size_t n, int axis) { u[n][axis] = value; });
   return u;
 }
 
