@@ -146,15 +146,13 @@ void bench_model(const std::string& name, const std::shared_ptr<const Model>& mo
 // plots each effect's cost over the share of voxels that have it
 void draw(const std::vector<PresenceCost>& costs, const std::string& backend, const std::string& path)
 {
-  Plot plot;
-  plot.title = "Cost of an effect against its extent: " + backend;
-  plot.x_label = "voxels (sliding, friction: nodes of a face) that have the effect [%]";
-  plot.y_label = "additional time per step [%]";
+  Plot plot{ "Cost of an effect against its extent: " + backend,
+             "voxels (sliding, friction: nodes of a face) that have the effect [%]", "additional time per step [%]" };
   plot.key = "top left";
   for (const PresenceCost& cost : costs)
   {
     if (cost.share == 0)
-      plot.curves.push_back({ name_of(cost.effect), {}, {}, Plot::Style::line_and_points });
+      plot.curves.push_back({ name_of(cost.effect) });
     plot.curves.back().x.push_back(100 * cost.share);
     plot.curves.back().y.push_back(100 * cost.step.median / cost.base);
   }

@@ -1,7 +1,6 @@
 #include "cli/solver_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -10,8 +9,8 @@ namespace frontalis
 
 void add_backend_option(CLI::App& command, std::string& backend, std::vector<std::string> names)
 {
-  const std::string description = fmt::format("{} ({})", fmt::join(names, ", "), backend);
-  command.add_option("--backend", backend, description)->check(CLI::IsMember(std::move(names)));
+  command.add_option("--backend", backend, "the solver's implementation (" + backend + ")")
+      ->check(CLI::IsMember(std::move(names)));
 }
 
 std::vector<std::string> named_backends()

@@ -41,6 +41,13 @@ TEST(Table, RefusesARowOfAnotherLength)
   EXPECT_THROW(table.add({ "a", 1.0 }), Error);
 }
 
+TEST(Json, WholeNumbersHaveNoFraction)
+{
+  Table table({ "voxels", "share" });
+  table.add({ 5.0, 0.5 });
+  EXPECT_EQ(table.json(), "[\n {\n  \"voxels\": 5,\n  \"share\": 0.5\n }\n]\n");
+}
+
 TEST(Json, TextThatIsNoUtf8IsReplaced)
 {
   Table table({ "name" });

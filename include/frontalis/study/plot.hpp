@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Plot
   struct Curve
   {
     std::string name;  ///< in the legend; empty: the curve is not in it
-    std::vector<double> x, y;
+    std::vector<double> x{}, y{};
     Style style = Style::line_and_points;
     std::vector<std::string> labels{};                ///< beside the points; empty: none
     std::string label_place = "left offset 0.7,0.7";  ///< of the labels beside their points, in gnuplot's words
@@ -40,12 +41,12 @@ struct Plot
   std::string x_label, y_label;  ///< with units
   bool x_log = false, y_log = false;
   /// Limits of each axis; equal: gnuplot chooses them.
-  double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
-  std::vector<double> x_ticks, y_ticks{};  ///< numbers on the axes; empty: gnuplot chooses them
-  std::vector<std::string> x_names;        ///< written at x = 0, 1, 2, ... instead of numbers
-  double shaded_below = 0;                 ///< y under which the plot is grey; 0: nowhere
-  std::string key = "top right";           ///< place of the legend in gnuplot's words; "below ...": under the axes
-  std::vector<Curve> curves;
+  std::array<double, 2> x_range{}, y_range{};
+  std::vector<double> x_ticks{}, y_ticks{};  ///< numbers on the axes; empty: gnuplot chooses them
+  std::vector<std::string> x_names{};        ///< written at x = 0, 1, 2, ... instead of numbers
+  double shaded_below = 0;                   ///< y under which the plot is grey; 0: nowhere
+  std::string key = "top right";             ///< place of the legend in gnuplot's words; "below ...": under the axes
+  std::vector<Curve> curves{};
   int width = 800, height = 500;  ///< pixels
 };
 

@@ -89,10 +89,7 @@ Table accuracy_table(const AccuracyFindings& findings)
 
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
 {
-  Plot plot;
-  plot.title = title + "\n" + findings.machine;
-  plot.x_label = "wall seconds per simulated second";
-  plot.y_label = "error of the skin, RMS [mm]";
+  Plot plot{ title + "\n" + findings.machine, "wall seconds per simulated second", "error of the skin, RMS [mm]" };
   plot.x_log = plot.y_log = true;
   plot.width = 900;
   plot.height = 680;
@@ -108,18 +105,16 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   if (most == 0)
     return plot;
   const double own = mm(findings.reference_error);
-  plot.x_from = std::min(least / 1.6, 0.7);
-  plot.x_to = std::max(most * 1.6, 1.5);
-  plot.y_from = (own > 0 ? std::min(low, own) : low) / 1.3;
-  plot.y_to = high * 1.3;
+  plot.x_range = { std::min(least / 1.6, 0.7), std::max(most * 1.6, 1.5) };
+  plot.y_range = { (own > 0 ? std::min(low, own) : low) / 1.3, high * 1.3 };
   plot.shaded_below = own;
   for (double decade = 1e-6; decade < 1e6; decade *= 10)
     for (const double step : { 1.0, 1.5, 2.0, 3.0, 5.0, 7.0 })
     {
       const double tick = decade * step;
-      if (tick >= plot.y_from && tick <= plot.y_to)
+      if (tick >= plot.y_range[0] && tick <= plot.y_range[1])
         plot.y_ticks.push_back(tick);
-      if (tick >= plot.x_from && tick <= plot.x_to && (step == 1 || step == 2 || step == 5))
+      if (tick >= plot.x_range[0] && tick <= plot.x_range[1] && (step == 1 || step == 2 || step == 5))
         plot.x_ticks.push_back(tick);
     }
   std::vector<std::size_t> all(findings.rows.size());
@@ -155,12 +150,12 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   }
   if (own > 0)
     plot.curves.push_back({ "",
-                            { plot.x_from, plot.x_to },
+                            { plot.x_range[0], plot.x_range[1] },
                             { own, own },
                             Plot::Style::guide,
                             { "error of the reference" },
                             "left offset 0.7,-0.7" });
-  plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
+  plot.curves.push_back({ "", { 1, 1 }, { plot.y_range[0], plot.y_range[1] }, Plot::Style::guide, { "real time" } });
   std::size_t longest = 0;
   for (const Plot::Curve& curve : plot.curves)
     longest = std::max(longest, curve.name.size());

@@ -100,13 +100,13 @@ std::string script(const Plot& plot, const std::string& path)
       << "\nset xlabel "
       // an empty line keeps a legend below the axis at a distance
       << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
-  for (const auto& [axis, log, from, to] :
-       { std::tuple{ 'x', plot.x_log, plot.x_from, plot.x_to }, std::tuple{ 'y', plot.y_log, plot.y_from, plot.y_to } })
+  for (const auto& [axis, log, range] :
+       { std::tuple{ 'x', plot.x_log, plot.x_range }, std::tuple{ 'y', plot.y_log, plot.y_range } })
   {
     if (log)
       out << "set logscale " << axis << '\n';
-    if (from != to)
-      out << "set " << axis << "range [" << from << ':' << to << "]\n";
+    if (range[0] != range[1])
+      out << "set " << axis << "range [" << range[0] << ':' << range[1] << "]\n";
   }
   for (const auto& [axis, ticks] : { std::pair("x", plot.x_ticks), std::pair("y", plot.y_ticks) })
     for (std::size_t t = 0; t < ticks.size(); ++t)

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -186,7 +187,15 @@ std::string Table::json() const
   {
     auto& object = rows.emplace_back(nlohmann::ordered_json::object());
     for (std::size_t c = 0; c < columns_.size(); ++c)
-      std::visit([&](const auto& value) { object[columns_[c]] = value; }, row[c]);
+    {
+      const auto* number = std::get_if<double>(&row[c]);
+      if (number == nullptr)
+        object[columns_[c]] = std::get<std::string>(row[c]);
+      else if (*number == std::floor(*number) && std::abs(*number) < 1e15)
+        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 and not 5.0
+      else
+        object[columns_[c]] = *number;
+    }
   }
   return json_text(rows);
 }

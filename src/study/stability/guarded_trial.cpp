@@ -56,7 +56,7 @@ void GuardedTrial::play_and_release(const std::vector<Phase>& phases, const std:
     advance(phase.seconds, phase.target, phase.looks);
   plot(picture, title);
   advance(file.seconds("in_the_end"), controls(), 20);
-  expect_balance(of, file.bound("energy", "%"));
+  check_balance(file, of);
   trial_.checks.absolute("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm"));
 }
 
@@ -123,20 +123,20 @@ void GuardedTrial::record()
                        monitor_.worst_jacobian });
 }
 
-void GuardedTrial::expect_balance(const std::string& of, double percent)
+void GuardedTrial::check_balance(const CaseFile& file, const std::string& of, const std::string& picture,
+                                 const std::string& title)
 {
   const double error = worst_imbalance_ / largest_;
   trial_.energy_error = std::fmax(trial_.energy_error, error);
   trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
-  trial_.checks.absolute("energy unexplained, " + of, "%", 0, 100 * error, percent);
+  trial_.checks.absolute("energy unexplained, " + of, "%", 0, 100 * error, file.bound("energy", "%"));
+  if (!picture.empty())
+    plot(picture, title);
 }
 
 void GuardedTrial::plot(const std::string& file, const std::string& title)
 {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = "time [s]";
-  plot.y_label = "energies over the largest, smallest J [1]";
+  Plot plot{ title, "time [s]", "energies over the largest, smallest J [1]" };
   plot.key = "below";
   plot.curves = { { "kinetic energy", {}, {}, Plot::Style::line },
                   { "stored energy", {}, {}, Plot::Style::line },

@@ -57,8 +57,10 @@ public:
   const Monitor& monitor() const { return monitor_; }       ///< when they were recorded last
   const EnergyLedger& energies() const { return ledger_; }  ///< when they were recorded last
 
-  /// Checks that the imbalance of the ledger stayed within so many percent of its largest term.
-  void expect_balance(const std::string& of, double percent);
+  /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
+  /// motion to `picture` where that is not empty.
+  void check_balance(const CaseFile& file, const std::string& of, const std::string& picture = {},
+                     const std::string& title = {});
   /// Energies over time and the smallest J, as a picture.
   void plot(const std::string& file, const std::string& title);
 

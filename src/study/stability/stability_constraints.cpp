@@ -89,7 +89,7 @@ void drag(
     worst = std::max(worst, error);
     way = std::max(way, come);
   }
-  motion.expect_balance(of, file.bound("energy", "%"));
+  motion.check_balance(file, of);
   trial.checks.absolute("error of kept distances, " + of, "um", 0, 1e6 * worst, file.bound("kept_distance", "um"));
   trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
                         std::max(0.0, least_way - 1e3 * way), 0);
@@ -162,7 +162,7 @@ void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& t
     {
       motion.advance(seconds, motion.controls(0, jumped), 1);
       motion.advance(file.seconds("watched"), motion.controls(0, jumped), 40);
-      motion.expect_balance("within a " + name, file.bound("energy", "%"));
+      motion.check_balance(file, "within a " + name);
     };
     if (violent)
       motion.hold_or_stop(play);
@@ -198,8 +198,8 @@ void turning_gravity(const StabilitySettings& settings, const CaseFile& file, Tr
       x *= angle;
     motion.advance(seconds, motion.controls(0, turned_about(axis, { { 0, 2e-3, 2e-3 } })), 4);
   }
-  motion.expect_balance("turned at random", file.bound("energy", "%"));
-  motion.plot("turning_gravity", "Gravity is switched on at once, and the head turned at random every 20 ms");
+  motion.check_balance(file, "turned at random", "turning_gravity",
+                       "Gravity is switched on at once, and the head turned at random every 20 ms");
   const Controls end = motion.solver().controls();
   motion.settle(end, 1e-4, file.seconds("longest_settling"));
   trial.checks.absolute("smallest J at rest", "1", 1, motion.monitor().worst_jacobian, file.bound("smallest_J"));

@@ -47,8 +47,8 @@ void near_incompressible(const StabilitySettings& settings, const CaseFile& file
     const std::string name = "ν = " + readable(poisson);
     GuardedTrial motion(settings, trial, cantilever(file, poisson));
     motion.advance(file.seconds("swing"), motion.controls(), 30);
-    motion.expect_balance(name, file.bound("energy", "%"));
-    motion.plot(fmt::format("near_incompressible_{}", std::lround(1e4 * poisson)), "A beam falls and swings, " + name);
+    motion.check_balance(file, name, fmt::format("near_incompressible_{}", std::lround(1e4 * poisson)),
+                         "A beam falls and swings, " + name);
     trial.checks.relative("tip's equilibrium, " + name, "mm", expected, settled_tip(file, motion),
                           0.01 * file.bound("tip", "%"));
   }
@@ -146,7 +146,7 @@ void mass_scaling(const StabilitySettings& settings, const CaseFile& file, Trial
     const double seconds = file.seconds("swing") * std::sqrt(factor);
     motion.advance(file.seconds("switch"), motion.controls(1), 1);
     motion.advance(seconds, motion.controls(1), 20);
-    motion.expect_balance("masses by " + readable(factor), file.bound("energy", "%"));
+    motion.check_balance(file, "masses by " + readable(factor));
     if (factor > 1)
       motion.plot("mass_scaling", "Masses scaled by 10⁴: a muscle is switched on under gravity");
     motion.settle(motion.controls(1), 1e-4, file.seconds("longest_settling") * std::sqrt(factor));

@@ -41,7 +41,7 @@ void held_neighbours(const StabilitySettings& settings, const CaseFile& file, Tr
       motion.advance(file.seconds("pull"), motion.controls(activation), 50);
       motion.advance(switched, motion.controls(0), 10);
       motion.advance(file.seconds("rest"), motion.controls(0), 20);
-      motion.expect_balance(name, file.bound("energy", "%"));
+      motion.check_balance(file, name);
       trial.checks.absolute("left in the end, " + name, "mm", 0, 1e3 * farthest(motion.displacements()),
                             file.bound("left", "mm"));
     };
@@ -133,7 +133,7 @@ void switch_on(const StabilitySettings& settings, const CaseFile& file, Trial& t
   motion.advance(file.seconds("on"), motion.controls(1), 40);
   motion.advance(motion.solver().time_step(), motion.controls(0), 1);
   motion.advance(file.seconds("off"), motion.controls(0), 40);
-  motion.expect_balance("every muscle on and off at once", file.bound("energy", "%"));
+  motion.check_balance(file, "every muscle on and off at once");
   // a picture of the real head's motion would tell whose head it is
   if (scene == "forehead")
     motion.plot(scene + "_switched", "Every muscle switched on in one step, and off");
@@ -163,8 +163,8 @@ void forehead_at_random(const StabilitySettings& settings, const CaseFile& file,
     motion.advance(changed - motion.solver().time_step(), target);
     settings.watch((i + 1.0) / changes);
   }
-  motion.expect_balance("activations at random, 50 times a second", file.bound("energy", "%"));
-  motion.plot("forehead_at_random", "Every muscle of the forehead at random, 50 times a second");
+  motion.check_balance(file, "activations at random, 50 times a second", "forehead_at_random",
+                       "Every muscle of the forehead at random, 50 times a second");
 }
 
 }  // namespace

@@ -40,8 +40,8 @@ void crushed(const StabilitySettings& settings, const CaseFile& file, Trial& tri
   const double stored = motion.energies().internal + motion.energies().hourglass;
   motion.advance(press, motion.controls(), 20);
   motion.advance(file.seconds("rest"), motion.controls(), 20);
-  motion.expect_balance("pressed and let go", file.bound("energy", "%"));
-  motion.plot("crushed", "A block is pressed to a tenth of its height in 20 ms, and back");
+  motion.check_balance(file, "pressed and let go", "crushed",
+                       "A block is pressed to a tenth of its height in 20 ms, and back");
   expect_rest(file, trial, motion, "pressed", stored);
 }
 
@@ -59,8 +59,7 @@ void twisted(const StabilitySettings& settings, const CaseFile& file, Trial& tri
   for (const int quarter : { 1, 0 })
     motion.advance(quarter_turn, motion.controls(0, turned_about({ { 0, 0, quarter * pi / 2 } }, axis)), 10);
   motion.advance(file.seconds("rest"), motion.controls(), 20);
-  motion.expect_balance("turned by 180° and back", file.bound("energy", "%"));
-  motion.plot("twisted", "A bar's end is turned by 180° in 20 ms, and back");
+  motion.check_balance(file, "turned by 180° and back", "twisted", "A bar's end is turned by 180° in 20 ms, and back");
   expect_rest(file, trial, motion, "twisted", stored);
 }
 
@@ -88,8 +87,7 @@ void released(const StabilitySettings& settings, const CaseFile& file, Trial& tr
     motion.set(displaced(model, map));
     const double stored = motion.energies().initial;
     motion.advance(file.seconds("watched"), motion.controls(), 50);
-    motion.expect_balance(name, file.bound("energy", "%"));
-    motion.plot("released_" + name, "A free block is let go, " + name);
+    motion.check_balance(file, name, "released_" + name, "A free block is let go, " + name);
     motion.advance(file.seconds("rest"), motion.controls(), 10);
     expect_rest(file, trial, motion, name, stored);
   }
@@ -130,9 +128,8 @@ void scrambled(const StabilitySettings& settings, const CaseFile& file, Trial& t
     motion.set(u);
     const double stored = motion.energies().initial;
     motion.advance(file.seconds("watched"), motion.controls(), 40);
-    motion.expect_balance(form.name, file.bound("energy", "%"));
-    motion.plot(std::string("scrambled_") + form.file,
-                std::string("Every node of a block moved by half a voxel, ") + form.name);
+    motion.check_balance(file, form.name, std::string("scrambled_") + form.file,
+                         std::string("Every node of a block moved by half a voxel, ") + form.name);
     motion.advance(file.seconds("rest"), motion.controls(), 10);
     expect_rest(file, trial, motion, form.name, stored);
   }
@@ -156,8 +153,7 @@ void rigid_rotation(const StabilitySettings& settings, const CaseFile& file, Tri
   motion.set(u, v);
   const double kinetic = motion.energies().kinetic;
   motion.advance(file.number("turns") * 2 * pi / rate, motion.controls(), 50);
-  motion.expect_balance("ten turns", file.bound("energy", "%"));
-  motion.plot("rigid_rotation", "A free block turns ten times");
+  motion.check_balance(file, "ten turns", "rigid_rotation", "A free block turns ten times");
   trial.checks.relative("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies().kinetic,
                         0.01 * file.bound("kinetic_energy", "%"));
   // the shape is kept where the diagonals keep their lengths
@@ -199,8 +195,8 @@ void dangling(const StabilitySettings& settings, const CaseFile& file, Trial& tr
   GuardedTrial motion(settings, trial, model);
   const double seconds = file.seconds("fall");
   motion.advance(seconds, motion.controls(), 50);
-  motion.expect_balance("hanging and falling", file.bound("energy", "%"));
-  motion.plot("dangling", "A sheet, a strip and single voxels hang by faces, an edge and a corner; one falls");
+  motion.check_balance(file, "hanging and falling", "dangling",
+                       "A sheet, a strip and single voxels hang by faces, an edge and a corner; one falls");
   const auto alone = nodes_where(model, [](const auto& p) { return p[2] < 1.5e-3; });
   trial.checks.relative("fall of the free voxel", "mm", -1e3 * 0.5 * 9.81 * seconds * seconds,
                         1e3 * mean_displacement(motion.displacements(), alone)[2], 0.01 * file.bound("fall", "%"));
@@ -224,8 +220,8 @@ void slender(const StabilitySettings& settings, const CaseFile& file, Trial& tri
     model.gravity[along] = -9.81;
     GuardedTrial motion(settings, trial, model);
     motion.advance(file.seconds("swing"), motion.controls(), 20);
-    motion.expect_balance(name, file.bound("energy", "%"));
-    motion.plot(long_way ? "slender_along" : "slender_across", "Voxels of 1 × 1 × 10 mm, " + name + " at once");
+    motion.check_balance(file, name, long_way ? "slender_along" : "slender_across",
+                         "Voxels of 1 × 1 × 10 mm, " + name + " at once");
     motion.settle(motion.controls(), 1e-4, file.seconds("longest_settling"));
     const auto end = nodes_where(model, [&](const auto& p) { return p[along] < 0.1e-3; });
     trial.checks.relative("lengthening, " + name, "um", -1e6 * 1000 * 9.81 * length * length / (2 * 34e3),

@@ -33,10 +33,7 @@ void long_rest(const StabilitySettings& settings, const CaseFile& file, Trial& t
   const Vectors at_rest = motion.displacements();
   const double few = file.number("steps"), many = file.number("steps_in_full"), steps = settings.long_runs ? many : few;
   double worst = 0;
-  Plot plot;
-  plot.title = "Drift at equilibrium";
-  plot.x_label = "steps [1]";
-  plot.y_label = "farthest from where it was at rest [um]";
+  Plot plot{ "Drift at equilibrium", "steps [1]", "farthest from where it was at rest [um]" };
   plot.curves = { { "", {}, {}, Plot::Style::line } };
   constexpr int looks = 100;
   for (int i = 0; i < looks; ++i)
@@ -75,8 +72,7 @@ void long_cycling(const StabilitySettings& settings, const CaseFile& file, Trial
       worst = std::max({ worst, farthest(up, high), farthest(down, low) });
     settings.watch((i + 1.0) / cycles);
   }
-  motion.expect_balance("every cycle", file.bound("energy", "%"));
-  motion.plot("long_cycling", "Activation goes up and down 20 times a second");
+  motion.check_balance(file, "every cycle", "long_cycling", "Activation goes up and down 20 times a second");
   trial.checks.absolute("a cycle off the 20th", "um", 0, 1e6 * worst, file.bound("cycle", "um"));
 }
 
@@ -146,7 +142,7 @@ void no_number(const StabilitySettings& settings, const CaseFile& file, Trial& t
   motion.advance(file.seconds("between"), motion.controls(0.5F));
   solver.set_velocities(Vectors(model.nodes.size(), { { nan, infinite, nan } }));
   motion.advance(file.seconds("after"), motion.controls(0.5F), 10);
-  motion.expect_balance("before and after", file.bound("energy", "%"));
+  motion.check_balance(file, "before and after");
 }
 
 }  // namespace

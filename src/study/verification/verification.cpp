@@ -42,16 +42,12 @@ void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>
 }
 
 Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                      const std::vector<double>& x_ticks, double x_from, double x_to)
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range)
 {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = x_label;
-  plot.y_label = y_label;
+  Plot plot{ title, x_label, y_label };
   plot.x_log = plot.y_log = true;
   plot.x_ticks = x_ticks;
-  plot.x_from = x_from;
-  plot.x_to = x_to;
+  plot.x_range = x_range;
   plot.key = "below";
   return plot;
 }

@@ -59,17 +59,14 @@ Finding verify_cantilever(const VerificationSettings&)
   Table selective({ "ν", "1 voxel", "2", "4", "8" });
   const std::vector<Ratio> ratios{ { { 1, 1, 1 } }, { { 2, 1, 1 } }, { { 1, 2, 1 } }, { { 1, 1, 2 } },
                                    { { 2, 2, 1 } }, { { 2, 1, 2 } }, { { 1, 2, 2 } } };
-  Plot plot;
-  plot.title = "Deflection of a square cantilever, Poisson ratio 0.49";
-  plot.x_label = "voxels through the height [1]";
-  plot.y_label = "error of the deflection [%]";
+  Plot plot{ "Deflection of a square cantilever, Poisson ratio 0.49", "voxels through the height [1]",
+             "error of the deflection [%]" };
   plot.x_log = true;
-  plot.x_from = 0.9;
-  plot.x_to = 4.5;
+  plot.x_range = { 0.9, 4.5 };
   plot.x_ticks = { 1, 2, 4 };
   plot.key = "below";
   for (const char* const name : { "scalar, cubes", "assumed strain, cubes", "assumed strain, 2:1 along the beam" })
-    plot.curves.push_back({ name, {}, {}, Plot::Style::line_and_points });
+    plot.curves.push_back({ name });
   for (const double poisson : { 0.3, 0.45, 0.49 })
   {
     const auto coarse = deflection(poisson, 4, HourglassControl::assumed_strain, ratios[0]);

@@ -164,12 +164,11 @@ Finding verify_calculix(const VerificationSettings& settings)
     return finding;
   }
   Plot plot = convergence_plot("Difference from CalculiX", "voxel edge [mm]", "relative difference [%]",
-                               { 0.625, 1.25, 2.5, 5 }, 0.55, 5.7);
+                               { 0.625, 1.25, 2.5, 5 }, { { 0.55, 5.7 } });
   for (const auto& c : { stretched_block(), bent_cantilever(), twisted_column(), indented_slab() })
   {
     const auto expected = c.figures(solve_by_calculix(c.problem, c.elements));
-    Plot::Curve curves[2] = { { c.name + ": " + c.figure[0].what, {}, {}, Plot::Style::line_and_points },
-                              { c.name + ": " + c.figure[1].what, {}, {}, Plot::Style::line_and_points } };
+    Plot::Curve curves[2] = { { c.name + ": " + c.figure[0].what }, { c.name + ": " + c.figure[1].what } };
     for (const double edge : c.edges)
     {
       const auto found = c.figures(solve_by_voxels(c.problem, edge, c.period, settings.backend));

@@ -38,6 +38,6 @@ void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>
 
 /// A plot with logarithmic axes and its legend below.
 Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                      const std::vector<double>& x_ticks, double x_from, double x_to);
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range);
 
 }  // namespace frontalis

@@ -154,17 +154,14 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, Backend backe
 Finding verify_convergence(const VerificationSettings&)
 {
   Finding finding;
-  Plot plot;
-  plot.title = "Displacement error inside a cube";
-  plot.x_label = "voxel edge over the cube's [1]";
-  plot.y_label = "relative error [1]";
+  Plot plot{ "Displacement error inside a cube", "voxel edge over the cube's [1]", "relative error [1]" };
   plot.x_log = plot.y_log = true;
   plot.key = "bottom right";
   Table table({ "voxels an edge", "scalar", "assumed strain" });
   std::vector<std::vector<Table::Cell>> rows;
   for (const auto form : hourglass_forms)
   {
-    Plot::Curve curve{ name_of(form), {}, {}, Plot::Style::line_and_points };
+    Plot::Curve curve{ name_of(form) };
     std::size_t row = 0;
     for (const int n : { 3, 6, 12 })
     {
@@ -200,11 +197,11 @@ Finding verify_cook(const VerificationSettings&)
                        { "weighted, none dropped", HourglassControl::assumed_strain, 0.01, false },
                        { "whole from a half on", HourglassControl::assumed_strain, 0.5, true } };
   Plot plot = convergence_plot("Cook's membrane: rise of the middle of its right side", "voxel edge [1]",
-                               "relative error [1]", { 1, 2, 4 }, 0.9, 5);
+                               "relative error [1]", { 1, 2, 4 }, { { 0.9, 5 } });
   Table table({ "voxels", "edge 4", "edge 2", "edge 1" });
   for (const auto& way : ways)
   {
-    Plot::Curve curve{ way.name, {}, {}, Plot::Style::line_and_points };
+    Plot::Curve curve{ way.name };
     std::vector<Table::Cell> row{ way.name };
     for (const double h : { 4.0, 2.0, 1.0 })
     {
@@ -228,14 +225,13 @@ Finding verify_staircase(const VerificationSettings& settings)
   Finding finding;
   Plot plot = convergence_plot("Hollow sphere under pressure: displacement of its inner surface",
                                "voxel edge over the wall's thickness [1]", "relative error [1]",
-                               { 0.0625, 0.125, 0.25 }, 0.05, 0.3);
-  plot.y_from = 5e-4;
-  plot.y_to = 0.1;
+                               { 0.0625, 0.125, 0.25 }, { { 0.05, 0.3 } });
+  plot.y_range = { 5e-4, 0.1 };
   Table table({ "form", "voxels through the wall", "inner surface", "its scatter", "outer surface", "its scatter" });
   for (const auto form : hourglass_forms)
   {
-    Plot::Curve mean{ "mean, " + name_of(form), {}, {}, Plot::Style::line_and_points };
-    Plot::Curve spread{ "scatter, " + name_of(form), {}, {}, Plot::Style::line_and_points };
+    Plot::Curve mean{ "mean, " + name_of(form) };
+    Plot::Curve spread{ "scatter, " + name_of(form) };
     for (const int n : { 8, 16, 32 })
     {
       const auto found = hollow_sphere(n, form, settings.backend);

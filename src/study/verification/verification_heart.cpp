@@ -139,16 +139,10 @@ Apex ellipsoid(double h, double kappa, Backend backend)
 Finding verify_heart_beam(const VerificationSettings& settings)
 {
   Finding finding;
-  Plot plot;
-  plot.title = "Heart benchmark, problem 1: height of the beam's end";
-  plot.x_label = "voxel edge [mm]";
-  plot.y_label = "height [mm]";
-  plot.x_from = 0;
-  plot.x_to = 0.55;
-  plot.y_from = 3.8;
-  plot.y_to = 4.3;
-  plot.curves = { { "voxels", {}, {}, Plot::Style::line_and_points },
-                  { "published code", { 0, 0.55 }, { 4.1549, 4.1549 }, Plot::Style::dashed } };
+  Plot plot{ "Heart benchmark, problem 1: height of the beam's end", "voxel edge [mm]", "height [mm]" };
+  plot.x_range = { 0, 0.55 };
+  plot.y_range = { 3.8, 4.3 };
+  plot.curves = { { "voxels" }, { "published code", { 0, 0.55 }, { 4.1549, 4.1549 }, Plot::Style::dashed } };
   for (const int n : { 2, 4, 6 })
   {
     const double z = beam(n, 2e5, settings.backend);
@@ -164,17 +158,13 @@ Finding verify_heart_beam(const VerificationSettings& settings)
 Finding verify_heart_ellipsoid(const VerificationSettings& settings)
 {
   Finding finding;
-  Plot plot;
-  plot.title = "Heart benchmark, problem 3: apices after contraction";
-  plot.x_label = "voxel edge [mm]";
-  plot.y_label = "distance from the centre [mm]";
+  Plot plot{ "Heart benchmark, problem 3: apices after contraction", "voxel edge [mm]",
+             "distance from the centre [mm]" };
   plot.key = "below";
-  plot.x_from = 0;
-  plot.x_to = 1.05;
-  plot.y_from = 11;
-  plot.y_to = 18;
-  plot.curves = { { "outer apex, voxels", {}, {}, Plot::Style::line_and_points },
-                  { "inner apex, voxels", {}, {}, Plot::Style::line_and_points },
+  plot.x_range = { 0, 1.05 };
+  plot.y_range = { 11, 18 };
+  plot.curves = { { "outer apex, voxels" },
+                  { "inner apex, voxels" },
                   { "outer apex, published", { 0, 1.05 }, { 15.5, 15.5 }, Plot::Style::dashed },
                   { "inner apex, published", { 0, 1.05 }, { 12.5, 12.5 }, Plot::Style::dashed } };
   for (const double h : { 1e-3, 0.5e-3 })

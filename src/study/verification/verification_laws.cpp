@@ -185,10 +185,7 @@ Finding verify_uniaxial_stretch(const VerificationSettings& settings)
                                   { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                   { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
                                   { 2.0, 1.718609, 0.715038, 1.022560 } };
-  Plot plot;
-  plot.title = "Uniaxial stretch of a neo-Hookean block";
-  plot.x_label = "stretch [1]";
-  plot.y_label = "P11 over shear modulus [1]";
+  Plot plot{ "Uniaxial stretch of a neo-Hookean block", "stretch [1]", "P11 over shear modulus [1]" };
   plot.key = "bottom right";
   plot.curves = { { "closed form", {}, {}, Plot::Style::line }, { "solver", {}, {}, Plot::Style::points } };
   for (const auto& row : expected)

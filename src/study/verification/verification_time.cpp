@@ -46,10 +46,7 @@ Model hanging_bar(const std::array<std::int32_t, 3>& size, double gravity)
 Finding verify_viscosity(const VerificationSettings& settings)
 {
   Finding finding;
-  Plot plot;
-  plot.title = "Stress of a sheared block that is held";
-  plot.x_label = "time [s]";
-  plot.y_label = "stress over the elastic one [1]";
+  Plot plot{ "Stress of a sheared block that is held", "time [s]", "stress over the elastic one [1]" };
   plot.x_log = true;
   plot.key = "bottom left";
   struct Series

@@ -156,10 +156,7 @@ Finding verify_wrinkling(const VerificationSettings&)
   Finding finding;
   constexpr double contrast = 100;
   const double pi = std::acos(-1.0);
-  Plot plot;
-  plot.title = "Compression at which a film wrinkles";
-  plot.x_label = "wavelength over film thickness [1]";
-  plot.y_label = "compression [%]";
+  Plot plot{ "Compression at which a film wrinkles", "wavelength over film thickness [1]", "compression [%]" };
   plot.curves.push_back({ "plate theory", {}, {}, Plot::Style::line });
   for (double wavelength = 10; wavelength < 30; wavelength += 0.5)
   {
