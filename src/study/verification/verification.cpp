@@ -95,6 +95,9 @@ std::map<std::string, CaseText> read_texts(const std::string& path)
       part = &text->after;
     else if (!line.empty() || !part->empty())
       *part += line + '\n';
+  for (auto& [name, of_case] : texts)
+    for (std::string* const end : { &of_case.before, &of_case.after })
+      end->erase(end->find_last_not_of('\n') + 1);
   return texts;
 }
 
@@ -125,7 +128,7 @@ void write_manual(const Findings& findings, const std::string& path)
     overview.add({ "[" + text->second.title + "](#" + name + ")",
                    static_cast<double>(std::count_if(checks.begin(), checks.end(), is_bounded)),
                    static_cast<double>(std::count_if(checks.begin(), checks.end(), passes)) });
-    sections += "\n## " + text->second.title + "\n\n<a id=\"" + name + "\"></a>\n" + text->second.before;
+    sections += "\n## " + text->second.title + "\n\n<a id=\"" + name + "\"></a>\n" + text->second.before + "\n";
     if (!finding.skipped.empty())
       sections += "\nSkipped: " + finding.skipped + "\n";
     if (!checks.empty())
@@ -138,7 +141,7 @@ void write_manual(const Findings& findings, const std::string& path)
       sections += "\n![" + plot.title + "](" + manual.stem().string() + "/" + file + ".png)\n";
     }
     if (!text->second.after.empty())
-      sections += "\n" + text->second.after;
+      sections += "\n" + text->second.after + "\n";
   }
   write_text(path, wrapped(out + "\n" + overview.markdown() + sections));
 }
