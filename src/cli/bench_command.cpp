@@ -96,7 +96,7 @@ double guard_share(Solver& solver, double step)
         solver.save(snapshot);
         solver.monitor();
       });
-  return check / (solver.steps_a_check() * step);
+  return check / (solver.steps_per_check() * step);
 }
 
 // what the looks at the time step take on the CPU, once in 32 steps: a plan of one step has one a step

@@ -1,5 +1,6 @@
 #include "frontalis/error.hpp"
-#include "solver/stepping/stepping_solver.hpp"
+#include "solver/cpu/cpu_solver.hpp"
+#include "solver/reference/reference_solver.hpp"
 
 #include <cmath>
 

@@ -27,7 +27,7 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 0;              ///< steps between two checks; 0: Solver::steps_a_check
+  int interval = 0;              ///< steps between two checks; 0: Solver::steps_per_check
   double slower = 0.5;           ///< share of the time step after a finding; each further try takes it once more
   int recovery = 4;              ///< checks that find nothing before the whole time step is taken again
   int tries = 3;                 ///< in a row, before the motion is stopped

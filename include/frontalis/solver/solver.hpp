@@ -100,7 +100,7 @@ public:
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
   /// Steps that take about a hundred times as long as monitor() and save().
-  virtual int steps_a_check() const = 0;
+  virtual int steps_per_check() const = 0;
   /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
   virtual void slow_down(double share) = 0;
 

@@ -218,7 +218,7 @@ Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSett
   if (!(settings.inverted_share >= 0 && settings.inverted_share <= 1))
     refuse("share of inverted voxels", settings.inverted_share, "0 to 1");
   if (settings.interval == 0)
-    self_->settings.interval = solver.steps_a_check();
+    self_->settings.interval = solver.steps_per_check();
   restart();
 }
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "solver/stepping/step_backend.hpp"
+
+#include <cmath>
+#include <functional>
+
+namespace frontalis
+{
+
+/// Largest eigenvalue of a matrix by power iteration. `multiply(step)` replaces a mode by the product of the matrix
+/// with it and returns the ratio of their lengths. It takes the product from the difference of forces that a
+/// displacement by `step` [m] along the mode makes: to either side in turn, because the laws' curvature takes from one
+/// product what it gives to the next. Ends early where the eigenvalue has settled or is not finite.
+template <class Multiply>
+double largest_eigenvalue(int most_iterations, double step, const Multiply& multiply)
+{
+  constexpr int fewest_iterations = 9;
+  constexpr double tolerance = 2e-4;  // against the iteration before the last, whose product was to the same side
+  double eigenvalue = 0, last = 0, before_last = 0;
+  for (int iteration = 1; iteration <= most_iterations; ++iteration, step = -step)
+  {
+    eigenvalue = multiply(step);
+    const bool settled = std::abs(eigenvalue - before_last) < tolerance * eigenvalue;
+    if ((iteration >= fewest_iterations && settled) || !std::isfinite(eigenvalue))
+      break;
+    before_last = last;
+    last = eigenvalue;
+  }
+  return eigenvalue;
+}
+
+/// A random mode to begin with, and how far nodes move for a product: large for single precision, small for the laws'
+/// curvature [m].
+NodalVectors random_mode(std::size_t nodes);
+double mode_amplitude(const Model& model);
+
+/// Highest frequency of the assembled model by power iteration on M^-1/2 K M^-1/2, from where the latest search ended.
+/// Held nodes stay; other constraints, which could only lower the frequency, are left out. Products with K are
+/// differences of internal forces, so that every law and fibre is in them.
+class HighestFrequencySearch
+{
+public:
+  using Forces = std::function<void(const NodalVectors& displacements, NodalVectors& forces)>;
+
+  /// mass [kg], held nodes: both must outlive it.
+  HighestFrequencySearch(const std::vector<double>& mass, const std::vector<std::int32_t>& held, double amplitude)
+      : mass_(mass), held_(held), amplitude_(amplitude)
+  {
+  }
+  /// Its square [1/s2] at displacements u; not finite where forces are not.
+  double run(const NodalVectors& u, const Forces& forces, int most_iterations);
+  /// The mode; empty before the first search.
+  const NodalVectors& state() const { return mode_; }
+  void restore(const NodalVectors& mode) { mode_ = mode; }
+
+private:
+  const std::vector<double>& mass_;
+  const std::vector<std::int32_t>& held_;
+  double amplitude_;
+  NodalVectors mode_;
+};
+
+}  // namespace frontalis
