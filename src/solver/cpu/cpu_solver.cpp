@@ -2,7 +2,6 @@
 
 #include "frontalis/physics/viscosity.hpp"
 #include "solver/skin/bound_points.hpp"
-#include "solver/stepping/component_vectors.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/stepping/time_stepper.hpp"
@@ -134,34 +133,13 @@ void CpuSolver<Real>::rest()
 }
 
 template <class Real>
-struct CpuSolver<Real>::State : BackendState
-{
-  Components u, v, rounding;
-  typename RestrictedNodes<Real>::Contacts contacts;
-  std::vector<float> relaxed;
-  typename EnergyAccount<Real>::Book book;
-  std::vector<FibreMemory> fibre_memory;
-
-  void archive(ByteArchive& archive) override
-  {
-    archive(u)(v)(rounding)(relaxed)(fibre_memory);
-    contacts.archive(archive);
-    book.archive(archive);
-  }
-};
-
-template <class Real>
 void CpuSolver<Real>::save(std::unique_ptr<BackendState>& to) const
 {
   if (!to)
     to = std::make_unique<State>();
   State& state = static_cast<State&>(*to);
-  state.u = u_;
-  state.v = v_;
-  state.rounding = rounding_;
+  state.arrays = std::tie(u_, v_, rounding_, relaxed_, fibre_memory_);
   state.contacts = restricted_.contacts();
-  state.relaxed = relaxed_;
-  state.fibre_memory = fibre_memory_;
   if (account_)
     state.book = account_->book();
 }
@@ -170,12 +148,8 @@ template <class Real>
 void CpuSolver<Real>::restore(const BackendState& from)
 {
   const State& state = static_cast<const State&>(from);
-  u_ = state.u;
-  v_ = state.v;
-  rounding_ = state.rounding;
+  std::tie(u_, v_, rounding_, relaxed_, fibre_memory_) = state.arrays;
   restricted_.restore(state.contacts);
-  relaxed_ = state.relaxed;
-  fibre_memory_ = state.fibre_memory;
   if (account_)
     account_->restore(state.book);
 }

@@ -3,9 +3,8 @@
 #include "solver/cpu/cpu_kernel.hpp"
 #include "solver/cpu/thread_team.hpp"
 #include "solver/cpu/voxel_rows.hpp"
+#include "solver/stepping/host_state.hpp"
 #include "solver/stepping/nodal_loads.hpp"
-#include "solver/stepping/restricted_nodes.hpp"
-#include "solver/stepping/step_backend.hpp"
 
 #include <memory>
 #include <string>
@@ -39,6 +38,7 @@ public:
 private:
   using Components = std::array<std::vector<Real>, 3>;
   using Arguments = CpuKernelArguments<Real>;
+  using State = HostState<Real, Components, Components, Components, std::vector<float>, std::vector<FibreMemory>>;
 
   static std::array<const Real*, 3> constant(const Components& c)
   {
@@ -53,8 +53,6 @@ private:
   bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
-
-  struct State;
 
   VoxelRows rows_;
   std::vector<float> inverse_mass_, mobility_, with_length_, with_passive_, relaxed_;

@@ -1,6 +1,5 @@
 #include "solver/cpu/cpu_solver.hpp"
 #include "solver/cpu/flush_denormals.hpp"
-#include "solver/stepping/component_vectors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -25,18 +25,17 @@ EnergyLedgerKeeper::EnergyLedgerKeeper(const Model& model, const Discretisation&
 void EnergyLedgerKeeper::open(double time, double dt)
 {
   backend_.work(true);
-  state_ = {};
+  ledger_ = {};
   const EnergyLedger now = balance(time, dt);
-  state_.initial = now.kinetic + now.internal + now.hourglass - now.gravity - now.load - now.constraint;
+  ledger_.initial = now.kinetic + now.internal + now.hourglass - now.gravity - now.load - now.constraint;
 }
 
 EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
 {
-  EnergyLedger& l = state_.ledger;
+  EnergyLedger& l = ledger_;
   const Work latest = latest_half_step(time, dt);
   const Monitor stored = backend_.monitor();
   const Work noted = backend_.work(false);
-  l.initial = state_.initial;
   l.internal = stored.internal;
   l.hourglass = stored.hourglass;
   l.viscous = noted.viscous;
@@ -72,7 +71,7 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
 // present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
 Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
 {
-  EnergyLedger& l = state_.ledger;
+  EnergyLedger& l = ledger_;
   NodalVectors u, v, internal;
   backend_.get(NodalField::displacements, u);
   backend_.get(NodalField::velocities, v);

@@ -10,14 +10,6 @@ namespace frontalis
 class EnergyLedgerKeeper
 {
 public:
-  struct State
-  {
-    EnergyLedger ledger;
-    double initial = 0;  ///< [J]
-
-    void archive(ByteArchive& archive) { archive(ledger)(initial); }
-  };
-
   /// All of them must outlive it.
   EnergyLedgerKeeper(const Model& model, const Discretisation& discretisation, const Conditions& conditions,
                      StepBackend& backend);
@@ -29,8 +21,8 @@ public:
   void effect_switched() { loads_.run(conditions_.running); }
   void list_allocations(AllocationList& list) const { loads_.list_allocations(list); }
 
-  const State& state() const { return state_; }
-  void restore(const State& state) { state_ = state; }
+  const EnergyLedger& latest() const { return ledger_; }
+  void restore(const EnergyLedger& ledger) { ledger_ = ledger; }
 
 private:
   NodalVectors external_forces(double time, const NodalVectors& u);
@@ -42,7 +34,7 @@ private:
   StepBackend& backend_;
   NodalLoads loads_;
   std::vector<std::array<bool, 3>> driven_;  // nodes that do not follow the forces along an axis
-  State state_;
+  EnergyLedger ledger_;
 };
 
 }  // namespace frontalis

@@ -3,7 +3,6 @@
 #include "frontalis/physics/time_step.hpp"
 #include "solver/energy/voxel_monitor.hpp"
 #include "solver/skin/bound_points.hpp"
-#include "solver/stepping/component_vectors.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/stepping/time_stepper.hpp"
@@ -91,32 +90,13 @@ void ReferenceSolver::rest()
   restricted_.reset();
 }
 
-struct ReferenceSolver::State : BackendState
-{
-  Components u, v;
-  RestrictedNodes<double>::Contacts contacts;
-  std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed;
-  EnergyAccount<double>::Book book;
-  std::vector<std::array<double, 2>> fibre_memory;
-
-  void archive(ByteArchive& archive) override
-  {
-    archive(u)(v)(relaxed)(fibre_memory);
-    contacts.archive(archive);
-    book.archive(archive);
-  }
-};
-
 void ReferenceSolver::save(std::unique_ptr<BackendState>& to) const
 {
   if (!to)
     to = std::make_unique<State>();
   State& state = static_cast<State&>(*to);
-  state.u = u_;
-  state.v = v_;
+  state.arrays = std::tie(u_, v_, relaxed_, fibre_memory_);
   state.contacts = restricted_.contacts();
-  state.relaxed = relaxed_;
-  state.fibre_memory = fibre_memory_;
   if (account_)
     state.book = account_->book();
 }
@@ -124,11 +104,8 @@ void ReferenceSolver::save(std::unique_ptr<BackendState>& to) const
 void ReferenceSolver::restore(const BackendState& from)
 {
   const State& state = static_cast<const State&>(from);
-  u_ = state.u;
-  v_ = state.v;
+  std::tie(u_, v_, relaxed_, fibre_memory_) = state.arrays;
   restricted_.restore(state.contacts);
-  relaxed_ = state.relaxed;
-  fibre_memory_ = state.fibre_memory;
   if (account_)
     account_->restore(state.book);
 }

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "frontalis/physics/viscosity.hpp"
+#include "solver/stepping/host_state.hpp"
 #include "solver/stepping/nodal_loads.hpp"
-#include "solver/stepping/restricted_nodes.hpp"
-#include "solver/stepping/step_backend.hpp"
 
 namespace frontalis
 {
@@ -33,6 +32,8 @@ private:
   using Kinematics = physics::Kinematics<double>;
   using Stress = physics::Matrix3<double>;
   using Derivatives = double[8][3];
+  using Relaxed = std::vector<std::array<physics::Symmetric3<double>, 2>>;
+  using State = HostState<double, Components, Components, Relaxed, std::vector<std::array<double, 2>>>;
 
   std::array<const double*, 3> u_pointers() const { return { { u_[0].data(), u_[1].data(), u_[2].data() } }; }
   EffectSet effects() const { return conditions_.running; }
@@ -50,8 +51,6 @@ private:
   bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void relax(double elapsed, const Components& u_before);  // u_before: a step earlier
 
-  struct State;
-
   std::vector<VoxelProperties> voxels_;
   Components u_, v_, f_;
   Derivatives centre_;            // dN_b/dX_j at the centre [1/m]
@@ -59,7 +58,7 @@ private:
   double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
   RestrictedNodes<double> restricted_;
   NodalLoads loads_;
-  std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed_;  // viscous stresses [Pa], one a voxel
+  Relaxed relaxed_;  // viscous stresses [Pa], one a voxel
   std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // fibres note their work
   std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last

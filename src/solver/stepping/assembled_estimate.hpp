@@ -14,33 +14,25 @@ namespace frontalis
 class AssembledEstimate
 {
 public:
-  struct State
-  {
-    double share = 1;              ///< of the bound at nodes, both squared; 1: nothing is known
-    double bound = 0;              ///< at nodes when the share was found [1/s2]; 0: it was not
-    std::int64_t steps = 0;        ///< since then, or since activations changed
-    std::int64_t steps_valid = 0;  ///< that it may be relied on
-    std::vector<float> activation;
-
-    void archive(ByteArchive& archive) { archive(share)(bound)(steps)(steps_valid)(activation); }
-  };
-
   /// Frequency squared to go by where the bound at nodes is this: what softens where that bound is set need not soften
   /// in the assembled model.
   double frequency_squared(double bound) const;
-  double share() const { return state_.share; }
-  void steps_taken(int steps) { state_.steps += steps; }
+  /// Of the bound, both squared; 1 where nothing is known.
+  double share() const { return share_; }
+  void steps_taken(int steps) { steps_ += steps; }
   /// Finds the share again if it is due. `search` gives the highest frequency squared from a number of iterations.
   void renew(const std::vector<float>& activation, const std::vector<float>& asked, double bound,
              const std::function<double(int most_iterations)>& search);
   /// Displacements were set from outside.
   void discard();
-
-  const State& state() const { return state_; }
-  void restore(const State& state) { state_ = state; }
+  void archive(ByteArchive& archive) { archive(share_)(bound_)(steps_)(steps_valid_)(activation_); }
 
 private:
-  State state_;
+  double share_ = 1;
+  double bound_ = 0;              // at nodes when the share was found [1/s2]; 0: it was not
+  std::int64_t steps_ = 0;        // since then, or since activations changed
+  std::int64_t steps_valid_ = 0;  // that the share may be relied on
+  std::vector<float> activation_;
 };
 
 }  // namespace frontalis

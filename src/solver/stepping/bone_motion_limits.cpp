@@ -32,16 +32,21 @@ double BoneMotionLimits::longest_step(const Poses& from, const Poses& to, double
 
 bool BoneMotionLimits::jumps(const Poses& from, const Poses& to, double seconds, double step) const
 {
-  const double before = state_.seconds;
-  const double time = (before > 0 ? std::min(seconds, before) : seconds) * straight_share;
+  const double time = (seconds_ > 0 ? std::min(seconds, seconds_) : seconds) * straight_share;
   double velocity = 0;  // [m/s]
   for (std::size_t b = 0; b < to.size() && time > 0; ++b)
   {
-    const RigidTransform onwards = before > 0 ? interpolate(state_.before[b], from[b], 1 + time / before) : from[b];
+    const RigidTransform onwards = seconds_ > 0 ? interpolate(before_[b], from[b], 1 + time / seconds_) : from[b];
     const RigidTransform now = interpolate(from[b], to[b], time / seconds);
     velocity = std::max(velocity, farthest_way(onwards, now, far_corner_) / time);
   }
   return velocity / shortest_edge_ * step > velocity_jump_allowed;
+}
+
+void BoneMotionLimits::moved(const Poses& from, double seconds)
+{
+  before_ = from;
+  seconds_ = seconds;
 }
 
 }  // namespace frontalis

@@ -37,43 +37,45 @@ double mode_amplitude(const Model& model)
   return 1e-3 * *std::min_element(model.spacing.begin(), model.spacing.end());
 }
 
-double HighestFrequencySearch::run(const NodalVectors& u, const Forces& forces_at, int most_iterations)
+double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
+                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
+                                 int most_iterations, NodalVectors& mode)
 {
   std::vector<double> root;  // of the inverse mass; 0: held
-  for (const double mass : mass_)
+  for (const double mass : discretisation.node_mass)
     root.push_back(1 / std::sqrt(mass));
-  for (const auto n : held_)
+  for (const auto n : discretisation.held)
     root[n] = 0;
-  if (mode_.empty())
-    mode_ = random_mode(root.size());
+  if (mode.empty())
+    mode = random_mode(root.size());
   ModeSize size;
   for (std::size_t n = 0; n < root.size(); ++n)
-    for (const double x : mode_[n])
+    for (const double x : mode[n])
       size.add(x, root[n]);
   NodalVectors moved(root.size()), present, forces;
-  forces_at(u, present);
+  internal_forces(u, present);
   const auto multiply = [&](double step)
   {
     const double scale = step / size.largest, length = std::sqrt(size.squared_length);
     for (std::size_t n = 0; n < root.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
-        moved[n][axis] = u[n][axis] + scale * root[n] * mode_[n][axis];
-    forces_at(moved, forces);
+        moved[n][axis] = u[n][axis] + scale * root[n] * mode[n][axis];
+    internal_forces(moved, forces);
     size = {};
     for (std::size_t n = 0; n < root.size(); ++n)
     {
       const double share = root[n] / (scale * length);
       for (int axis = 0; axis < 3; ++axis)
       {
-        mode_[n][axis] = share * (forces[n][axis] - present[n][axis]);
-        size.add(mode_[n][axis], root[n]);
+        mode[n][axis] = share * (forces[n][axis] - present[n][axis]);
+        size.add(mode[n][axis], root[n]);
       }
     }
     return std::sqrt(size.squared_length);
   };
-  const double squared = largest_eigenvalue(most_iterations, amplitude_, multiply);
+  const double squared = largest_eigenvalue(most_iterations, mode_amplitude(model), multiply);
   if (!std::isfinite(squared))
-    mode_.clear();
+    mode.clear();
   return squared;
 }
 

@@ -35,30 +35,11 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 
-/// Highest frequency of the assembled model by power iteration on M^-1/2 K M^-1/2, from where the latest search ended.
-/// Held nodes stay; other constraints, which could only lower the frequency, are left out. Products with K are
-/// differences of internal forces, so that every law and fibre is in them.
-class HighestFrequencySearch
-{
-public:
-  using Forces = std::function<void(const NodalVectors& displacements, NodalVectors& forces)>;
-
-  /// mass [kg], held nodes: both must outlive it.
-  HighestFrequencySearch(const std::vector<double>& mass, const std::vector<std::int32_t>& held, double amplitude)
-      : mass_(mass), held_(held), amplitude_(amplitude)
-  {
-  }
-  /// Its square [1/s2] at displacements u; not finite where forces are not.
-  double run(const NodalVectors& u, const Forces& forces, int most_iterations);
-  /// The mode; empty before the first search.
-  const NodalVectors& state() const { return mode_; }
-  void restore(const NodalVectors& mode) { mode_ = mode; }
-
-private:
-  const std::vector<double>& mass_;
-  const std::vector<std::int32_t>& held_;
-  double amplitude_;
-  NodalVectors mode_;
-};
+/// Highest frequency squared [1/s2] of the assembled model at displacements u: power iteration on M^-1/2 K M^-1/2 from
+/// `mode`, where the latest search ended; empty: it begins. Products with K are differences of internal forces, so that
+/// every law and fibre is in them. Held nodes stay; other constraints could only lower the frequency and are left out.
+double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
+                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
+                                 int most_iterations, NodalVectors& mode);
 
 }  // namespace frontalis

@@ -7,13 +7,12 @@ namespace frontalis
 
 struct TimeStepper::MotionSnapshot : Snapshot
 {
-  const TimeStepper* owner = nullptr;
+  explicit MotionSnapshot(const TimeStepper& of) : owner(&of), motion(of.motion_) {}
+
+  const TimeStepper* owner;
   Motion motion;
   TimeStepController::State time_step;
-  AssembledEstimate::State assembled;
-  BoneMotionLimits::State bones;
-  NodalVectors mode;
-  EnergyLedgerKeeper::State ledger;
+  EnergyLedger ledger;
   EffectSet running;
   std::unique_ptr<BackendState> backend;
 
@@ -21,10 +20,7 @@ struct TimeStepper::MotionSnapshot : Snapshot
   {
     motion.archive(archive);
     time_step.archive(archive);
-    assembled.archive(archive);
-    bones.archive(archive);
-    ledger.archive(archive);
-    archive(mode)(running);
+    archive(ledger)(running);
     backend->archive(archive);
   }
 };
@@ -34,17 +30,13 @@ void TimeStepper::save(std::unique_ptr<Snapshot>& to)
   auto* saved = dynamic_cast<MotionSnapshot*>(to.get());
   if (saved == nullptr || saved->owner != this)
   {
-    to = std::make_unique<MotionSnapshot>();
+    to = std::make_unique<MotionSnapshot>(*this);
     saved = static_cast<MotionSnapshot*>(to.get());
-    saved->owner = this;
   }
   saved->motion = motion_;
   saved->time_step = controller_.state();
-  saved->assembled = controller_.assembled().state();
-  saved->bones = bones_.state();
-  saved->mode = search_.state();
   if (ledger_)
-    saved->ledger = ledger_->state();
+    saved->ledger = ledger_->latest();
   saved->running = effects_.running();
   backend_->save(saved->backend);
 }
@@ -56,9 +48,6 @@ void TimeStepper::restore(const Snapshot& snapshot)
     throw Error("a snapshot of another solver: allowed are those that this one saved");
   motion_ = saved->motion;
   controller_.restore(saved->time_step);
-  controller_.assembled().restore(saved->assembled);
-  bones_.restore(saved->bones);
-  search_.restore(saved->mode);
   if (ledger_)
     ledger_->restore(saved->ledger);
   backend_->restore(*saved->backend);
@@ -88,22 +77,21 @@ void TimeStepper::unpack(const std::string& bytes)
 {
   std::unique_ptr<Snapshot> snapshot;
   save(snapshot);
-  ByteArchive archive(bytes);
-  std::string whose;
   try
   {
+    ByteArchive archive(bytes);
+    std::string whose;
     archive(whose);
-    if (whose == owner())
-      static_cast<MotionSnapshot&>(*snapshot).archive(archive);
-    if (whose == owner() && !archive.ended())
+    if (whose != owner())
+      throw Error("they are of " + whose + "; allowed is one of " + owner());
+    static_cast<MotionSnapshot&>(*snapshot).archive(archive);
+    if (!archive.ended())
       throw Error("more than a motion");
   }
   catch (const Error& error)
   {
     throw Error(std::string("bytes of a motion: ") + error.what());
   }
-  if (whose != owner())
-    throw Error("a motion of " + whose + ": allowed is one of " + owner());
   restore(*snapshot);
 }
 

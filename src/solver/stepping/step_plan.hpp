@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "solver/stepping/constraint_step.hpp"
 
@@ -32,14 +33,25 @@ struct StepPlan
   bool bound_awaited = false;             ///< run() has to return the bound of this plan, not of the plan before
   double alarming_frequency_squared = 0;  ///< a bound above it has to be followed by that of this plan [1/s2]
   Controls begin, end;                    ///< activations as fibres feel them
-  std::vector<double> relaxation;         ///< one per step: by how much viscous stresses relax after it [s], 0 in most
+  std::vector<double> relaxation;         ///< one per step: by how much viscous stresses relax after it [s]
 
   double fraction(int step) const { return (step + 1.0) / steps; }
-  void activation(int step, float* out) const;
-  ConstraintStep constraint_step(int step) const;
+  void activation(int step, float* out) const
+  {
+    const auto f = static_cast<float>(fraction(step));
+    for (std::size_t m = 0; m < begin.activation.size(); ++m)
+      out[m] = begin.activation[m] + f * (end.activation[m] - begin.activation[m]);
+  }
+  ConstraintStep constraint_step(int step) const
+  {
+    ConstraintStep now{ time + (step + 1) * dt, dt, {}, {} };
+    for (std::size_t b = 0; b < begin.bone.size(); ++b)
+    {
+      now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
+      now.bone_before.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step - 1)));
+    }
+    return now;
+  }
 };
-
-/// When viscous stresses relax within a plan: after the last step, and when they have not for `interval` [s].
-std::vector<double> relaxation_times(int steps, double dt, double interval);
 
 }  // namespace frontalis

@@ -46,12 +46,11 @@ void TimeStepController::reset()
 {
   state_ = {};
   state_.frequency_squared = rest_frequency_squared_;
-  assembled_ = {};
 }
 
 double TimeStepController::critical_step(double share) const
 {
-  return share * 2 / std::sqrt(assembled_.frequency_squared(state_.frequency_squared));
+  return share * 2 / std::sqrt(state_.assembled.frequency_squared(state_.frequency_squared));
 }
 
 double TimeStepController::safe_step() const
@@ -100,7 +99,7 @@ void TimeStepController::observe(double frequency_squared, int steps)
   if (!mutation::time_step_of_rest)
     state_.frequency_squared =
         std::max({ frequency_squared, slowest_softening * state_.frequency_squared, rest_frequency_squared_ });
-  assembled_.steps_taken(steps);
+  state_.assembled.steps_taken(steps);
 }
 
 bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)
@@ -125,7 +124,7 @@ void TimeStepController::displacements_set(double frequency_squared)
   if (std::isfinite(frequency_squared))
     state_.frequency_squared = std::max(frequency_squared, rest_frequency_squared_);
   state_.cautious_steps_left = steps_after_stiffening;
-  assembled_.discard();
+  state_.assembled.discard();
 }
 
 }  // namespace frontalis

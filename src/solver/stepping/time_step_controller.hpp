@@ -21,10 +21,12 @@ public:
     double latest_observed = 0;    ///< latest bound [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
+    AssembledEstimate assembled;
 
     void archive(ByteArchive& archive)
     {
       archive(frequency_squared)(latest_observed)(cautious_steps_left)(vibration_steps_left);
+      assembled.archive(archive);
     }
   };
   /// The next plan.
@@ -63,10 +65,9 @@ public:
   /// Back to rest.
   void reset();
 
-  AssembledEstimate& assembled() { return assembled_; }
-  const AssembledEstimate& assembled() const { return assembled_; }
   const State& state() const { return state_; }
   void restore(const State& state) { state_ = state; }
+  AssembledEstimate& assembled() { return state_.assembled; }
 
 private:
   double critical_step(double share) const;  ///< a share of it
@@ -74,7 +75,6 @@ private:
   double rest_frequency_squared_, safety_share_, fixed_step_;
   double slow_share_ = 1;
   State state_;
-  AssembledEstimate assembled_;
 };
 
 }  // namespace frontalis

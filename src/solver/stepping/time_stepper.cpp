@@ -2,6 +2,8 @@
 
 #include "frontalis/solver/rigid_motion.hpp"
 #include "solver/stepping/dynamic_relaxation.hpp"
+#include "solver/stepping/highest_frequency_search.hpp"
+#include "solver/stepping/muscle_response.hpp"
 
 #include <fmt/format.h>
 
@@ -52,9 +54,6 @@ TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSetting
       discretisation_(*model_),
       effects_(*model_),
       controller_(discretisation_.frequency_squared_max, model_->time_step_share, settings.time_step),
-      muscles_(*model_),
-      bones_(*model_),
-      search_(discretisation_.node_mass, discretisation_.held, mode_amplitude(*model_)),
       motion_(at_rest())
 {
   conditions_.damping = model_->damping;
@@ -68,11 +67,9 @@ TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSetting
 
 TimeStepper::Motion TimeStepper::at_rest() const
 {
-  Motion motion;
-  motion.controls = { std::vector<float>(model_->muscles.size(), 0),
-                      std::vector<RigidTransform>(model_->bones.size()) };
-  motion.activation = motion.controls.activation;
-  return motion;
+  const std::vector<float> relaxed(model_->muscles.size(), 0);
+  const std::vector<RigidTransform> in_place(model_->bones.size());
+  return { BoneMotionLimits(*model_), { relaxed, in_place }, relaxed };
 }
 
 void TimeStepper::renew_conditions()
@@ -87,8 +84,6 @@ void TimeStepper::reset()
   backend_->set(NodalField::displacements, {});
   motion_ = at_rest();
   controller_.reset();
-  bones_.restore({});
-  search_.restore({});
   profile_ = {};
   renew_conditions();
   open_ledger();
@@ -138,11 +133,11 @@ void TimeStepper::advance(double seconds, const Controls& target)
   const Stopwatch stopwatch(profile_.stepping);
   const double begin = motion_.time, end = begin + seconds;
   const Controls from = motion_.controls;
-  const double longest_step = bones_.longest_step(from.bone, target.bone, seconds);
-  if (bones_.jumps(from.bone, target.bone, seconds, time_step()))
+  const double longest_step = motion_.bones.longest_step(from.bone, target.bone, seconds);
+  if (motion_.bones.jumps(from.bone, target.bone, seconds, time_step()))
     controller_.bone_jumped();
   if (seconds > 0)
-    bones_.moved(from.bone, seconds);
+    motion_.bones.moved(from.bone, seconds);
   while (motion_.time < end)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
@@ -173,7 +168,7 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
     NodalVectors u;
     displacements(u);
     const auto forces_at = [this](const NodalVectors& at, NodalVectors& out) { backend_->internal_forces(&at, out); };
-    return search_.run(u, forces_at, most_iterations);
+    return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
   };
   controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
 }
@@ -187,7 +182,7 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   plan.first_kick = motion_.latest_step > 0 ? 0.5 * (motion_.latest_step + plan.dt) : plan.dt;
   plan.time = motion_.time;
   const std::vector<float> before = motion_.activation;
-  muscles_.advance(motion_.controls.activation, next.activation, plan.steps * plan.dt, motion_.activation);
+  respond(*model_, motion_.controls.activation, next.activation, plan.steps * plan.dt, motion_.activation);
   plan.begin = { effects_.felt(before), motion_.controls.bone };
   plan.end = { effects_.felt(motion_.activation), next.bone };
   conditions_.activation = plan.end.activation;
@@ -195,12 +190,16 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   plan.bound_every_step = choice.bound_every_step || switched;
   plan.bound_awaited = choice.bound_awaited || switched;
   plan.alarming_frequency_squared = controller_.alarming_frequency_squared();
-  if (effects_.running().has(Effect::viscosity))
-    plan.relaxation = relaxation_times(plan.steps, plan.dt, relaxation_interval * discretisation_.viscous_time_min);
-  plan.relaxation.resize(plan.steps, 0);
-  for (double& seconds : plan.relaxation)
-    if (settling_ && seconds > 0)
-      seconds = fully_relaxed;
+  plan.relaxation.assign(plan.steps, 0);
+  double elapsed = 0;
+  for (int step = 0; step < plan.steps && effects_.running().has(Effect::viscosity); ++step)
+  {
+    elapsed += plan.dt;
+    if (step + 1 < plan.steps && elapsed < relaxation_interval * discretisation_.viscous_time_min)
+      continue;
+    plan.relaxation[step] = settling_ ? fully_relaxed : elapsed;
+    elapsed = 0;
+  }
   return plan;
 }
 
@@ -278,7 +277,7 @@ std::vector<Allocation> TimeStepper::allocations() const
   if (skin_values_)
     skin_values_->list_allocations(list);
   discretisation_.list_allocations(list);
-  list.add(Effect::elasticity, "mode of the highest frequency", search_.state());
+  list.add(Effect::elasticity, "mode of the highest frequency", motion_.highest_mode);
   if (ledger_)
     ledger_->list_allocations(list);
   backend_->list_allocations(list);
@@ -301,7 +300,8 @@ Monitor TimeStepper::monitor()
 {
   const Stopwatch stopwatch(profile_.monitor);
   Monitor result = backend_->monitor();
-  result.step_share = motion_.latest_step * std::sqrt(controller_.assembled().share()) / result.critical_time_step;
+  result.step_share =
+      motion_.latest_step * std::sqrt(controller_.state().assembled.share()) / result.critical_time_step;
   return result;
 }
 

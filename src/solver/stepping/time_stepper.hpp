@@ -4,8 +4,6 @@
 #include "solver/skin/skin_values.hpp"
 #include "solver/stepping/bone_motion_limits.hpp"
 #include "solver/stepping/effect_switches.hpp"
-#include "solver/stepping/highest_frequency_search.hpp"
-#include "solver/stepping/muscle_response.hpp"
 #include "solver/stepping/time_step_controller.hpp"
 
 #include <functional>
@@ -52,18 +50,21 @@ public:
   std::string description() const override { return traits_.description; }
 
 private:
-  /// How far the motion has come, besides what the components and the backend know.
+  /// How far the motion has come, besides what controller, ledger and backend know.
   struct Motion
   {
+    BoneMotionLimits bones;
+    Controls controls;
+    std::vector<float> activation;
     double time = 0;         // [s]
     double latest_step = 0;  // [s]; 0: there was none
     bool diverged = false;
-    Controls controls;
-    std::vector<float> activation;
+    NodalVectors highest_mode{};  // empty until it is searched for
 
     void archive(ByteArchive& archive)
     {
-      archive(time)(latest_step)(diverged)(controls.activation)(controls.bone)(activation);
+      bones.archive(archive);
+      archive(controls.activation)(controls.bone)(activation)(time)(latest_step)(diverged)(highest_mode);
     }
   };
   struct MotionSnapshot;
@@ -84,9 +85,6 @@ private:
   EffectSwitches effects_;
   Conditions conditions_;
   TimeStepController controller_;
-  MuscleResponse muscles_;
-  BoneMotionLimits bones_;
-  HighestFrequencySearch search_;
   std::unique_ptr<StepBackend> backend_;
   BackendTraits traits_;
   std::unique_ptr<EnergyLedgerKeeper> ledger_;  // where it was asked for
