@@ -58,7 +58,7 @@ private:
   double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
   RestrictedNodes<double> restricted_;
   NodalLoads loads_;
-  Relaxed relaxed_;  // viscous stresses [Pa], one a voxel
+  Relaxed relaxed_;  // viscous stresses [Pa], one per voxel
   std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // fibres note their work
   std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last
