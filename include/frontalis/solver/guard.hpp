@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-/// What a check of the motion may find.
+/// What a check of the motion may find, in the order of words_for().
 enum class Instability
 {
   none,

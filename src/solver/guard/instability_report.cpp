@@ -100,21 +100,13 @@ std::string place(const std::array<double, 3>& at)
 
 std::string words_for(Instability instability)
 {
-  switch (instability)
-  {
-    case Instability::not_finite:
-      return "displacements are no longer finite";
-    case Instability::energy:
-      return "energy grows without a cause";
-    case Instability::hourglass:
-      return "hourglass energy grows without a cause";
-    case Instability::inverted:
-      return "voxels turn inside out";
-    case Instability::time_step:
-      return "the time step is longer than critical";
-    default:
-      return "nothing was found";
-  }
+  constexpr const char* words[] = { "nothing was found",
+                                    "displacements are no longer finite",
+                                    "energy grows without a cause",
+                                    "hourglass energy grows without a cause",
+                                    "voxels turn inside out",
+                                    "the time step is longer than critical" };
+  return words[static_cast<int>(instability)];
 }
 
 InstabilityReport describe(const Model& model, Instability kind, double time, std::int32_t voxel, double jacobian,

@@ -30,8 +30,8 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
   return eigenvalue;
 }
 
-/// A random mode to begin with, and how far nodes move for a product: large for single precision, small for the laws'
-/// curvature [m].
+/// A random mode to begin with, and the displacement for a product [m]: large enough for single precision, small
+/// against the curvature of the laws.
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 

@@ -28,7 +28,7 @@ struct BackendState
   virtual void archive(ByteArchive& archive) = 0;
 };
 
-/// What a backend is called, and the portions of work that suit it.
+/// What a backend is, and the numbers of steps that suit it.
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
@@ -49,7 +49,8 @@ struct BackendInput
   const SolverSettings& settings;  ///< the other three outlive the backend, this one does not
 };
 
-/// Takes time steps in memory of its own. It begins at rest. TimeStepper makes a Solver of it.
+/// A backend: takes time steps, with the nodes and voxels in memory of its own. It begins at rest. TimeStepper makes a
+/// Solver of it.
 class StepBackend
 {
 public:
@@ -61,11 +62,12 @@ public:
   /// Runs the plan's steps. Returns the largest frequency bound squared [1/s2] that was found in them, NaN where
   /// displacements are not finite; or, where the plan allows it, the bound of the plan before.
   virtual double run(const StepPlan& plan) = 0;
-  /// After Conditions::running and the discretisation's bounds have changed: the effect that comes back has no history.
+  /// To be called after Conditions::running and the discretisation's bounds have changed. An effect that comes back has
+  /// no history.
   virtual void effect_switched(Effect effect) = 0;
 
   virtual void get(NodalField field, NodalVectors& out) const = 0;
-  /// Setting displacements brings all else to rest; no values stand for zeros.
+  /// Setting displacements brings everything else to rest. An empty list stands for zeros.
   virtual void set(NodalField field, const NodalVectors& in) = 0;
   /// `to` may hold an earlier state of this backend, whose memory is used again.
   virtual void save(std::unique_ptr<BackendState>& to) const = 0;

@@ -6,19 +6,19 @@
 namespace frontalis
 {
 
-/// Chooses the length of steps, and how many of them are taken until the frequency bound is looked at again. It sees
-/// nothing but the bounds that are observed, activations, and what it is told of bones.
+/// Chooses the length of steps, and the number of steps until the frequency bound is found again. It is told the bounds
+/// that a backend finds, activations, and when bones jump; it knows neither model nor backend.
 ///
-/// Just below the critical step, what stiffens as it vibrates gains or loses energy in every swing. So after signs of
-/// fast change it is cautious for some steps: they are shorter, plans are short, and every step is looked at. Of what
-/// merely vibrates, stiff as it has become, steps are shorter and plans at most 32 steps long.
+/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. So the
+/// controller is cautious for some steps after signs of fast change: steps are shorter, plans have few steps, and every
+/// step's bound is found. While tissue that has stiffened vibrates, steps are shorter and plans not long.
 class TimeStepController
 {
 public:
   struct State
   {
-    double frequency_squared = 0;  ///< bound at nodes that is gone by [1/s2]
-    double latest_observed = 0;    ///< latest bound [1/s2]
+    double frequency_squared = 0;  ///< bound at nodes that steps are chosen by [1/s2]
+    double latest_observed = 0;    ///< latest bound that a backend found [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
     AssembledEstimate assembled;
@@ -39,24 +39,25 @@ public:
     bool bound_awaited;     ///< as in StepPlan
   };
 
-  /// `safety_share`: of the critical step that is taken; `fixed_step` [s]: taken instead, 0: none. Throws Error where
-  /// that is above the critical step at rest.
+  /// Steps take `safety_share` of the critical step, or `fixed_step` [s] if that is not 0. Throws Error if the fixed
+  /// step is above the critical one at rest.
   TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step);
 
-  /// Largest step [s] that would be taken now if nothing called for caution.
+  /// Longest step [s] that would be taken now if nothing called for caution.
   double safe_step() const;
   /// At most this share of the safe step is taken from now on. Throws Error.
   void slow_down(double share);
   /// Bound above which a plan's own bound has to be awaited [1/s2].
   double alarming_frequency_squared() const;
-  /// For a motion that ends after `remaining` [s]; steps are no longer than `longest` [s].
+  /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
   Choice choose(double remaining, double longest, const BackendTraits& backend) const;
 
   /// After a plan: the largest bound that was found in it, or in the one before.
   void observe(double frequency_squared, int steps);
-  /// Whether muscles are switched between these activations: they stiffen their voxels, and so does a little later what
-  /// they draw.
+  /// Returns whether a muscle is switched between these activations, and is cautious then: its voxels stiffen at once,
+  /// and a little later those that it pulls on.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
+  /// The velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
   /// Displacements were set from outside, where the bound at nodes is this [1/s2].
   void displacements_set(double frequency_squared);

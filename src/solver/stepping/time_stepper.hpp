@@ -11,7 +11,8 @@
 namespace frontalis
 {
 
-/// The Solver: plans a motion step by step, from what its components say, and has a backend take the steps.
+/// The Solver of every backend: plans a motion in parts of equal steps, as its components advise, and has the backend
+/// take them.
 class TimeStepper final : public Solver
 {
 public:
