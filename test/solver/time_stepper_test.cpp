@@ -19,7 +19,8 @@ struct Script
   std::vector<Effect> switched;
   std::vector<double> damping;  // of each plan
   double bound = 0;             // frequency squared [1/s2]
-  int begun = 0;                // how often it was set to rest
+  double velocity = 0;          // of all nodes, along z [m/s]
+  Work work;
 };
 
 struct ScriptState : BackendState
@@ -50,8 +51,11 @@ public:
     return script_.bound;
   }
   void effect_switched(Effect effect) override { script_.switched.push_back(effect); }
-  void get(NodalField, NodalVectors& out) const override { out.assign(model_->nodes.size(), {}); }
-  void set(NodalField, const NodalVectors&) override { ++script_.begun; }
+  void get(NodalField field, NodalVectors& out) const override
+  {
+    out.assign(model_->nodes.size(), { { 0, 0, field == NodalField::velocities ? script_.velocity : 0 } });
+  }
+  void set(NodalField, const NodalVectors& in) override { script_.velocity = in.empty() ? 0 : in[0][2]; }
   void save(std::unique_ptr<BackendState>& to) const override
   {
     auto state = std::make_unique<ScriptState>();
@@ -64,9 +68,11 @@ public:
   {
     Monitor monitor;
     monitor.critical_time_step = 2 / std::sqrt(script_.bound);
+    monitor.internal = 3;
+    monitor.hourglass = 2;
     return monitor;
   }
-  Work work(bool) override { return {}; }
+  Work work(bool open) override { return script_.work = open ? Work{} : script_.work; }
   void skin(SkinState& out) override { out = {}; }
 
 private:
@@ -211,4 +217,30 @@ TEST(TimeStepper, takes_back_only_its_own_motions)
   std::unique_ptr<Snapshot> snapshot;
   one.solver.save(snapshot);
   EXPECT_THROW(other.solver.restore(*snapshot), Error);
+}
+
+TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_backend_notes)
+{
+  SolverSettings settings;
+  settings.ledger = true;
+  Stepped s(model_of(), settings);
+  EXPECT_EQ(s.solver.ledger().imbalance(), 0);
+  EXPECT_THROW(Stepped().solver.ledger(), Error);
+
+  s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; to friction, damping, viscosity
+  const EnergyLedger now = s.solver.ledger();
+  // velocities stand half a step before displacements, and gravity changes them within the step
+  const double mass = 1000 * 64e-9;
+  EXPECT_NEAR(now.kinetic, 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
+  EXPECT_NEAR(now.initial, now.kinetic + 3 + 2, 1e-12);
+  EXPECT_EQ(now.internal, 3);
+  EXPECT_EQ(now.hourglass, 2);
+  EXPECT_EQ(now.gravity, 0) << "nothing has moved";
+  EXPECT_EQ(now.muscle, 11);
+  EXPECT_NEAR(now.load, 7, 1e-12);
+  EXPECT_EQ(now.constraint, 5 + 1) << "without friction";
+  EXPECT_EQ(now.friction, 1);
+  EXPECT_EQ(now.largest, 11);
+  EXPECT_NEAR(now.imbalance(), 2 + 3 + 1 - 11 - 7 - 6, 1e-12);
 }
