@@ -1,14 +1,14 @@
 #include "cuda/backend/cuda_solver.hpp"
 
-#include "cuda/backend/cuda_backend.hpp"
+#include "cuda/backend/device_code.hpp"
 #include "cuda/backend/highest_frequency.hpp"
 #include "cuda/backend/launch_choice.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/time_stepper.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstring>
 
 namespace frontalis
@@ -16,12 +16,14 @@ namespace frontalis
 namespace cuda
 {
 
-CudaSolver::CudaSolver(const BackendInput& input)
+CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     : StepBackend(input),
+      remark_(remark.empty() ? "" : "; " + remark),
       device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {
+  launch_ = choose_launch(device_);
   for (auto& buffer : u_)
     buffer = DeviceArray<float4>(device_.nodes());
   for (auto& component : v_)
@@ -48,9 +50,6 @@ CudaSolver::CudaSolver(const BackendInput& input)
     slot.seen.data()[0] = 0;
     require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
   }
-  if (model_->muscles.size() > most_muscles)
-    throw Error(fmt::format("backend cuda: {} muscles; allowed are {}", model_->muscles.size(), int{ most_muscles }));
-  launch_ = choose_launch(device_);
   if (input.settings.ledger)
   {
     account_ = std::make_unique<DeviceAccount>(*model_, device_);
@@ -113,7 +112,7 @@ void CudaSolver::effect_switched(Effect effect)
     device_.viscosity().reset();
   if (effect == Effect::sliding || effect == Effect::friction)
     device_.reset_contacts();
-  // what the plans under way saw is of no use any more
+  // the bounds that plans under way will report are those of other effects
   plans_ = 0;
 }
 
@@ -208,10 +207,10 @@ void CudaSolver::skin(SkinState& out)
   take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
 }
 
-// Long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
-// enough. Contacts that are found from plan to plan want plans just as long as it takes to find them. Looks at all
-// displacements and checks wait for the device: some 40 us, where a step of a small model takes 2. The host's look at
-// millions of nodes takes as long as some hundred of their steps.
+// Long plans hide the work between them, but the time step must follow a tissue that stiffens: half a millisecond is
+// short enough. Searches that run beside a plan take about 64 steps. Looks at all displacements and checks wait for the
+// device, which takes some 40 us; a step of a small model takes 2 us. The host's look at millions of nodes takes as
+// long as a hundred steps.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
@@ -220,7 +219,7 @@ BackendTraits CudaSolver::traits() const
                               ? fmt::format("{} patches", device_.patches())
                               : fmt::format("{} strips, {:.0f} % filled", device_.strips(), 100 * device_.filled());
   BackendTraits traits;
-  traits.description = fmt::format("cuda (float, {}, {})", device.name, cut);
+  traits.description = fmt::format("cuda (float, {}, {}{})", device.name, cut, remark_);
   traits.seconds_per_plan = 0.5e-3;
   traits.fewest_steps_per_plan = 32;
   traits.most_steps_per_plan = device_.contacts() > 0 ? 64 : 128;
@@ -231,25 +230,41 @@ BackendTraits CudaSolver::traits() const
 
 }  // namespace cuda
 
-std::string missing_cuda_device()
+namespace
+{
+
+std::string missing_device()
 {
   int count = 0;
-  const cudaError_t status = cudaGetDeviceCount(&count);
-  if (status != cudaSuccess)
-  {
-    cudaGetLastError();
-    return cudaGetErrorString(status);
-  }
-  return count > 0 ? std::string() : "no CUDA device found";
+  const cudaError_t found = cudaGetDeviceCount(&count);
+  const cudaError_t usable = found == cudaSuccess && count > 0 ? cuda::has_device_code() : found;
+  cudaGetLastError();
+  if (found != cudaSuccess)
+    return cudaGetErrorString(found);
+  if (count == 0)
+    return "no CUDA device found";
+  if (usable == cudaSuccess)
+    return {};
+  cudaDeviceProp device{};
+  if (cudaGetDeviceProperties(&device, 0) != cudaSuccess)
+    return cudaGetErrorString(usable);
+  return fmt::format("this build has no code for {} of compute capability {}.{} ({})", device.name, device.major,
+                     device.minor, cudaGetErrorString(usable));
 }
 
-std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                         const std::string& remark)
 {
-  const std::string missing = missing_cuda_device();
-  if (!missing.empty())
-    throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
-  return std::make_unique<TimeStepper>(
-      std::move(model), settings, [](const BackendInput& input) { return std::make_unique<cuda::CudaSolver>(input); });
+  if (model->muscles.size() > most_muscles)
+    throw BackendUnavailable(
+        fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
+  return std::make_unique<TimeStepper>(std::move(model), settings,
+                                       [&](const BackendInput& input)
+                                       { return std::make_unique<cuda::CudaSolver>(input, remark); });
 }
+
+}  // namespace
+
+BackendDescription cuda_backend() { return { "cuda", make_cuda_solver, missing_device }; }
 
 }  // namespace frontalis

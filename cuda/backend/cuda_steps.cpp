@@ -1,5 +1,6 @@
 #include "cuda/backend/cuda_solver.hpp"
 
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace frontalis
 namespace cuda
 {
 
-// A plane is found in some ten microseconds: longer leads miss more often where nodes will be.
+// How many steps before a node leaves its tangent plane it asks for another. A search takes about ten microseconds;
+// with a longer lead the predicted position is wrong more often.
 constexpr double steps_of_lead = 10;
 
 void CudaSolver::kick(StepArguments& g, double seconds) const
@@ -19,7 +21,8 @@ void CudaSolver::kick(StepArguments& g, double seconds) const
   g.keep = static_cast<float>(conditions_.keep(seconds));
   g.gain = static_cast<float>(conditions_.gain(seconds));
   for (int axis = 0; axis < 3; ++axis)
-    g.impulse[axis] = static_cast<float>(conditions_.gain(seconds) * conditions_.gravity[axis]);
+    g.impulse[axis] =
+        mutation::no_gpu_gravity ? 0 : static_cast<float>(conditions_.gain(seconds) * conditions_.gravity[axis]);
 }
 
 StepArguments CudaSolver::arguments(double dt) const
@@ -41,8 +44,8 @@ StepArguments CudaSolver::arguments(double dt) const
   return g;
 }
 
-// look (cleared), activations, poses, seconds by which viscous stresses relax within launches (none of them: empty):
-// one copy through page-locked memory
+// Copies frequency bound (cleared), activations, poses and relaxation times of viscous stresses (empty where they do
+// not relax within launches) to the device at once, through page-locked memory.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -93,7 +96,7 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-// as many steps in one launch as nothing has to be done between them
+// One launch for all steps where nothing has to be done between them, else one per step.
 void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
@@ -119,7 +122,7 @@ double CudaSolver::run(const StepPlan& plan)
   g.look_always = plan.bound_every_step;
   const bool relaxes = !device_.viscosity().idle();
   const std::vector<double> elapsed = relaxes ? plan.relaxation : std::vector<double>(plan.steps, 0);
-  // patches relax their viscous stresses themselves, where nobody asks for their work
+  // patches relax their viscous stresses within launches, unless the ledger needs the work
   std::vector<float> relaxation;
   if (launch_.patches && !account_ && relaxes)
   {
@@ -133,7 +136,7 @@ double CudaSolver::run(const StepPlan& plan)
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
   const bool from_plan_to_plan = g.searches > 0;
-  // in patches nodes that have planes find others within steps
+  // in patches only the first plan needs this: later planes are found within launches
   if (from_plan_to_plan || plans_ == 0)
     require(launch_renewals(g, stream_), "renewing contacts");
   if (from_plan_to_plan)
@@ -180,14 +183,14 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // the plan before, so that the device is never without work; its own where there is none or motion changes fast
+  // waits for the plan before, so that the device always has work; for its own where the motion changes fast
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
   return before > plan.alarming_frequency_squared ? seen(plans_ - 1) : before;
 }
 
-// internal forces at other displacements; `out` must hold zeros where no voxel is
+// Internal forces at any displacements; `out` must hold zeros for nodes without voxels.
 void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
 {
   StepArguments g = arguments(0);

@@ -94,7 +94,7 @@ std::vector<double> masses(const Model& model)
 
 double critical_step(const Model& model)
 {
-  return make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 })->monitor().critical_time_step;
+  return make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 })->monitor().critical_time_step;
 }
 
 // with voxels of another material where it is asked for

@@ -1,6 +1,7 @@
 #include "solver/cpu/cpu_solver.hpp"
 
 #include "frontalis/physics/viscosity.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "solver/skin/bound_points.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
@@ -189,6 +190,9 @@ void CpuSolver<Real>::skin(SkinState& out)
 template class CpuSolver<float>;
 template class CpuSolver<double>;
 
+namespace
+{
+
 std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                         const std::string& remark)
 {
@@ -200,5 +204,9 @@ std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, cons
   };
   return std::make_unique<TimeStepper>(std::move(model), settings, make_backend);
 }
+
+}  // namespace
+
+BackendDescription cpu_backend() { return { "cpu", make_cpu_solver }; }
 
 }  // namespace frontalis

@@ -72,7 +72,4 @@ private:
   Components moved_;                         // displacements that are not the state's; likewise
 };
 
-std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
-                                        const std::string& remark = {});
-
 }  // namespace frontalis

@@ -1,6 +1,7 @@
 #include "solver/reference/reference_solver.hpp"
 
 #include "frontalis/physics/time_step.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "solver/energy/voxel_monitor.hpp"
 #include "solver/skin/bound_points.hpp"
 #include "solver/stepping/effect_switches.hpp"
@@ -202,10 +203,18 @@ double ReferenceSolver::run(const StepPlan& plan)
   return worst;
 }
 
-std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+namespace
+{
+
+std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                              const std::string& /*remark*/)
 {
   return std::make_unique<TimeStepper>(
       std::move(model), settings, [](const BackendInput& input) { return std::make_unique<ReferenceSolver>(input); });
 }
+
+}  // namespace
+
+BackendDescription reference_backend() { return { "reference", make_reference_solver }; }
 
 }  // namespace frontalis

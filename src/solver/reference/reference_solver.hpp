@@ -65,6 +65,4 @@ private:
   std::vector<double> stiffness_;                    // bound of each voxel at the forces computed last [N/m]
 };
 
-std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings);
-
 }  // namespace frontalis
