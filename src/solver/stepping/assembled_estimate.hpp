@@ -14,8 +14,8 @@ namespace frontalis
 class AssembledEstimate
 {
 public:
-  /// Frequency squared to go by where the bound at nodes is this: what softens where that bound is set need not soften
-  /// in the assembled model.
+  /// Estimate of the highest frequency squared where the bound at nodes is this. It does not fall with the bound: the
+  /// node that sets the bound may soften while the rest of the model does not.
   double frequency_squared(double bound) const;
   /// Of the bound, both squared; 1 where nothing is known.
   double share() const { return share_; }

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// All of these were chosen so that the cases of doc/stability.md keep their energy explained.
+// These numbers are empirical: the hard cases of doc/stability.md hold with them.
 constexpr double cautious_share = 0.55;  // of the critical step, instead of the safety share
 constexpr int cautious_plan = 8;         // steps
 constexpr int vibration_plan = 32;       // steps at most
@@ -23,11 +23,11 @@ constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // of a muscle within a plan
 constexpr int steps_after_a_switch = 48;
 constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
-// What is much stiffer than at rest and changes, vibrates; what a contraction stiffens slowly does not.
+// Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens it slowly.
 constexpr double stiffening_ratio = 4;     // of the frequency squared against rest
 constexpr double vibration_change = 0.05;  // of the frequency squared from one plan to the next
 constexpr int steps_after_vibration = 256;
-// What softens is believed slowly: it may stiffen again before the next plan, and each change of the step costs
+// Softening is followed slowly: tissue may stiffen again before the next plan, and each change of the step costs
 // accuracy.
 constexpr double slowest_softening = 0.95;  // of the frequency squared from one plan to the next
 
