@@ -1,5 +1,5 @@
 #include "cuda/backend/device_memory.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>

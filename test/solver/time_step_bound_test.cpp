@@ -2,6 +2,7 @@
 #include "block_model.hpp"
 #include "true_frequency.hpp"
 
+#include "frontalis/physics/materials/all.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ Model random_mixture(std::mt19937& random)
   }
   if (share(random) < 0.3)
   {
-    model.materials[1].law = Law::fung;
+    model.materials[1].law = law_of<physics::FungExponential>;
     model.materials[1].parameters[2] = 2;
   }
   if (share(random) < 0.3)

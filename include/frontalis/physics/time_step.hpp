@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 
 namespace frontalis
 {
@@ -41,11 +41,11 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 /// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
 /// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
 ///
-/// Second derivatives of the neo-Hookean energy (physics/neo_hookean.hpp) are bounded term by term, the volumetric
-/// part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. The nominal
-/// stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J with f
-/// and |cof F| = sqrt(3 along). At full activation they stay below what is counted at rest (muscle_fibre.hpp) times the
-/// larger of J and sqrt(along I1 / 3).
+/// Second derivatives of the neo-Hookean energy (physics/materials/neo_hookean.hpp) are bounded term by term, the
+/// volumetric part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. The
+/// nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J
+/// with f and |cof F| = sqrt(3 along). At full activation they stay below what is counted at rest (muscle_fibre.hpp)
+/// times the larger of J and sqrt(along I1 / 3).
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)

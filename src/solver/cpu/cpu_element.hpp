@@ -4,7 +4,7 @@
 #include "frontalis/physics/assumed_strain.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "frontalis/physics/selective_reduced.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "frontalis/physics/viscosity.hpp"

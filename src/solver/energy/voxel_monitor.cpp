@@ -1,7 +1,7 @@
 #include "solver/energy/voxel_monitor.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "frontalis/physics/selective_reduced.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "solver/material_laws.hpp"

@@ -1,7 +1,7 @@
 #include "solver/reference/voxel_stress.hpp"
 
 #include "frontalis/physics/muscle_fibre.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "solver/material_laws.hpp"
 
 namespace frontalis

@@ -1,6 +1,6 @@
 // forces of the element and the laws: what must hold to the last digit
 
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
 
@@ -67,20 +67,16 @@ Gradient piola_stress(const Model& model, Solver& solver)
 
 std::vector<std::pair<std::string, Material>> every_law()
 {
-  const double kappa = bulk_modulus(young, poisson);
   std::vector<std::pair<std::string, Material>> laws{ { "neo-Hookean", neo_hookean(young, poisson) } };
-  const auto add = [&](const std::string& name, Law law, const std::array<double, 11>& parameters)
-  {
-    Material material = laws.front().second;
-    material.law = law;
-    material.parameters = parameters;
-    laws.emplace_back(name, material);
-  };
-  add("Mooney-Rivlin", Law::mooney_rivlin, { { 4e3, kappa, 1e3 } });
-  add("Ogden", Law::ogden, { { 6e3, kappa, 2.5, -2e3, -2 } });
-  add("Fung", Law::fung, { { 8e3, kappa, 1.5 } });
-  add("Holzapfel-Gasser-Ogden", Law::holzapfel, { { 5e3, kappa, 6e3, 0.8, 0.1, 0.8, 0.6, 0, 0.8, -0.6, 0 } });
-  add("Guccione", Law::guccione, { { 2e3, kappa, 8, 2, 4, 0.8, 0.6, 0 } });
+  for (const Law law : physics::every_law)
+    if (law != Law::neo_hookean)
+    {
+      Material material = laws.front().second;
+      material.law = law;
+      material.parameters = physics::example_of(law);
+      material.parameters[physics::bulk_modulus_slot] = bulk_modulus(young, poisson);
+      laws.emplace_back(physics::description_of(law).title, material);
+    }
   return laws;
 }
 
