@@ -79,7 +79,7 @@ double guard_share(Solver& solver, double step)
     solver.monitor();
   };
   check();
-  return times_of(check)[2] / (solver.steps_a_check() * step);
+  return times_of(check)[2] / (solver.steps_per_check() * step);
 }
 
 // the time that the CPU takes to look for the time step, once in 32 steps, over that of the steps: motions of one step
