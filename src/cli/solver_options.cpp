@@ -16,7 +16,7 @@ void add_backend_option(CLI::App& command, std::string& backend, std::vector<std
 std::vector<std::string> named_backends()
 {
   std::vector<std::string> names = backend_names();
-  names.erase(std::remove(names.begin(), names.end(), name_of("auto")), names.end());
+  names.erase(std::remove(names.begin(), names.end(), "auto"), names.end());
   return names;
 }
 
