@@ -16,10 +16,7 @@ constexpr double steps_of_lead = 10;
 void CudaSolver::kick(StepArguments& g, double seconds) const
 {
   g.kick = seconds;
-  g.keep = static_cast<float>(keep(seconds));
-  g.gain = static_cast<float>(gain(seconds));
-  for (int axis = 0; axis < 3; ++axis)
-    g.impulse[axis] = static_cast<float>(gain(seconds) * gravity_[axis]);
+  static_cast<physics::Kick<float>&>(g) = physics::kick_of<float>(damping_, seconds, gravity_);
 }
 
 StepArguments CudaSolver::arguments(double dt) const

@@ -33,7 +33,7 @@ FRONTALIS_LAW IsotropicStress<T> stress(const NeoHookean<T>& material, const Kin
   return { material.mu * g.value, N::of(0.5) * material.mu * g.slope * k.I1 + material.kappa * k.dilatation };
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
 FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
