@@ -123,7 +123,10 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
   const ElementVoxel<With> voxel{
     { g, place.palette, place.viscous - 1, __ldg(g.palette + place.palette) }, place, activation, relaxes
   };
-  physics::element_forces(voxel, mode, look && place.palette != 0, stiffness);
+  const auto P = physics::element_stress(voxel, mode, look && place.palette != 0, stiffness);
+#pragma unroll
+  for (int c = 0; c < 3; ++c)
+    physics::stress_forces(voxel, P, c, mode[c]);
 }
 
 /// Bits of a number that is not negative: they have the order of the numbers, and those of NaN are above all.

@@ -181,6 +181,7 @@ struct CpuElement
   {
     static constexpr bool assumed_strain() { return Form == Stabilisation::assumed_strain; }
     static constexpr bool selective_reduced() { return Form == Stabilisation::selective_reduced; }
+    FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // in add_forces()
   };
 
   /// Calls visit() with the batches of a plane's tiles that hold voxels, as Voxels or VoxelsOf.
@@ -269,7 +270,10 @@ struct CpuElement
       }
     for (int c = 0; c < 3; ++c)
     {
-      physics::finish_forces(at, P, hourglass, c, mode[c]);
+      // one component after the other, so that it stays in registers
+      if (Form == Stabilisation::scalar)
+        physics::scalar_hourglass(hourglass, mode[c]);
+      physics::stress_forces(at, P, c, mode[c]);
       physics::walsh_hadamard_transposed(mode[c]);
       for (int r = 0; r < 4; ++r)
       {

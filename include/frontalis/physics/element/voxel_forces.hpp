@@ -35,9 +35,19 @@ FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, 
       mode[c][m] = force[c][m];
 }
 
+/// Replaces the hourglass modes of one component by the forces on them, for scalar hourglass control.
+template <class T>
+FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
+{
+  for (int m = 0; m < 8; ++m)
+    if (is_hourglass_mode(m))
+      mode[m] = stiffness * mode[m];
+}
+
 /// Stress of a voxel at its centre, from all its effects; an effect that changes it has its line here. Modes that have
-/// more than scalar hourglass control are replaced by the forces on them. stiffness: 0 before; where `look` asks for
-/// it, the bound of the largest eigenvalue of the stiffness now [N/m].
+/// more than scalar hourglass control are replaced by the forces on them; for the others the voxel calls
+/// scalar_hourglass() now or, where one component at a time is faster, before stress_forces(). stiffness: 0 before;
+/// where `look` asks for it, the bound of the largest eigenvalue of the stiffness now [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
 {
@@ -56,14 +66,15 @@ FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], boo
     hourglass_forces(voxel.stabilisation(), voxel.hourglass(), voxel.hourglass_weight(), k.F, mode, P);
   else if (reduced)
     voxel.gauss_forces(mode, look, stiffness);
+  else
+    voxel.scalar_hourglass(mode);
   return P;
 }
 
-/// What remains after element_stress() to replace the modes of one component by the forces on them [N]: the force of
-/// the stress, and scalar hourglass control.
+/// Replaces the gradients of one component by the forces of the stress [N]; after element_stress(). With that the modes
+/// are the forces conjugate to the transformed displacements.
 template <class Voxel, class T>
-FRONTALIS_LAW void finish_forces(const Voxel& voxel, const Matrix3<T>& P, const T& hourglass, int component,
-                                 T (&mode)[8])
+FRONTALIS_LAW void stress_forces(const Voxel& voxel, const Matrix3<T>& P, int component, T (&mode)[8])
 {
   mode[0] = Number<T>::of(0);
   for (int j = 0; j < 3; ++j)
@@ -72,19 +83,6 @@ FRONTALIS_LAW void finish_forces(const Voxel& voxel, const Matrix3<T>& P, const 
     T& to = mode[gradient_mode(j)];
     to = voxel.selective_reduced() ? to + force : force;
   }
-  if (!voxel.assumed_strain() && !voxel.selective_reduced())
-    for (int m = 0; m < 8; ++m)
-      if (is_hourglass_mode(m))
-        mode[m] = hourglass * mode[m];
-}
-
-/// Replaces the transformed displacements of a voxel by the forces conjugate to them [N].
-template <class Voxel, class T>
-FRONTALIS_LAW void element_forces(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
-{
-  const Matrix3<T> P = element_stress(voxel, mode, look, stiffness);
-  for (int c = 0; c < 3; ++c)
-    finish_forces(voxel, P, voxel.hourglass(), c, mode[c]);
 }
 
 }  // namespace physics

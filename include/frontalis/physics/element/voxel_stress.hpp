@@ -29,7 +29,7 @@ namespace physics
 //
 // These decide whether the effect is there at all and whether its code stands in line; each calls the function of this
 // folder that has its name: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),
-// stiffness_now(k), gauss_forces(mode, look, stiffness).
+// stiffness_now(k), gauss_forces(mode, look, stiffness), scalar_hourglass(mode).
 
 /// Adds the stress of the laws beyond neo-Hookean.
 template <class Voxel, class T>
