@@ -49,7 +49,7 @@ inline double largest_eigenvalue(const std::vector<std::vector<double>>& K)
 inline double true_over_bound(const Model& model, const Vectors& u, const std::vector<double>& mass,
                               const std::vector<std::size_t>& free)
 {
-  const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 });
+  const auto solver = make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 });
   solver->advance(1e-12, { std::vector<float>(model.muscles.size(), 1), {} });
   solver->set_displacements(u);
   const double critical = solver->monitor().critical_time_step;

@@ -6,10 +6,10 @@ namespace frontalis
 namespace cuda
 {
 
-// What the latest plan saw of the time step rules the plan after the next: it belongs to the motion.
+// The bounds that the latest plans saw limit the steps of later plans, so they are part of the motion.
 struct CudaSolver::Kept : SteppingSolver::Fields
 {
-  cudaStream_t stream = nullptr;  // which fills it
+  cudaStream_t stream = nullptr;  // on which it is filled
   DeviceArray<float4> u;
   DeviceArray<float> v[3];
   DeviceModel::Contacts contacts;

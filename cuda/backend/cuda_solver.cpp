@@ -1,10 +1,12 @@
 #include "cuda/backend/cuda_solver.hpp"
 
-#include "cuda/backend/cuda_backend.hpp"
+#include "cuda/backend/device_code.hpp"
 #include "cuda/backend/highest_frequency.hpp"
 #include "cuda/backend/launch_choice.hpp"
+#include "frontalis/solver/backend.hpp"
 
-#include <cmath>
+#include <fmt/format.h>
+
 #include <cstring>
 
 namespace frontalis
@@ -12,12 +14,14 @@ namespace frontalis
 namespace cuda
 {
 
-CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark)
     : SteppingSolver(std::move(model), settings),
+      remark_(remark.empty() ? "" : "; " + remark),
       device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {
+  launch_ = choose_launch(device_);
   for (auto& buffer : u_)
     buffer = DeviceArray<float4>(device_.nodes());
   for (auto& component : v_)
@@ -44,10 +48,6 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
     slot.seen.data()[0] = 0;
     require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
   }
-  if (model_->muscles.size() > most_muscles)
-    throw Error("backend cuda: " + std::to_string(model_->muscles.size()) + " muscles; allowed are " +
-                std::to_string(most_muscles));
-  launch_ = choose_launch(device_);
   if (wants_ledger_)
   {
     account_ = std::make_unique<DeviceAccount>(*model_, device_);
@@ -112,7 +112,7 @@ void CudaSolver::effect_switched(Effect effect)
     device_.viscosity().reset();
   if (effect == Effect::sliding || effect == Effect::friction)
     device_.reset_contacts();
-  // what the plans under way saw is of no use any more
+  // the bounds that plans under way will report are those of other effects
   plans_ = 0;
 }
 
@@ -217,36 +217,51 @@ std::string CudaSolver::description() const
 {
   cudaDeviceProp device{};
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
-  return std::string("cuda (float, ") + device.name + ", " +
-         (launch_.patches ? std::to_string(device_.patches()) + " patches"
-                          : std::to_string(device_.strips()) + " strips, " +
-                                std::to_string(std::lround(100 * device_.filled())) + " % filled") +
-         computes_all() + ")";
+  return fmt::format("cuda (float, {}, {}{})", device.name,
+                     launch_.patches
+                         ? fmt::format("{} patches", device_.patches())
+                         : fmt::format("{} strips, {:.0f} % filled", device_.strips(), 100 * device_.filled()),
+                     remark_);
 }
 
 }  // namespace cuda
 
-std::string missing_cuda_device()
+namespace
+{
+
+std::string missing_device()
 {
   int count = 0;
-  const cudaError_t status = cudaGetDeviceCount(&count);
-  if (status != cudaSuccess)
-  {
-    cudaGetLastError();
-    return cudaGetErrorString(status);
-  }
-  return count > 0 ? std::string() : "no CUDA device found";
+  const cudaError_t found = cudaGetDeviceCount(&count);
+  const cudaError_t usable = found == cudaSuccess && count > 0 ? cuda::has_device_code() : found;
+  cudaGetLastError();
+  if (found != cudaSuccess)
+    return cudaGetErrorString(found);
+  if (count == 0)
+    return "no CUDA device found";
+  if (usable == cudaSuccess)
+    return {};
+  cudaDeviceProp device{};
+  if (cudaGetDeviceProperties(&device, 0) != cudaSuccess)
+    return cudaGetErrorString(usable);
+  return fmt::format("this build has no code for {} of compute capability {}.{} ({})", device.name, device.major,
+                     device.minor, cudaGetErrorString(usable));
 }
 
-std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                         const std::string& remark)
 {
-  const std::string missing = missing_cuda_device();
-  if (!missing.empty())
-    throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
-  auto solver = std::make_unique<cuda::CudaSolver>(std::move(model), settings);
+  if (model->muscles.size() > most_muscles)
+    throw BackendUnavailable(
+        fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
+  auto solver = std::make_unique<cuda::CudaSolver>(std::move(model), settings, remark);
   if (settings.ledger)
     solver->reset();
   return solver;
 }
+
+}  // namespace
+
+BackendDescription cuda_backend() { return { "cuda", make_cuda_solver, missing_device }; }
 
 }  // namespace frontalis

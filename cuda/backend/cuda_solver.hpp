@@ -13,7 +13,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// One plan's worth of controls on its way to the device, and what is seen at its end.
+/// The controls of one plan on their way to the device, and the frequency bound that its last step reports.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -22,12 +22,13 @@ struct PlanSlot
   cudaEvent_t done = nullptr;
 };
 
-/// Float, on one NVIDIA GPU. Steps are queued and not waited for: what a plan's last step saw of the time step rules
-/// the plan after the next, and the host waits only for that and where it asks for results.
+/// Single precision, on one NVIDIA GPU. Steps are queued without waiting for them: the frequency bound that a plan's
+/// last step reports limits the plan after the next. The host waits only for that bound and for results that it asks
+/// for.
 class CudaSolver : public SteppingSolver
 {
 public:
-  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings);
+  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark);
   ~CudaSolver() override;
 
   void skin(SkinState& out) override;
@@ -35,7 +36,7 @@ public:
   void set_displacements(const Vectors& in) override;
   void set_velocities(const Vectors& in) override;
   void internal_forces(Vectors& out) override { forces(u_[present_].data(), out); }
-  /// Both wait for the device: some 40 us, where a step of a small model takes 2.
+  /// monitor() and save() wait for the device, which takes some 40 us; a step of a small model takes 2 us.
   int steps_a_check() const override { return 2048; }
   std::string description() const override;
 
@@ -44,7 +45,7 @@ protected:
   void save_fields(std::unique_ptr<Fields>& to) const override;
   void restore_fields(const Fields& from) override;
   int steps_a_plan() const override;
-  /// The host's look at millions of nodes takes as long as some hundred of their steps.
+  /// The host's look at millions of nodes takes as long as a hundred steps.
   int steps_a_look() const override { return model_->nodes.size() > 1000000 ? 2048 : 512; }
   void rest() override;
   void effect_switched(Effect effect) override;
@@ -78,6 +79,7 @@ private:
     void operator()(Mode* mode) const;
   };
 
+  const std::string remark_;  // of the description
   DeviceModel device_;
   DeviceArray<float4> u_[2];
   DeviceArray<float> v_[3];
@@ -85,18 +87,18 @@ private:
   DeviceArray<float> skin_output_;  // vertices, normals, landmarks
   PinnedArray<float> skin_staged_;
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
-  std::uint32_t steps_before_ = 0;    // steps that the device was asked for
+  std::uint32_t steps_before_ = 0;    // steps queued since the solver was made
   cudaStream_t stream_ = nullptr;
-  cudaStream_t beside_ = nullptr;  // what runs beside a plan's steps, all of it between these events
+  cudaStream_t beside_ = nullptr;  // searches that run beside a plan's steps, between these events
   cudaEvent_t asked_ = nullptr, found_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;
   int present_ = 0;           // buffer that holds the displacements now
-  bool still_moved_ = false;  // displacements were set from outside, those of still nodes too
+  bool still_moved_ = false;  // displacements of still nodes were set from outside
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
-  std::unique_ptr<DeviceMonitor> monitor_;   // made when it is asked for
-  std::unique_ptr<NodalLoads> loads_;        // on the host, where somebody asks for them
+  std::unique_ptr<DeviceMonitor> monitor_;   // made on first use
+  std::unique_ptr<NodalLoads> loads_;        // on the host, made on first use
   std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
 };
 

@@ -1,5 +1,6 @@
 #include "cuda/backend/cuda_solver.hpp"
 
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
@@ -10,13 +11,16 @@ namespace frontalis
 namespace cuda
 {
 
-// A plane is found in some ten microseconds: longer leads miss more often where nodes will be.
+// How many steps before a node leaves its tangent plane it asks for another. A search takes about ten microseconds;
+// with a longer lead the predicted position is wrong more often.
 constexpr double steps_of_lead = 10;
 
 void CudaSolver::kick(StepArguments& g, double seconds) const
 {
   g.kick = seconds;
   static_cast<physics::Kick<float>&>(g) = physics::kick_of<float>(damping_, seconds, gravity_);
+  if (mutation::no_gpu_gravity)
+    std::fill_n(g.impulse, 3, 0.0f);
 }
 
 StepArguments CudaSolver::arguments(double dt) const
@@ -38,8 +42,8 @@ StepArguments CudaSolver::arguments(double dt) const
   return g;
 }
 
-// look (cleared), activations, poses, seconds by which viscous stresses relax within launches (none of them: empty):
-// one copy through page-locked memory
+// Copies frequency bound (cleared), activations, poses and relaxation times of viscous stresses (empty where they do
+// not relax within launches) to the device at once, through page-locked memory.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -93,7 +97,7 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-// as many steps in one launch as nothing has to be done between them
+// One launch for all steps where nothing has to be done between them, else one per step.
 void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
@@ -110,8 +114,8 @@ void CudaSolver::do_steps(StepArguments& g, int begin, int end)
   }
 }
 
-// long plans hide what stands between them, but the time step must follow what stiffens: half a millisecond is short
-// enough. Contacts that are found from plan to plan want plans just as long as it takes to find them.
+// Long plans hide the work between them, but the time step must follow a tissue that stiffens: half a millisecond is
+// short enough. Searches that run beside a plan take about 64 steps.
 int CudaSolver::steps_a_plan() const
 {
   return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, device_.contacts() > 0 ? 64.0 : 128.0));
@@ -126,7 +130,7 @@ double CudaSolver::run(const StepPlan& plan)
   g.look_always = plan.closely;
   const bool relaxes = !device_.viscosity().idle();
   const std::vector<double> elapsed = relaxes ? relaxations(plan) : std::vector<double>(plan.steps, 0);
-  // patches relax their viscous stresses themselves, where nobody asks for their work
+  // patches relax their viscous stresses within launches, unless the ledger needs the work
   std::vector<float> relaxation;
   if (launch_.patches && !account_ && relaxes)
   {
@@ -140,7 +144,7 @@ double CudaSolver::run(const StepPlan& plan)
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
   const bool from_plan_to_plan = g.searches > 0;
-  // in patches nodes that have planes find others within steps
+  // in patches only the first plan needs this: later planes are found within launches
   if (from_plan_to_plan || plans_ == 0)
     require(launch_renewals(g, stream_), "renewing contacts");
   if (from_plan_to_plan)
@@ -187,14 +191,14 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // the plan before, so that the device is never without work; its own where there is none or motion changes fast
+  // waits for the plan before, so that the device always has work; for its own where the motion changes fast
   if (plans_ == 1 || plan.awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
   return before > plan.alarm ? seen(plans_ - 1) : before;
 }
 
-// internal forces at other displacements; `out` must hold zeros where no voxel is
+// Internal forces at any displacements; `out` must hold zeros for nodes without voxels.
 void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
 {
   StepArguments g = arguments(0);
@@ -248,7 +252,7 @@ void CudaSolver::external_forces(Vectors& out)
     out[loads_->nodes()[l]] = loads_->forces()[l];
 }
 
-// the account begins with what fibres and viscous stresses do now
+// Work is counted from the present fibre and viscous stresses on.
 void CudaSolver::open_account()
 {
   synchronise();

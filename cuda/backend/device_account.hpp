@@ -19,17 +19,17 @@ struct DeviceBook
   void archive(ByteArchive& archive);
 };
 
-/// Keeps such a book in device memory; summed on the host when asked for.
+/// Sums that work in device memory; the host adds up the parts on request.
 class DeviceAccount
 {
 public:
   DeviceAccount(const Model& model, DeviceModel& device);
 
-  /// Fills in what a step keeps for the account.
+  /// Fills in where a step stores velocities for the account.
   void describe(StepArguments& g) const;
   /// Begins anew at displacements u with the activations at the end of g's plan.
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
-  /// Adds the work of fibres since the latest look, up to displacements u.
+  /// Adds the work of fibres since the last call, up to displacements u.
   void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
   /// Around each step: g.first is the displacements' buffer before it, after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);

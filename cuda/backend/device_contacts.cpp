@@ -18,7 +18,7 @@ void DeviceModel::Contacts::archive(ByteArchive& archive)
     archive_contacts(entries, archive);
     contacts.upload(entries.data(), entries.size());
   };
-  // kernels know where each array lies and how long it is
+  // kernels keep pointers to these arrays, so their places and sizes stay
   const auto same_count_to_host = [&archive](auto& array, const char* what)
   {
     const std::size_t count = array.size();

@@ -7,7 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Arrays keep their sizes and say less: a strip has no fibres, a muscle no passive part, a node nothing to do.
+// An effect that is off leaves all arrays in place; their entries say that a strip has no fibres, a muscle no passive
+// part, a node no task.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -53,7 +54,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // what the bound of the stiffness allows for
+  // as the bound of the stiffness counts them
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)
@@ -91,7 +92,7 @@ void DeviceModel::run_tasks(EffectSet running)
   constants_.rubbing_count = slides && running.has(Effect::friction) ? static_cast<std::uint32_t>(rubbing_.size()) : 0;
 }
 
-// what the kernels must know of what nodes do
+// The part of Effects that follows from the tasks of nodes.
 Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 {
   Effects part = Effects::none;
@@ -106,7 +107,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// the least of the kernels that does what runs, among those that walk the strips as they are cut
+// The smallest kernel that computes the running effects and walks strips of the given number of rows.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -1,7 +1,10 @@
 #include "cuda/backend/device_model.hpp"
 
+#include "frontalis/solver/backend.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/contact/surface_tree.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -37,7 +40,7 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node)
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
 
-// the bulk of what a model needs: nodes, patches or strips, fibres
+// Throws BackendUnavailable where the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
 void expect_room(const Model& model, const VoxelCut& cut)
 {
   const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
@@ -52,8 +55,8 @@ void expect_room(const Model& model, const VoxelCut& cut)
   std::size_t free = 0, total = 0;
   require(cudaMemGetInfo(&free, &total), "asking for free memory");
   if (wanted > free)
-    throw Error("backend cuda: the model needs " + std::to_string(wanted) + " bytes of device memory, " +
-                std::to_string(free) + " of " + std::to_string(total) + " are free");
+    throw BackendUnavailable(
+        fmt::format("backend cuda: the model needs {} bytes of device memory, {} of {} are free", wanted, free, total));
 }
 
 }  // namespace
@@ -160,7 +163,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 StepArguments DeviceModel::arguments() const { return constants_; }
 
-// voxels of equal make share an entry; entry 0 has no stiffness. Returns the entry of each voxel.
+// Voxels of equal properties share an entry; entry 0 has no stiffness. Returns the entry of each voxel.
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
 {
   const bool stabilised = d.assumed_strain;
@@ -258,7 +261,7 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
     surfaces.push_back(
         { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
   }
-  // those with friction first, else in the order in which warps meet them
+  // nodes with friction first, then in the order in which warps meet them
   const auto rubs = [&model](const SlidingNode& node)
   {
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
@@ -301,7 +304,7 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
   reset_contacts();
 }
 
-// what holds or moves nodes, by device node; those that never move are not stepped at all
+// Loads and restrictions of nodes, sorted by device node; nodes that never move are not stepped and have none.
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model, std::uint32_t searches)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });

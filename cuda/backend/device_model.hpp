@@ -15,31 +15,32 @@ namespace frontalis
 namespace cuda
 {
 
-/// One word a fibre: StepArguments::fibre_muscle.
+/// One word per fibre: StepArguments::fibre_muscle.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-/// What a model's voxels need of the kernels.
+/// The effects that the kernels of a model must have because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Patches where there are any, else strips.
+/// Patches where the shared memory holds them, else strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };
+  PatchSettings patches{ 0, 0 };  ///< with the least number of turns that is tried; 0 turns: strips
+  std::size_t patch_bytes = 0;    ///< of shared memory that the device has for a block's patches
   StripSettings strips;
-  std::uint32_t searches = search_group;  ///< StepArguments::searches
+  std::uint32_t searches = search_group;  ///< StepArguments::searches of strips
 };
 
-/// A model, cut up.
+/// The patches or strips of a model.
 struct VoxelCut
 {
   VoxelCut(const Model& model, const CutChoice& choice);
 
   std::unique_ptr<VoxelPatches> patches;
-  std::unique_ptr<VoxelStrips> strips;  ///< one of both
-  std::uint32_t searches;               ///< as in CutChoice
+  std::unique_ptr<VoxelStrips> strips;  ///< either these or patches
+  std::uint32_t searches = 0;           ///< StepArguments::searches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
-  /// 1 + the model voxel at each place, 0: none.
+  /// 1 + the model voxel at each place; 0 where there is none.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
@@ -52,12 +53,12 @@ public:
 
   /// Arguments of a step with all that is constant filled in.
   StepArguments arguments() const;
-  /// Only these effects act from now on; no array changes its place or size.
+  /// From now on only these effects act; no array changes its place or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_allocations(Effect of_fibres, AllocationList& list) const;
   /// Contacts as they are at rest.
   void reset_contacts();
-  /// What sliding nodes know of their surfaces.
+  /// State of the contacts of sliding nodes.
   struct Contacts
   {
     DeviceArray<SlidingContact> sliding;
@@ -73,7 +74,7 @@ public:
   void restore(const Contacts& from, cudaStream_t stream);
 
   Effects effects() const { return effects_; }
-  /// How the step kernel is launched: all but how many blocks the device holds.
+  /// How the step kernel is launched; the number of blocks is left open.
   const StepLaunch& launch() const { return launch_; }
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
@@ -103,7 +104,7 @@ private:
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
 
-  /// What arrays hold where every effect runs; kept from the first switch on.
+  /// The arrays as they are where every effect runs; kept from the first switch on.
   struct Whole
   {
     std::vector<Strip> strips;

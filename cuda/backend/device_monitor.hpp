@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Looks at all voxels of a model in device memory: 44 bytes a voxel, taken when it is made.
+/// Energies and the worst voxel of a model on the device. Takes 44 bytes per voxel when it is made.
 class DeviceMonitor
 {
 public:

@@ -1,5 +1,7 @@
 #include "cuda/backend/device_model.hpp"
-#include "frontalis/error.hpp"
+#include "frontalis/solver/backend.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -9,15 +11,21 @@ namespace frontalis
 namespace cuda
 {
 
-VoxelCut::VoxelCut(const Model& model, const CutChoice& choice) : searches(choice.searches)
+VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
 {
   if (model.nodes.size() >= StripSlot::node_mask || model.fibre_muscle.size() >= (1u << 28))
-    throw Error("backend cuda: " + std::to_string(model.nodes.size()) + " nodes and " +
-                std::to_string(model.fibre_muscle.size()) + " fibre entries; allowed are below 2^30 and 2^28");
-  if (choice.patches.turns > 0)
-    patches = std::make_unique<VoxelPatches>(model, choice.patches);
-  else
-    strips = std::make_unique<VoxelStrips>(model, choice.strips);
+    throw BackendUnavailable(fmt::format("backend cuda: {} nodes and {} fibre entries; allowed are below 2^30 and 2^28",
+                                         model.nodes.size(), model.fibre_muscle.size()));
+  const auto fits = [&](const VoxelPatches& cut)
+  { return patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes, !model.sliding.empty()) <= choice.patch_bytes; };
+  PatchSettings settings = choice.patches;
+  for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
+    if (auto cut = std::make_unique<VoxelPatches>(model, settings); fits(*cut))
+      patches = std::move(cut);
+  if (patches)
+    return;
+  searches = choice.searches;
+  strips = std::make_unique<VoxelStrips>(model, choice.strips);
 }
 
 std::vector<std::uint32_t> VoxelCut::voxel_at() const

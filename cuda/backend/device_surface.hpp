@@ -13,7 +13,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// A surface, or loose points where it has no triangles, tied to a model's voxels, in device memory.
+/// A surface (or points, where it has no triangles) bound to a model's voxels, in device memory.
 class DeviceSurface
 {
 public:
@@ -35,8 +35,8 @@ private:
   DeviceArray<std::int32_t> around_begin_, around_;
 };
 
-/// Tractions, follower pressures, and what gravity is less on nodes whose mass is scaled. A load's nodes gather parts
-/// of the forces at its vertices.
+/// Tractions, follower pressures, and the relief from gravity of nodes whose mass is scaled. Each node of a load takes
+/// parts of the forces at the load's vertices.
 class DeviceLoads
 {
 public:
@@ -52,7 +52,7 @@ public:
 
   /// True where forces follow the surface, so that they change with every step.
   bool follow() const { return runs_ && !pressures_.empty(); }
-  /// Loads, and what gravity is less, count only where their effects run.
+  /// Loads and relief from gravity act only where their effects run.
   void run(EffectSet running);
   bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
   void list_allocations(AllocationList& list) const;

@@ -124,7 +124,7 @@ void DeviceViscosity::relax(const StepArguments& g, const float4* u, const float
             "relaxing viscous stresses");
 }
 
-// what H : E has changed by while H relaxed, less what it is now
+// Change of H : E by relaxation since the account was opened, less its present value.
 double DeviceViscosity::work() const
 {
   if (account_.size() == 0)

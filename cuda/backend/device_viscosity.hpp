@@ -12,24 +12,24 @@ namespace frontalis
 namespace cuda
 {
 
-/// Relaxed stresses of the voxels that are viscous, in device memory, and what renews them.
+/// Relaxed stresses of viscous voxels in device memory, and the kernel that renews them.
 class DeviceViscosity
 {
 public:
   /// `voxel_at`: 1 + the model voxel at each place of the strips or patches, 0: none. `apart`: a voxel in several
-  /// places has stresses of its own in each, so that those who compute it need not wait for each other.
+  /// places has stresses of its own in each, so that the patches that compute it need not wait for each other.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
                   bool apart);
 
   bool empty() const { return voxels_.size() == 0; }
-  /// Off, nothing is read or renewed.
+  /// Where viscosity is off nothing is read or renewed.
   void run(EffectSet running);
   bool idle() const { return empty() || !runs_; }
   void list_allocations(AllocationList& list) const;
   /// Fills in what a step needs.
   void describe(StepArguments& g) const;
-  /// The voxels' palette entries, once they are known.
+  /// To be called once the voxels' palette entries are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
   /// Relaxed stresses to zero, and the account of their work.
   void reset();
@@ -58,7 +58,7 @@ private:
   int terms_ = 0;
   bool runs_ = true;
   std::vector<std::uint32_t> voxel_;  // model voxel of each that is kept
-  std::vector<char> counted_;         // of each whether it is the first of its model voxel
+  std::vector<char> counted_;         // whether it is the first of its model voxel
   std::vector<ViscousVoxel> host_;    // until palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;

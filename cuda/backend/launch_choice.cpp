@@ -1,5 +1,9 @@
 #include "cuda/backend/launch_choice.hpp"
 
+#include "frontalis/solver/backend.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -23,20 +27,32 @@ int from_environment(const char* name, int otherwise, int least, int most)
   return text == nullptr ? otherwise : std::clamp(std::atoi(text), least, most);
 }
 
-// patches a multiprocessor; 0: its shared memory cannot hold its share of the nodes. Guessed from what patches of a
-// curved shell and of a block have: at most so much more than the mean.
-int turns(const Model& model, int processors)
+int multiprocessors()
+{
+  const int all = attribute(cudaDevAttrMultiProcessorCount);
+  return from_environment("FRONTALIS_CUDA_MULTIPROCESSORS", all, 1, all);
+}
+
+// Shared memory of a block, less the kernels' own arrays: activations, and 9 KB for searches of tangent planes.
+std::size_t bytes_for_patches(const Model& model)
+{
+  const int all = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
+  const int bytes = from_environment("FRONTALIS_CUDA_SHARED_BYTES", all, 0, all);
+  const int taken = 2 * static_cast<int>(sizeof(float)) * most_muscles + (model.sliding.empty() ? 0 : 9 * 1024);
+  return static_cast<std::size_t>(std::max(bytes - taken, 0));
+}
+
+// Patches per multiprocessor with which the fullest is expected to fit; 0: none do. The fullest patch of a curved shell
+// or a block has at most `uneven` times the mean's nodes, `with_border` times its voxels, and a halo of `halo_share` of
+// its nodes.
+int expected_turns(const Model& model, int processors, std::size_t bytes)
 {
   constexpr double uneven = 1.35, with_border = 1.5, halo_share = 0.7;
-  // what kernels have besides
-  const bool slides = !model.sliding.empty();
-  const double taken = 2 * sizeof(float) * most_muscles + (slides ? 9 * 1024 : 0);
-  const double bytes = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin) - taken;
   const double nodes = uneven * static_cast<double>(model.nodes.size()) / processors,
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
-                    static_cast<std::size_t>(nodes), slides) < bytes)
+                    static_cast<std::size_t>(nodes), !model.sliding.empty()) < bytes)
       return turns;
   return 0;
 }
@@ -45,22 +61,19 @@ int turns(const Model& model, int processors)
 
 CutChoice choose_cut(const Model& model, Effects effects)
 {
-  const int processors = attribute(cudaDevAttrMultiProcessorCount);
+  const int processors = multiprocessors();
   CutChoice cut;
-  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES", turns(model, processors), 0, most_turns) };
-  // patches find planes within a launch
-  if (cut.patches.turns > 0)
-    cut.searches = 0;
-  else
-    cut.searches = static_cast<std::uint32_t>(
-        from_environment("FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group,
-                         1, search_group));
-  // all at once, where rows are full: what is left over for a second round would take as long as the first
+  cut.patch_bytes = bytes_for_patches(model);
+  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
+                                               expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
+  cut.searches = static_cast<std::uint32_t>(from_environment(
+      "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
+  // full strips run all at once with a tenth to spare: a second round of few would take as long as the first
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
+  const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;
   cut.strips.planes =
-      static_cast<int>(std::clamp(static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps, 1.0, 32.0));
-  cut.strips.planes = from_environment("FRONTALIS_CUDA_PLANES", cut.strips.planes, 1, 4096);
+      from_environment("FRONTALIS_CUDA_PLANES", static_cast<int>(std::clamp(planes, 1.0, 32.0)), 1, 4096);
   return cut;
 }
 
@@ -73,13 +86,10 @@ StepLaunch choose_launch(const DeviceModel& device)
     launch.blocks = (static_cast<int>(device.strips()) + warps - 1) / warps;
     return launch;
   }
-  launch.blocks = attribute(cudaDevAttrMultiProcessorCount);
+  launch.blocks = multiprocessors();
   if (resident_blocks(launch) < launch.blocks)
-  {
-    require(cudaGetLastError(), "this build has no code for the device");
-    throw Error("backend cuda: patches of " + std::to_string(launch.shared_bytes) +
-                " bytes of shared memory do not fit a multiprocessor");
-  }
+    throw BackendUnavailable(fmt::format(
+        "backend cuda: patches of {} bytes of shared memory do not fit a multiprocessor", launch.shared_bytes));
   return launch;
 }
 

@@ -1,5 +1,5 @@
 #include "cuda/backend/device_memory.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ constexpr int tile_x = 32, tile_y = 16;  // threads; nodes on the rim are read b
 
 struct Block
 {
-  int nodes;           // an edge
-  int planes_a_block;  // that it steps
+  int nodes;             // an edge
+  int planes_per_block;  // that it steps
   const float* u[3];
   float* next[3];
   float* v[3];
@@ -54,7 +54,7 @@ __global__ void __launch_bounds__(tile_x* tile_y) bare_step(const Block b)
   __shared__ float given[3][3][threads];  // to the right, behind, right behind
   const int t = threadIdx.x, tx = t % tile_x, ty = t / tile_x;
   const int i = blockIdx.x * (tile_x - 2) + tx - 1, j = blockIdx.y * (tile_y - 2) + ty - 1;
-  const int n = b.nodes, first = blockIdx.z * b.planes_a_block, last = min(first + b.planes_a_block, n);
+  const int n = b.nodes, first = blockIdx.z * b.planes_per_block, last = min(first + b.planes_per_block, n);
   const bool inside = i >= 0 && j >= 0 && i < n && j < n;
   const bool voxel = i >= 0 && j >= 0 && i < n - 1 && j < n - 1 && tx < tile_x - 1 && ty < tile_y - 1;
   const bool own = inside && tx > 0 && ty > 0 && tx < tile_x - 1 && ty < tile_y - 1;
@@ -169,7 +169,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
   const double mu = young / (2 * (1 + nu)), kappa = young / (3 * (1 - 2 * nu)), volume = h * h * h;
   Block block{};
   block.nodes = n + 1;
-  block.planes_a_block = n < 200 ? 16 : 64;
+  block.planes_per_block = n < 200 ? 16 : 64;
   for (int c = 0; c < 3; ++c)
     block.v[c] = fields[6 + c].data();
   block.mu = static_cast<float>(mu * volume);
@@ -180,7 +180,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
   block.dt = static_cast<float>(dt);
   block.share = static_cast<float>(dt / (density * volume));
   const dim3 grid((n + tile_x - 2) / (tile_x - 2), (n + tile_y - 2) / (tile_y - 2),
-                  (n + block.planes_a_block) / block.planes_a_block);
+                  (n + block.planes_per_block) / block.planes_per_block);
   int present = 0;
   const double time = median_time(
       [&]
@@ -196,8 +196,8 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
         }
         require(cudaGetLastError(), "launching the yardstick");
       });
-  result.microseconds_a_step = 1e3 * time / steps;
-  result.updates_a_second = static_cast<double>(n) * n * n / (result.microseconds_a_step * 1e-6);
+  result.microseconds_per_step = 1e3 * time / steps;
+  result.updates_per_second = static_cast<double>(n) * n * n / (result.microseconds_per_step * 1e-6);
   return result;
 }
 

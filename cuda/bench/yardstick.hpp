@@ -5,17 +5,17 @@
 namespace frontalis
 {
 
-/// What the hardware does on the bare element loop, to be read beside the solver's own figures of the same run.
+/// Speed of the hardware on a bare element loop, for comparison with the solver's figures of the same run.
 struct YardstickResult
 {
-  double copy_bandwidth = 0;  ///< device to device, bytes read and written a second
-  double microseconds_a_step = 0;
-  double updates_a_second = 0;  ///< elements a second
+  double copy_bandwidth = 0;  ///< device to device, bytes read and written per second
+  double microseconds_per_step = 0;
+  double updates_per_second = 0;  ///< elements per second
 };
 
-/// A dense block of n^3 reduced-integration neo-Hookean voxels, no effects: tiles of node columns walk along z, a
-/// thread a column, neighbours' values and forces exchanged through shared memory; at least `steps` steps, median of
-/// five.
+/// A dense block of n^3 reduced-integration neo-Hookean voxels without other effects. Blocks of threads walk along z,
+/// one thread per column of nodes, and exchange displacements and forces through shared memory. At least `steps` steps;
+/// median of five runs.
 YardstickResult run_yardstick(std::int32_t n, int steps);
 
 }  // namespace frontalis

@@ -349,7 +349,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     }
     if (look)
     {
-      const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
+      const std::uint32_t largest = largest_of_warp(frequency_bits);
       if ((threadIdx.x & 31) == 0)
         atomicMax(g.look, largest);
     }

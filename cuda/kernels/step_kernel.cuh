@@ -47,7 +47,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   }
   if (Look)
   {
-    const std::uint32_t largest = __reduce_max_sync(whole_warp, frequency_bits);
+    const std::uint32_t largest = largest_of_warp(frequency_bits);
     if (lane == 0)
       atomicMax(g.look, largest);
   }

@@ -15,6 +15,19 @@ namespace cuda
 
 constexpr unsigned whole_warp = 0xffffffffu;
 
+/// The largest value of a warp's lanes; GPUs before compute capability 8.0 have no instruction for it.
+template <class T>
+__device__ __forceinline__ T largest_of_warp(T value)
+{
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(whole_warp, value);
+#else
+  for (int apart = 16; apart > 0; apart /= 2)
+    value = max(value, __shfl_xor_sync(whole_warp, value, apart));
+  return value;
+#endif
+}
+
 /// The team of SurfaceContact::renew that is a whole warp, of a block of at most so many; all of its lanes call each of
 /// these.
 template <int Warps>
@@ -141,7 +154,7 @@ __device__ void Warp<Warps>::near(const SurfaceSearch& surface, const SurfaceSea
       stack[place + 1] = self + 1;
     }
     depth += 2 * __popc(inners);
-    const int most_triangles = __reduce_max_sync(whole_warp, count);
+    const int most_triangles = largest_of_warp(count);
     for (int t = 0; t < most_triangles; ++t)
     {
       Entry found{ nowhere, INT32_MAX };

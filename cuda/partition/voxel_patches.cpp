@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
+#include "frontalis/physics/mutation.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -12,7 +13,8 @@ namespace frontalis
 namespace
 {
 
-// what computing costs, in plain voxels; from what blocks took of which all voxels had the effect or none
+// Cost of a fibre entry, of viscosity and of a node, in plain voxels; measured on blocks of which all voxels or none
+// had the effect.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -22,7 +24,7 @@ float voxel_cost(const Model& model, std::size_t e)
   return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
 }
 
-// recursive bisection of nodes by weight, each time across where the nodes' cross-section is smallest
+// Recursive bisection of nodes by weight, each time along the plane with the fewest nodes.
 class Bisection
 {
 public:
@@ -91,7 +93,7 @@ private:
     const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
                end = order_.begin() + static_cast<std::ptrdiff_t>(last);
-    // nodes stay in the model's order, so that the plane itself is cut along a row
+    // nodes of the plane stay in the model's order, so that it is divided along a row
     const auto within = std::stable_partition(begin, end, [&](std::uint32_t n) { return coordinate(n) < plane.at; });
     const auto after = std::stable_partition(within, end, [&](std::uint32_t n) { return coordinate(n) == plane.at; });
     auto middle = within;
@@ -110,7 +112,7 @@ private:
   double missing_ = 0;
 };
 
-// calls with (part, voxel) once for each part that has a corner of the voxel
+// Calls with (part, voxel) once for each part that owns a corner of the voxel.
 template <class Call>
 void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, const Call& call)
 {
@@ -124,8 +126,8 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// parts of about equal cost: weights are mended a few times, since how much a part computes beside its own is known
-// afterwards
+// Parts of about equal cost. Weights are corrected a few times, since the voxels that a part shares with its neighbours
+// are known only after the cut.
 std::vector<std::uint32_t> partition(const Model& model, int parts)
 {
   std::vector<float> weight(model.nodes.size(), node_cost);
@@ -156,7 +158,8 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// nodes that do more than slide on what is still: a warp takes as long for one of them as for all of its own
+// Nodes that do more than slide on a still surface. They are numbered together, because a warp takes as long for one of
+// them as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
@@ -255,7 +258,7 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   }
 }
 
-// `first_place`: of its first own node
+// `first_place`: place of the patch's first own node in shared memory.
 void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
                              std::uint32_t first_place)
 {
@@ -267,7 +270,7 @@ void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::
     {
       const std::uint32_t node = device_node[model.voxel_nodes[voxels[v]][b]];
       const bool own = node >= patch.first_node && node < patch.first_node + patch.nodes;
-      if (own)
+      if (own && !(mutation::lost_corner && b == 0))
         node_voxel[node][b] = static_cast<std::uint16_t>(v);
       places[b] = static_cast<std::uint16_t>(
           own ? first_place + node - patch.first_node

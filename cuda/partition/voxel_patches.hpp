@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// How the nodes of a model are shared out: each of `blocks` blocks of threads takes `turns` patches.
+/// How the nodes of a model are distributed: each of `blocks` blocks of threads takes `turns` patches in turn.
 struct PatchSettings
 {
   int blocks = 132;
@@ -21,11 +21,11 @@ struct PatchSettings
 struct Patch
 {
   std::uint32_t first_node;   ///< device node; those that it owns follow each other
-  std::uint32_t nodes;        ///< that it owns
-  std::uint32_t border;       ///< of these the first so many are in other patches' halos
+  std::uint32_t nodes;        ///< number that it owns
+  std::uint32_t border;       ///< so many of them, the first, are in other patches' halos
   std::uint32_t voxel_begin;  ///< into VoxelPatches::voxel
   std::uint32_t voxels;
-  std::uint32_t special;     ///< of these the first so many have fibres or viscosity
+  std::uint32_t special;     ///< so many of them, the first, have fibres or viscosity
   std::uint32_t halo_begin;  ///< into VoxelPatches::halo
   std::uint32_t halo;
 };

@@ -11,12 +11,12 @@ namespace
 {
 
 constexpr int lanes = 32;
-// of a plane with fibres, over one without: strips that begin last should take least
+// A plane with fibres costs so much more than one without. Strips that take longest begin first.
 constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
 
-// where each row (j,k) of a list sorted by k, j, i begins
+// Where each row (j,k) begins in a list sorted by k, j, i.
 class RowIndex
 {
 public:
@@ -51,13 +51,13 @@ private:
   std::vector<std::uint32_t> begin_;
 };
 
-// consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), as many as fit a warp
+// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), as many as fit a warp.
 struct Piece
 {
-  std::int32_t i, lanes;              // columns with the halo's
+  std::int32_t i, lanes;              // columns, halo included
   std::int32_t own_first, own_count;  // columns owned, from i
   std::int32_t j;                     // first owned row
-  std::int32_t k, planes;             // first plane, planes with the halo's
+  std::int32_t k, planes;             // first plane; number of planes, halo included
   std::int32_t own_k, own_planes;     // of the tile
   double cost;                        // in planes without fibres
 };
@@ -94,7 +94,7 @@ struct Builder
                      lowest = std::min(lowest, k);
                      highest = std::max(highest, k);
                    });
-    // a plane more at a cut through the tissue
+    // one plane more where the tile ends within the tissue
     const auto is_there = [](std::uint32_t) { return true; };
     p.k = lowest == p.own_k && any_voxel(p, lowest - 1, is_there) ? lowest - 1 : lowest;
     const bool above = highest == p.own_k + p.own_planes - 1 && any_voxel(p, highest, is_there);
@@ -106,7 +106,7 @@ struct Builder
     pieces.push_back(p);
   }
 
-  // cuts a run of columns into pieces that fit the lanes: a column more on each side where tissue goes on
+  // cuts a run of columns into pieces that fit the lanes, with one column more on each side where tissue goes on
   void add_run(std::int32_t first, std::int32_t last, Piece tile)
   {
     for (std::int32_t begin = first; begin <= last;)
@@ -163,7 +163,7 @@ struct Builder
   }
 };
 
-// packs pieces of about equal length into warps, in order
+// Packs pieces of about equal length into warps, in order.
 std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
 {
   // a few warps stay open, so that a large piece does not close one that small ones could fill

@@ -21,8 +21,8 @@ struct StripSettings
 /// One place of a strip: a node, and the voxel whose lower corner it is.
 struct StripSlot
 {
-  static constexpr std::uint32_t owned = 0x80000000u;    ///< this strip sums the node's force
-  static constexpr std::uint32_t updated = 0x40000000u;  ///< and steps it
+  static constexpr std::uint32_t owned = 0x80000000u;    ///< this strip computes the node's force
+  static constexpr std::uint32_t updated = 0x40000000u;  ///< and its motion
   static constexpr std::uint32_t node_mask = 0x3fffffffu;
 
   std::uint32_t node;   ///< device node, with flags; 0: none
@@ -50,13 +50,13 @@ struct VoxelStrips
   VoxelStrips(const Model& model, const StripSettings& settings);
 
   int rows = 0;
-  std::vector<Strip> strips;  ///< those first that take longest
+  std::vector<Strip> strips;  ///< in descending order of cost
   std::vector<StripSlot> slots;
   std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of the voxel in the place; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
   std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
 
-  /// Share of the places of voxels that hold one: what a sparse shell loses.
+  /// Share of the places that hold a voxel.
   double filled() const;
 };
 

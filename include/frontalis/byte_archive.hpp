@@ -12,19 +12,20 @@
 namespace frontalis
 {
 
-/// Plain values to bytes, or back from them in the same order, so that one list of fields serves both ways:
-/// archive(a)(b)(c). For this machine's own files: bytes are as they lie in memory.
+/// Writes plain values to bytes, or reads them back in the same order, so that one list of fields serves both ways:
+/// archive(a)(b)(c). The bytes are those in memory, so files made of them can only be read on the same kind of machine.
 class ByteArchive
 {
 public:
-  ByteArchive() = default;  ///< takes values
+  ByteArchive() = default;  ///< an archive to write values to
+  /// An archive to read values from.
   explicit ByteArchive(std::string bytes) : reads_(true), bytes_(std::move(bytes)) {}
 
   bool reads() const { return reads_; }
   bool ended() const { return at_ == bytes_.size(); }
   const std::string& bytes() const { return bytes_; }
 
-  /// All of these throw Error where the bytes end too early.
+  /// Writes or reads a value. When reading, throws an Error if the bytes end too early.
   template <class T>
   ByteArchive& operator()(T& value)
   {

@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// What can act on tissue. A scene has those that it gives cause for and does not switch off.
+/// A part of the physics that can act on tissue. A scene has an effect if its keys ask for it and do not switch it off.
 enum class Effect : std::uint8_t
 {
   elasticity,
@@ -29,11 +29,11 @@ struct EffectTraits
 {
   const char* name;
   const char* description;
-  const char* not_off;   ///< why a scene cannot do without; empty: it can
-  const char* not_live;  ///< why a running solver cannot switch it; empty: it can
+  const char* not_off;   ///< why a scene cannot switch the effect off; empty if it can
+  const char* not_live;  ///< why a running solver cannot switch the effect; empty if it can
 };
 
-/// In the order of Effect.
+/// One entry per effect, in the order of the enumeration Effect.
 inline constexpr std::array<EffectTraits, 11> effect_traits{ {
     { "elasticity", "materials, and what stabilises their elements", "nothing else holds a voxel together",
       "nothing else holds a voxel together" },
@@ -69,7 +69,7 @@ public:
     set.bits_ = on ? bits_ | bit(effect) : bits_ & ~bit(effect);
     return set;
   }
-  /// Those of this set that are not in the other.
+  /// The effects of this set that are not in the other set.
   constexpr EffectSet without(EffectSet other) const
   {
     EffectSet set = *this;
@@ -85,7 +85,7 @@ private:
   std::uint32_t bits_ = 0;
 };
 
-/// Every effect, for loops.
+/// All effects, to loop over.
 constexpr std::array<Effect, effect_traits.size()> every_effect()
 {
   std::array<Effect, effect_traits.size()> effects{};
@@ -97,7 +97,7 @@ constexpr std::array<Effect, effect_traits.size()> every_effect()
 constexpr const EffectTraits& traits_of(Effect effect) { return effect_traits[static_cast<std::size_t>(effect)]; }
 inline std::string name_of(Effect effect) { return traits_of(effect).name; }
 
-/// Names separated by commas.
+/// The names of the effects in a set, separated by commas.
 inline std::string names_of(EffectSet set)
 {
   std::string text;
@@ -107,7 +107,7 @@ inline std::string names_of(EffectSet set)
   return text;
 }
 
-/// Throws Error naming those that exist.
+/// The effect of this name. Throws an Error that lists the existing names if there is none.
 inline Effect effect_from_name(const std::string& name)
 {
   for (const Effect effect : every_effect())
@@ -116,14 +116,14 @@ inline Effect effect_from_name(const std::string& name)
   throw Error("there is no effect '" + name + "'; the effects are " + names_of(EffectSet::all()));
 }
 
-/// Throws Error, saying why, where an effect of the set needs another that is not in it.
+/// Throws an Error with the reason if an effect of the set needs another one that is not in the set.
 inline void check_needs(EffectSet set)
 {
   if (set.has(Effect::friction) && !set.has(Effect::sliding))
     throw Error("friction needs sliding: switch friction off too, or sliding on");
 }
 
-/// Throws Error, saying why, where a scene with the effects `present` cannot be without those in `off`.
+/// Throws an Error with the reason if a scene with the effects `present` cannot switch off the effects in `off`.
 inline void check_switched_off(EffectSet off, EffectSet present)
 {
   for (const Effect effect : every_effect())

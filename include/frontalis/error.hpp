@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// The one exception of the library. Its text names the file, line or key, what was found and what would be right.
+/// The library's only exception type. Its text names the file, line or key, what was found and what would be right.
 class Error : public std::runtime_error
 {
 public:

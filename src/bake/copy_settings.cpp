@@ -1,6 +1,9 @@
 #include "frontalis/error.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/scene/content_hash.hpp"
 #include "bake/voxels/local_frame.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -12,94 +15,56 @@ namespace
 
 Material material_of(const Scene& scene, const SceneMaterial& material, const LocalFrame& frame)
 {
-  const std::string place = scene.file + ":" + std::to_string(material.line) + ": material '" + material.name + "'";
+  const std::string place = fmt::format("{}:{}: material '{}'", scene.file, material.line, material.name);
   const auto parameter = [&](const std::string& name)
   {
     const auto found = material.parameters.find(name);
     if (found == material.parameters.end())
-      throw Error(place + ": has no '" + name + "'");
+      throw Error(fmt::format("{}: has no '{}'", place, name));
     return found->second;
   };
+  const auto law = physics::law_named(material.law);
+  if (!law)
+    throw Error(fmt::format("{}: law '{}' is not known", place, material.law));
+  const physics::MaterialDescription& description = physics::description_of(*law);
+  std::array<double, physics::law_parameters_max> given{};
+  for (int p = 0; p < description.count(); ++p)
+    given[p] = parameter(description.parameters[p].key);
+  const double poisson = parameter("poisson");
   Material out;
   out.name = material.name;
+  out.law = *law;
   out.density = material.density;
-  auto& p = out.parameters;
-  double shear = 0;  // at rest
-  if (material.law == "neo_hookean")
-    p[0] = shear = parameter("young") / (2 * (1 + parameter("poisson")));
-  else if (material.law == "mooney_rivlin")
+  out.parameters = physics::numbers_of(*law, given, poisson);
+  for (int d = 0; d < description.directions; ++d)
   {
-    out.law = Law::mooney_rivlin;
-    p[0] = parameter("c1");
-    p[2] = parameter("c2");
-    shear = 2 * (p[0] + p[2]);
+    const Vector3 direction = frame.turn(material.families[d]);
+    std::copy(direction.begin(), direction.end(), out.parameters.begin() + physics::first_direction + 3 * d);
   }
-  else if (material.law == "ogden")
-  {
-    out.law = Law::ogden;
-    p[0] = parameter("mu1");
-    p[2] = parameter("alpha1");
-    p[3] = parameter("mu2");
-    p[4] = parameter("alpha2");
-    shear = 0.5 * (p[0] * p[2] + p[3] * p[4]);
-  }
-  else if (material.law == "fung")
-  {
-    out.law = Law::fung;
-    p[0] = shear = parameter("shear");
-    p[2] = parameter("b");
-  }
-  else if (material.law == "holzapfel")
-  {
-    out.law = Law::holzapfel;
-    p[0] = shear = parameter("shear");
-    p[2] = parameter("k1");
-    p[3] = parameter("k2");
-    p[4] = parameter("dispersion");
-    for (std::size_t family = 0; family < 2; ++family)
-    {
-      const Vector3 direction = frame.turn(material.families[family]);
-      std::copy(direction.begin(), direction.end(),
-                p.begin() + first_direction + 3 * static_cast<std::ptrdiff_t>(family));
-    }
-  }
-  else if (material.law == "guccione")
-  {
-    out.law = Law::guccione;
-    p[0] = parameter("c");
-    p[2] = parameter("bf");
-    p[3] = parameter("bt");
-    p[4] = parameter("bfs");
-    shear = 0.5 * p[0] * std::max({ p[2], p[3], p[4] });
-    const Vector3 direction = frame.turn(material.families[0]);
-    std::copy(direction.begin(), direction.end(), p.begin() + first_direction);
-  }
-  else
-    throw Error(place + ": law '" + material.law + "' is not known");
   for (std::size_t term = 0; term < material.viscosity.size() && term < out.viscous_share.size(); ++term)
   {
     out.viscous_share[term] = material.viscosity[term].share;
     out.viscous_time[term] = material.viscosity[term].time;
   }
-  const double poisson = parameter("poisson");
+  const double shear = physics::shear_modulus_of(*law, out.parameters);
   if (!(shear > 0) || !(poisson > -1) || !(poisson < 0.5))
-    throw Error(place + ": its shear modulus at rest is " + std::to_string(shear) + " Pa and poisson " +
-                std::to_string(poisson) + "; a modulus above 0 and poisson in -1..0.5, without the ends, are meant");
+    throw Error(
+        fmt::format("{}: its shear modulus at rest is {} Pa and its Poisson's ratio {}; the modulus must be above "
+                    "0 and the ratio between -1 and 0.5",
+                    place, shear, poisson));
   if (!(material.density > 0))
-    throw Error(place + ": density is " + std::to_string(material.density) + " kg/m3; it must be above 0");
-  // linear elasticity
-  p[1] = 2 * shear * (1 + poisson) / (3 * (1 - 2 * poisson));
+    throw Error(fmt::format("{}: density is {} kg/m3; it must be above 0", place, material.density));
   return out;
 }
 
 /// Rows of the face frame: forward, left, up, in scene axes.
-std::array<Vector3, 3> face_axes(const Scene& scene)
+std::array<Vector3d, 3> face_axes(const Scene& scene)
 {
-  const Vector3 forward = normalised(scene.frame.forward);
-  const Vector3 up = normalised(scene.frame.up - dot(scene.frame.up, forward) * forward);
-  if (norm(forward) < 0.5 || norm(up) < 0.5)
+  const Vector3d forward = to_vector(scene.frame.forward).normalized(), upwards = to_vector(scene.frame.up);
+  const Vector3d up = (upwards - upwards.dot(forward) * forward).normalized();
+  if (forward.norm() < 0.5 || up.norm() < 0.5)
     throw Error(scene.file + ": frame: 'forward' and 'up' must have a length and must not be parallel");
-  return { forward, cross(up, forward), up };
+  return { forward, up.cross(forward), up };
 }
 
 void copy_presets(const Scene& scene, Model& model)
@@ -136,29 +101,15 @@ void copy_mass_scaling(const Scene& scene, Model& model)
   const MassScaling& from = scene.accuracy.mass_scaling;
   model.mass_scaling.factor = from.factor;
   model.mass_scaling.time_step = from.time_step;
-  switch (from.kind)
-  {
-    case MassScaling::Kind::none:
-      model.mass_scaling.kind = MassScalingSettings::Kind::none;
-      break;
-    case MassScaling::Kind::uniform:
-      model.mass_scaling.kind = MassScalingSettings::Kind::uniform;
-      break;
-    case MassScaling::Kind::selective:
-      model.mass_scaling.kind = MassScalingSettings::Kind::selective;
-      break;
-  }
+  // both have the kinds none, uniform and selective in this order
+  model.mass_scaling.kind = static_cast<MassScalingSettings::Kind>(from.kind);
   for (const std::string& name : from.materials)
   {
-    std::int32_t index = -1;
-    for (std::size_t m = 0; m < model.materials.size(); ++m)
-    {
-      if (model.materials[m].name == name)
-        index = static_cast<std::int32_t>(m);
-    }
-    if (index < 0)
+    const auto found = std::find_if(model.materials.begin(), model.materials.end(),
+                                    [&](const Material& material) { return material.name == name; });
+    if (found == model.materials.end())
       throw Error(scene.file + ": mass_scaling: there is no material '" + name + "'");
-    model.mass_scaling.materials.push_back(index);
+    model.mass_scaling.materials.push_back(static_cast<std::int32_t>(found - model.materials.begin()));
   }
 }
 
@@ -170,13 +121,13 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.to_scene.rotation.fill(0);
   for (std::size_t local = 0; local < 3; ++local)
     model.to_scene.rotation[3 * frame.scene_axis(local) + local] = 1;
-  model.to_scene.translation = frame.origin;
+  model.to_scene.translation = to_array(frame.origin);
   for (std::size_t row = 0; row < 3; ++row)
   {
-    const Vector3 turned = frame.turn(axes[row]);
+    const Vector3d turned = frame.turn(axes[row]);
     for (std::size_t column = 0; column < 3; ++column)
       model.to_face.rotation[3 * row + column] = turned[column];
-    model.to_face.translation[row] = dot(axes[row], frame.origin - scene.frame.origin);
+    model.to_face.translation[row] = axes[row].dot(frame.origin - to_vector(scene.frame.origin));
   }
   model.face_frame = scene.frame.id;
   model.gravity = frame.turn(scene.gravity);

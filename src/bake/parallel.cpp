@@ -1,93 +1,68 @@
 #include "bake/parallel.hpp"
 
-#include <algorithm>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <exception>
+#include <future>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace frontalis
 {
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, BakeStages* stages)
+void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t)>& body)
 {
-  if (count == 0)
-    return;
-  std::atomic<std::size_t> next{ 0 };
-  std::atomic<bool> stop{ false };
-  std::mutex mutex;
-  std::condition_variable ended;
-  std::size_t running = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), count);
+  std::atomic<std::size_t> done{ 0 }, failed{ count };  // failed: the lowest index that threw
   std::exception_ptr failure;
-  std::size_t failed_at = count;
-
-  const auto work = [&]
+  std::mutex mutex;
+  const auto call = [&](std::size_t index)
   {
-    while (!stop)
+    // lower indices still run after a failure, so that the same scene always ends with the same message
+    if (index > failed)
+      return;
+    try
     {
-      const std::size_t index = next++;
-      if (index >= count)
-        break;
-      try
+      body(index);
+    }
+    catch (...)
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (index < failed)
       {
-        body(index);
-      }
-      catch (...)
-      {
-        // indices are handed out in order, so every lower one is done or running: the lowest failure is always found
-        const std::lock_guard<std::mutex> lock(mutex);
-        stop = true;
-        if (index < failed_at)
-        {
-          failed_at = index;
-          failure = std::current_exception();
-        }
+        failed = index;
+        failure = std::current_exception();
       }
     }
-    const std::lock_guard<std::mutex> lock(mutex);
-    --running;
-    ended.notify_one();
   };
-
-  std::vector<std::thread> threads;
-  for (std::size_t t = running; t > 0; --t)
-    threads.emplace_back(work);
-  std::exception_ptr interruption;
+  const auto call_range = [&](const tbb::blocked_range<std::size_t>& range)
   {
-    std::unique_lock<std::mutex> lock(mutex);
-    while (!ended.wait_for(lock, std::chrono::milliseconds(100), [&] { return running == 0; }))
-    {
-      if (stages == nullptr || interruption)
-        continue;
-      lock.unlock();
-      try
-      {
-        stages->advance(static_cast<double>(std::min(next.load(), count)) / static_cast<double>(count));
-      }
-      catch (...)
-      {
-        interruption = std::current_exception();
-        stop = true;
-      }
-      lock.lock();
-    }
+    for (std::size_t index = range.begin(); index < range.end(); ++index)
+      call(index);
+    done += range.size();
+  };
+  tbb::task_group_context context;
+  const auto run = [&]
+  {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), call_range, tbb::simple_partitioner(), context);
+  };
+  std::future<void> loop = std::async(std::launch::async, run);
+  try
+  {
+    while (loop.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready)
+      monitor.advance(static_cast<double>(done) / static_cast<double>(count));
   }
-  for (std::thread& thread : threads)
-    thread.join();
-  if (interruption)
-    std::rethrow_exception(interruption);
+  catch (...)
+  {
+    context.cancel_group_execution();
+    loop.wait();
+    throw;
+  }
+  loop.get();
   if (failure)
     std::rethrow_exception(failure);
-}
-
-void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
-                     BakeStages* stages)
-{
-  parallel_for((count + grain - 1) / grain,
-               [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); }, stages);
 }
 
 }  // namespace frontalis

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/bake_stages.hpp"
+#include "bake/bake_monitor.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -8,12 +8,10 @@
 namespace frontalis
 {
 
-/// Calls body(0) .. body(count - 1) on all cores. Results must not depend on the order: each index writes its own
-/// place. The calling thread tells progress meanwhile. Rethrows the exception of the lowest index that threw.
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, BakeStages* stages = nullptr);
-
-/// The same for ranges of `grain` indices at a time: body(begin, end).
-void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
-                     BakeStages* stages = nullptr);
+/// Calls body(0) .. body(count - 1) on all cores, about `grain` of them per task. Calls must not depend on each other:
+/// each writes only what belongs to its index. The calling thread reports progress meanwhile; where the monitor throws,
+/// no further task begins and its exception is rethrown. If calls throw, the exception of the lowest index is rethrown.
+void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t)>& body);
 
 }  // namespace frontalis

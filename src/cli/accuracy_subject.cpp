@@ -83,12 +83,8 @@ void check_numbers(const AccuracyOptions& options)
 void take_options(const AccuracyOptions& options, AccuracyPlan& plan)
 {
   plan.standard.backend = backend_from_name(options.backend);
-  if (plan.standard.backend == Backend::automatic)
-  {
-    const auto backends = available_backends();
-    const bool device = std::find(backends.begin(), backends.end(), Backend::cuda) != backends.end();
-    plan.standard.backend = device ? Backend::cuda : Backend::cpu;
-  }
+  if (plan.standard.backend == "auto")
+    plan.standard.backend = available_backends().front();
   if (!options.knobs.empty())
     plan.knobs = options.knobs;
   plan.quick = options.quick;

@@ -1,14 +1,10 @@
-#include "cli/activation_list.hpp"
 #include "cli/command.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/model_source.hpp"
 #include "cli/plot_path.hpp"
-#include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/effect_costs.hpp"
 #include "frontalis/study/plot.hpp"
-#include "frontalis/study/sleep_error.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <CLI/CLI.hpp>
@@ -31,9 +27,6 @@ struct EffectsOptions
   bool json = false;
   bool arrays = false;
   std::string plot;
-  std::vector<double> sleep;  ///< [m]
-  std::string activation;
-  double ramp = 0.3;  ///< [s]
 };
 
 std::string why(const EffectCost& cost, double field)
@@ -117,35 +110,9 @@ void print(const Model& model, const EffectCosts& costs)
   std::printf("on %s; every muscle at activation 0.75\n", costs.backend.c_str());
 }
 
-// what sleeping saves, and what it errs
-void show_sleep(const EffectsOptions& options)
-{
-  const SleepHistory history{ parse_activation_list(options.activation), options.ramp };
-  const auto model = std::make_shared<const Model>(obtain_model(options.source));
-  Progress progress(Progress::OffTerminal::silent);
-  const auto errors = measure_sleep(model, options.sleep, history,
-                                    [&](double done)
-                                    {
-                                      progress.update("muscles rise and are let go", done);
-                                      return !interrupt_requested();
-                                    });
-  progress.clear();
-  if (interrupt_requested())
-    throw Interrupted();
-  const auto tenths = [](double metres) { return std::round(1e7 * metres) / 10; };
-  const auto hundredths = [](double x) { return std::round(100 * x) / 100; };
-  Table table({ "tolerance [um]", "seconds", "of those without", "error [um]", "undetermined [um]" });
-  for (const SleepError& one : errors)
-    table.add({ tenths(one.tolerance), hundredths(one.seconds), hundredths(one.seconds / one.awake_seconds),
-                tenths(one.error), tenths(one.apart) });
-  std::printf("%s", (options.json ? table.json() : table.text()).c_str());
-}
-
 void show_effects(const EffectsOptions& options)
 {
   const std::string plot = plot_path(options.plot);
-  if (!options.sleep.empty())
-    return show_sleep(options);
   if (options.arrays)
     return show_arrays(options);
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))
@@ -171,30 +138,15 @@ void add_effects_command(CLI::App& app, Action& action)
   CLI::App* command = app.add_subcommand("effects", "which effects a scene or a baked model has, and what each costs");
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   add_scene_options(*command, options->source);
-  CLI::Option* const backend = command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
-                                   ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
-  CLI::Option* const threads =
-      command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
-  CLI::Option* const seconds =
-      command->add_option("--seconds", options->seconds, "wall seconds to time each effect (2)")
-          ->check(CLI::PositiveNumber);
+  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
+      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
+  command->add_option("--seconds", options->seconds, "wall seconds to time each effect (2)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "JSON instead of a table");
   command->add_flag("--arrays", options->arrays, "instead of timing, the bytes of each of the solver's arrays")
       ->excludes(
           command->add_option("--plot", options->plot, "draws the costs as bars: FILE.png, and FILE.svg beside it"));
-  CLI::Option* const sleep =
-      command->add_option("--sleep", options->sleep,
-                          "instead of timing, what letting sleep what is at rest saves and errs within each of these "
-                          "tolerances [m] (run --sleep), on one thread, while muscles rise, are held, and are let go");
-  sleep->delimiter(',')->check(CLI::PositiveNumber)->excludes("--arrays")->excludes("--plot");
-  sleep->excludes(backend)->excludes(threads)->excludes(seconds);
-  CLI::Option* const raised =
-      command->add_option("--activate", options->activation, "those that rise: MUSCLE=VALUE,MUSCLE=VALUE,...");
-  raised->needs(sleep);
-  sleep->needs(raised);
-  command->add_option("--ramp", options->ramp, "within which they rise and are let go [s] (0.3)")
-      ->check(CLI::Range(0.0, 1.2))
-      ->needs(sleep);
   command->callback([options, &action] { action = [options] { show_effects(*options); }; });
 }
 

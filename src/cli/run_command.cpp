@@ -43,7 +43,6 @@ struct RunOptions
   std::string backend = "auto";
   int threads = 0;
   double time_step = 0;     ///< [s]; 0: found by the solver
-  double sleep = 0;         ///< [m]; 0: all is computed
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's
 };
 
@@ -161,7 +160,6 @@ void run(const RunOptions& options)
   settings.backend = backend_from_name(options.backend);
   settings.threads = options.threads;
   settings.time_step = options.time_step;
-  settings.sleep = options.sleep;
   settings.ledger = options.ledger;
   EffectSet off;
   for (const std::string& name : options.without)
@@ -265,8 +263,6 @@ void add_run_command(CLI::App& app, Action& action)
   command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
   command->add_option("--time-step", options->time_step,
                       "longest time step [s], at most the critical one (0: the safe one, by the model's share)");
-  command->add_option("--sleep", options->sleep,
-                      "backend cpu: what is at rest is not computed, within about so much [m] (0: all is)");
   add_scene_options(*command, options->source);
   command->callback(
       [&action, options, command]

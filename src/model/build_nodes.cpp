@@ -1,6 +1,8 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -8,11 +10,6 @@ namespace frontalis
 {
 namespace
 {
-
-std::string text(const std::array<std::int32_t, 3>& v)
-{
-  return "(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]) + ")";
-}
 
 void check_order(const Model& model)
 {
@@ -22,16 +19,15 @@ void check_order(const Model& model)
     for (int a = 0; a < 3; ++a)
     {
       if (v[a] < 0 || v[a] >= model.size[a])
-        throw Error("voxels: voxel " + std::to_string(e) + " lies at " + text(v) + ", outside of the grid of " +
-                    text(model.size));
+        throw Error(fmt::format("voxels: voxel {} lies at {}, outside of the grid of {}", e, v, model.size));
     }
     if (e > 0)
     {
       const auto& u = model.voxels[e - 1];
       const bool ordered = u[2] != v[2] ? u[2] < v[2] : (u[1] != v[1] ? u[1] < v[1] : u[0] < v[0]);
       if (!ordered)
-        throw Error("voxels: voxel " + std::to_string(e) + " at " + text(v) + " follows " + text(u) +
-                    "; voxels must be unique and ordered by k, then j, then i");
+        throw Error(fmt::format(
+            "voxels: voxel {} at {} follows {}; voxels must be unique and ordered by k, then j, then i", e, v, u));
     }
   }
 }
@@ -78,7 +74,7 @@ void build_nodes(Model& model)
   lower.number.assign(plane_size, -1);
   upper.number.assign(plane_size, -1);
 
-  // node plane k has the corners of the voxels of layers k - 1 and k: number it once both have marked theirs
+  // the nodes of plane k are corners of the voxels of layers k - 1 and k: mark both, then number the plane
   std::size_t before = 0, here = 0;
   for (std::int32_t k = 0; k <= model.size[2]; ++k)
   {

@@ -1,5 +1,8 @@
 #include "frontalis/effect.hpp"
 #include "frontalis/model/model.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstddef>
@@ -9,40 +12,49 @@ namespace frontalis
 namespace
 {
 
-[[noreturn]] void fail(const std::string& array, const std::string& found) { throw Error(array + ": " + found); }
-
-void check_length(const std::string& array, std::size_t found, std::size_t wanted, const std::string& of)
+template <class... Values>
+[[noreturn]] void fail(const std::string& array, fmt::format_string<Values...> found, Values&&... values)
 {
-  if (found != wanted)
-    fail(array, std::to_string(found) + " entries; " + std::to_string(wanted) + " wanted, one " + of);
+  throw Error(array + ": " + fmt::format(found, std::forward<Values>(values)...));
+}
+
+void check_length(const std::string& array, std::size_t found, std::size_t right, const std::string& of)
+{
+  if (found != right)
+    fail(array, "has {} entries; must have {}, one per {}", found, right, of);
 }
 
 template <class Integer>
 void check_index(const std::string& array, std::size_t at, Integer index, std::size_t count, Integer lowest = 0)
 {
   if (index < lowest || (index >= 0 && static_cast<std::size_t>(index) >= count))
-    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(index) + "; indices run from " +
-                    std::to_string(lowest) + " to " + std::to_string(static_cast<std::ptrdiff_t>(count) - 1));
+    fail(array, "entry {} is {}; indices run from {} to {}", at, index, lowest, static_cast<std::ptrdiff_t>(count) - 1);
 }
 
 void check_finite(const std::string& array, std::size_t at, double value)
 {
   if (!std::isfinite(value))
-    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; it must be finite");
+    fail(array, "entry {} is {}; it must be finite", at, value);
 }
 
 void check_positive(const std::string& array, std::size_t at, double value)
 {
   check_finite(array, at, value);
   if (!(value > 0))
-    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; it must be above 0");
+    fail(array, "entry {} is {}; it must be above 0", at, value);
+}
+
+void check_not_negative(const std::string& array, const std::string& what, double value)
+{
+  if (!(value >= 0) || !std::isfinite(value))
+    fail(array, "{} is {}; it must be finite and at least 0", what, value);
 }
 
 void check_proportion(const std::string& array, std::size_t at, double value)
 {
   check_finite(array, at, value);
   if (value < 0 || value > 1.0001)
-    fail(array, "entry " + std::to_string(at) + " is " + std::to_string(value) + "; proportions lie in 0..1");
+    fail(array, "entry {} is {}; proportions lie between 0 and 1", at, value);
 }
 
 template <std::size_t N, class T>
@@ -57,14 +69,14 @@ void check_ranges(const std::string& array, const std::vector<std::int32_t>& beg
 {
   check_length(array, begin.size(), voxels + 1, "voxel and an end");
   if (begin.front() != 0)
-    fail(array, "starts at " + std::to_string(begin.front()) + "; it must start at 0");
+    fail(array, "starts at {}; it must start at 0", begin.front());
   for (std::size_t e = 0; e < voxels; ++e)
   {
     if (begin[e] > begin[e + 1])
-      fail(array, "decreases after entry " + std::to_string(e));
+      fail(array, "decreases after entry {}", e);
   }
   if (static_cast<std::size_t>(begin.back()) != entries)
-    fail(array, "ends at " + std::to_string(begin.back()) + "; there are " + std::to_string(entries) + " entries");
+    fail(array, "ends at {}; there are {} entries", begin.back(), entries);
 }
 
 void check_mesh(const std::string& array, const TriangleMesh& mesh)
@@ -100,7 +112,7 @@ void check_grid(const Model& model)
   {
     check_proportion("fill", e, model.fill[e]);
     if (!(model.fill[e] > 0))
-      fail("fill", "entry " + std::to_string(e) + " is 0; a voxel without tissue must be left out");
+      fail("fill", "entry {} is 0; a voxel without tissue must be left out", e);
     for (int a = 0; a < 3; ++a)
       check_index("voxels", e, model.voxels[e][a], static_cast<std::size_t>(model.size[a]));
     for (const std::int32_t n : model.voxel_nodes[e])
@@ -112,7 +124,7 @@ void check_direction(const std::string& array, std::size_t at, const float* d)
 {
   const double length = std::hypot(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]));
   if (std::abs(length - 1) > 1e-3)
-    fail(array, "entry " + std::to_string(at) + " has length " + std::to_string(length) + "; 1 wanted");
+    fail(array, "entry {} has length {:.6g}; it must be 1", at, length);
 }
 
 void check_material_directions(const Model& model)
@@ -133,10 +145,10 @@ void check_mixtures(const Model& model)
 {
   for (std::size_t m = 0; m < model.materials.size(); ++m)
   {
-    check_finite("materials", m, model.materials[m].parameters);
-    check_positive("materials (bulk modulus)", m, model.materials[m].parameters[1]);
-    check_positive("materials (density)", m, model.materials[m].density);
     const Material& material = model.materials[m];
+    check_finite("materials", m, material.parameters);
+    check_positive("materials (bulk modulus)", m, material.parameters[physics::bulk_modulus_slot]);
+    check_positive("materials (density)", m, material.density);
     for (std::size_t term = 0; term < 2; ++term)
       if (material.viscous_share[term] != 0)
       {
@@ -144,10 +156,10 @@ void check_mixtures(const Model& model)
         check_positive("materials (viscous_time)", m, material.viscous_time[term]);
       }
     if (!(material.viscous_share[0] + material.viscous_share[1] < 1))
-      fail("materials (viscous_share)", "the shares of entry " + std::to_string(m) + " do not stay below 1 together");
-    if (model.materials[m].law > Law::guccione)
-      fail("materials", "entry " + std::to_string(m) + " has law " +
-                            std::to_string(static_cast<int>(model.materials[m].law)) + ", which is not known");
+      fail("materials (viscous_share)", "the shares of entry {} do not add up to less than 1", m);
+    if (static_cast<std::size_t>(material.law) >= physics::material_table.size())
+      fail("materials (law)", "entry {} has law {}; the laws run from 0 to {}", m, static_cast<int>(material.law),
+           physics::material_table.size() - 1);
   }
   const std::size_t entries = model.mixture_material.size();
   check_ranges("mixture_begin", model.mixture_begin, model.voxels.size(), entries);
@@ -163,8 +175,7 @@ void check_mixtures(const Model& model)
     for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
       sum += model.mixture_proportion[static_cast<std::size_t>(m)];
     if (std::abs(sum - 1) > 1e-4)
-      fail("mixture_proportion", "proportions of voxel " + std::to_string(e) + " add up to " + std::to_string(sum) +
-                                     "; they must add up to 1");
+      fail("mixture_proportion", "proportions of voxel {} add up to {:.6g}; they must add up to 1", e, sum);
   }
 }
 
@@ -174,9 +185,7 @@ void check_fibres(const Model& model)
   {
     check_positive("muscles (stress_reference)", m, model.muscles[m].stress_reference);
     for (const double time : { model.muscles[m].rise_time, model.muscles[m].fall_time })
-      if (!(time >= 0) || !std::isfinite(time))
-        fail("muscles", "rise or fall time of entry " + std::to_string(m) + " is " + std::to_string(time) +
-                            " s; it must be at least 0");
+      check_not_negative("muscles", fmt::format("rise or fall time [s] of entry {}", m), time);
   }
   const std::size_t entries = model.fibre_muscle.size();
   check_ranges("fibre_begin", model.fibre_begin, model.voxels.size(), entries);
@@ -198,8 +207,7 @@ void check_constraints(const Model& model)
     const std::string name = "constraint_surfaces '" + surface.name + "'";
     check_mesh(name, surface.mesh);
     check_index(name + " (bone)", 0, surface.bone, model.bones.size(), -1);
-    if (!(surface.friction >= 0) || !std::isfinite(surface.friction))
-      fail(name, "friction is " + std::to_string(surface.friction) + "; allowed are finite numbers from 0");
+    check_not_negative(name, "friction", surface.friction);
   }
   for (std::size_t n = 0; n < model.rigid.size(); ++n)
   {
@@ -229,7 +237,7 @@ void check_loads(const Model& model)
     const Load& load = model.loads[l];
     const std::string name = "loads '" + load.name + "'";
     if (load.kind > Load::Kind::displacement)
-      fail(name, "kind " + std::to_string(static_cast<int>(load.kind)) + " is not known");
+      fail(name, "kind {} is not known", static_cast<int>(load.kind));
     check_finite(name + " (value)", l, load.value);
     check_finite(name + " (ramp)", l, load.ramp);
     check_mesh(name, load.mesh);
@@ -240,8 +248,8 @@ void check_loads(const Model& model)
 void check_presets(const Model& model)
 {
   for (const Model::AccuracyProfile& profile : model.profiles)
-    if (!(profile.error >= 0) || !(profile.cost >= 0) || !std::isfinite(profile.error) || !std::isfinite(profile.cost))
-      throw Error("profiles '" + profile.name + "': error and cost must be finite and at least 0");
+    for (const auto& [what, value] : { std::pair{ "error", profile.error }, { "cost", profile.cost } })
+      check_not_negative("profiles '" + profile.name + "'", what, value);
   for (const Model::Expression& expression : model.expressions)
   {
     for (std::size_t m = 0; m < expression.activation.size(); ++m)
@@ -264,24 +272,20 @@ void check_settings(const Model& model)
   check_finite("to_scene", 0, model.to_scene.translation);
   check_finite("to_face", 0, model.to_face.rotation);
   check_finite("to_face", 0, model.to_face.translation);
-  check_finite("damping", 0, model.damping);
-  if (model.damping < 0)
-    fail("damping", "is " + std::to_string(model.damping) + "; it must be at least 0");
+  check_not_negative("time", "damping", model.damping);
   check_positive("time_scaling", 0, model.time_scaling);
   check_positive("frame_rate", 0, model.frame_rate);
-  if (!(model.activation_slew >= 0) || !std::isfinite(model.activation_slew))
-    fail("activation_slew", "is " + std::to_string(model.activation_slew) + " 1/s; it must be at least 0");
+  check_not_negative("time", "activation_slew", model.activation_slew);
   check_positive("time_step_share", 0, model.time_step_share);
   if (model.time_step_share > 1)
-    fail("time_step_share", "is " + std::to_string(model.time_step_share) + "; it must be at most 1");
+    fail("time_step_share", "is {}; it must be at most 1", model.time_step_share);
   if (model.hourglass > HourglassControl::assumed_strain || model.integration > Integration::selective_reduced ||
       model.precision > Precision::double_precision || model.time_step_estimate > TimeStepEstimate::assembled)
     fail("hourglass, integration, precision, step_estimate", "a setting is not known");
   if (model.mass_scaling.kind > MassScalingSettings::Kind::selective)
-    fail("mass_scaling", "kind " + std::to_string(static_cast<int>(model.mass_scaling.kind)) + " is not known");
+    fail("mass_scaling", "kind {} is not known", static_cast<int>(model.mass_scaling.kind));
   check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);
-  if (!(model.mass_scaling.time_step >= 0) || !std::isfinite(model.mass_scaling.time_step))
-    fail("mass_scaling", "time step is " + std::to_string(model.mass_scaling.time_step) + " s; it must be at least 0");
+  check_not_negative("mass_scaling", "time_step", model.mass_scaling.time_step);
   for (std::size_t m = 0; m < model.mass_scaling.materials.size(); ++m)
     check_index("mass_scaling (materials)", m, model.mass_scaling.materials[m], model.materials.size());
   for (const std::string& name : model.switched_off)

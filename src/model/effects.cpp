@@ -1,5 +1,7 @@
 #include "frontalis/model/effects.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace frontalis
@@ -9,7 +11,7 @@ namespace
 
 std::string counted(std::size_t count, const std::string& one)
 {
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
 }
 
 bool is_off(const Model& model, Effect effect)
@@ -18,7 +20,7 @@ bool is_off(const Model& model, Effect effect)
   return std::find(off.begin(), off.end(), name_of(effect)) != off.end();
 }
 
-// voxels with a fibre of one of the muscles, and how many of these muscles there are
+// number of voxels with a fibre, or with a fibre of a muscle that has passive stress
 std::size_t voxels_with_fibres(const Model& model, bool passive_alone)
 {
   std::size_t count = 0;
@@ -76,7 +78,7 @@ std::size_t count_surface_loads(const Model& model)
   return static_cast<std::size_t>(std::count_if(model.loads.begin(), model.loads.end(), is_surface_load));
 }
 
-// what there is of an effect, as long as nobody switched it off
+// what the model has of an effect that is not switched off
 EffectPresence found(const Model& model, Effect effect)
 {
   const auto on_voxels = [](std::size_t voxels, const std::string& why, const std::string& otherwise) {
@@ -145,7 +147,7 @@ void remove_fibres(Model& model, bool keep_passive)
   model.fibre_direction.resize(kept);
 }
 
-// loads for which the condition holds go, and with them the nodes that they prescribe
+// removes the loads for which the condition holds, and the prescribed nodes that follow them
 template <class Condition>
 void remove_loads(Model& model, Condition&& goes)
 {

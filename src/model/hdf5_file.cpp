@@ -2,6 +2,8 @@
 
 #include "frontalis/error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -69,9 +71,9 @@ Hdf5File Hdf5File::open(const std::string& path)
   if (!std::filesystem::exists(path, code))
     throw Error("there is no such file");
   if (std::filesystem::is_directory(path, code))
-    throw Error("is a folder; a model file is wanted");
+    throw Error("is a folder; must be a model file");
   if (H5Fis_hdf5(path.c_str()) <= 0)
-    throw Error("is not an HDF5 file; a model written by 'frontalis bake' is wanted");
+    throw Error("is not an HDF5 file; must be a model written by 'frontalis bake'");
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0)
     throw Error("is truncated or damaged; bake it again");
@@ -120,14 +122,14 @@ hsize_t Hdf5File::rows(const std::string& path, hsize_t width) const
   hsize_t shape[2] = { 0, 1 };
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, nullptr) < 0 || shape[1] != width)
-    throw Error("array " + path + " has another shape; " + std::to_string(width) + " numbers an entry are wanted");
+    throw Error(fmt::format("array {} has another shape; it must have {} numbers per entry", path, width));
   return shape[0];
 }
 
 void Hdf5File::read(const std::string& path, void* data, hsize_t rows, hsize_t width, hid_t memory) const
 {
   if (this->rows(path, width) != rows)
-    throw Error("array " + path + " has another length than its neighbours; " + std::to_string(rows) + " wanted");
+    throw Error(fmt::format("array {} has another length than its neighbours, which have {} entries", path, rows));
   const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open array " + path);
   if (rows > 0 && H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     throw Error("array " + path + " cannot be read; the file is truncated or damaged");

@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-/// Number type of a column in memory and in the file, with the count of numbers an entry.
+/// Number type of a column in memory and in the file, with how many numbers an entry has.
 template <class T, class = void>
 struct Hdf5Element
 {
@@ -38,51 +38,18 @@ struct Hdf5Element<std::array<T, N>, void>
   static constexpr hsize_t width = N;
 };
 
-/// Type in memory, and in the file (little-endian, so that equal models give equal bytes everywhere).
-template <class Number>
-struct Hdf5Type;
-template <>
-struct Hdf5Type<std::uint8_t>
+/// Types of numbers in memory and in the file (little-endian, so that equal models give equal bytes everywhere).
+struct Hdf5Types
 {
-  static hid_t memory() { return H5T_NATIVE_UINT8; }
-  static hid_t file() { return H5T_STD_U8LE; }
+  hid_t memory, file;
 };
-template <>
-struct Hdf5Type<std::int8_t>
-{
-  static hid_t memory() { return H5T_NATIVE_INT8; }
-  static hid_t file() { return H5T_STD_I8LE; }
-};
-template <>
-struct Hdf5Type<std::int16_t>
-{
-  static hid_t memory() { return H5T_NATIVE_INT16; }
-  static hid_t file() { return H5T_STD_I16LE; }
-};
-template <>
-struct Hdf5Type<std::int32_t>
-{
-  static hid_t memory() { return H5T_NATIVE_INT32; }
-  static hid_t file() { return H5T_STD_I32LE; }
-};
-template <>
-struct Hdf5Type<std::int64_t>
-{
-  static hid_t memory() { return H5T_NATIVE_INT64; }
-  static hid_t file() { return H5T_STD_I64LE; }
-};
-template <>
-struct Hdf5Type<float>
-{
-  static hid_t memory() { return H5T_NATIVE_FLOAT; }
-  static hid_t file() { return H5T_IEEE_F32LE; }
-};
-template <>
-struct Hdf5Type<double>
-{
-  static hid_t memory() { return H5T_NATIVE_DOUBLE; }
-  static hid_t file() { return H5T_IEEE_F64LE; }
-};
+inline Hdf5Types types_of(std::uint8_t) { return { H5T_NATIVE_UINT8, H5T_STD_U8LE }; }
+inline Hdf5Types types_of(std::int8_t) { return { H5T_NATIVE_INT8, H5T_STD_I8LE }; }
+inline Hdf5Types types_of(std::int16_t) { return { H5T_NATIVE_INT16, H5T_STD_I16LE }; }
+inline Hdf5Types types_of(std::int32_t) { return { H5T_NATIVE_INT32, H5T_STD_I32LE }; }
+inline Hdf5Types types_of(std::int64_t) { return { H5T_NATIVE_INT64, H5T_STD_I64LE }; }
+inline Hdf5Types types_of(float) { return { H5T_NATIVE_FLOAT, H5T_IEEE_F32LE }; }
+inline Hdf5Types types_of(double) { return { H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE }; }
 
 /// An HDF5 file open for writing or for reading, without times and without HDF5's own messages. Every function throws
 /// Error naming the array.
@@ -105,7 +72,7 @@ public:
   template <class Number>
   void write(const std::string& path, const Number* data, hsize_t rows, hsize_t width)
   {
-    write(path, data, rows, width, Hdf5Type<Number>::memory(), Hdf5Type<Number>::file());
+    write(path, data, rows, width, types_of(Number{}).memory, types_of(Number{}).file);
   }
 
   /// Rows of an array, checking its width.
@@ -113,7 +80,7 @@ public:
   template <class Number>
   void read(const std::string& path, Number* data, hsize_t rows, hsize_t width) const
   {
-    read(path, data, rows, width, Hdf5Type<Number>::memory());
+    read(path, data, rows, width, types_of(Number{}).memory);
   }
 
   /// Strings of fixed length, padded with zeros.

@@ -3,6 +3,8 @@
 #include "frontalis/error.hpp"
 #include "model/hdf5_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -93,7 +95,7 @@ public:
     std::vector<ModelWriter::Single<T>> one;
     column(path, one, &ModelWriter::Single<T>::value);
     if (one.size() != 1)
-      throw Error("array " + path + " has " + std::to_string(one.size()) + " entries; 1 is wanted");
+      throw Error(fmt::format("array {} has {} entries; it must have 1", path, one.size()));
     value = one.front().value;
   }
 
@@ -125,8 +127,7 @@ private:
     if (entries.empty())
       entries.resize(count);
     else if (entries.size() != count)
-      throw Error("array " + path + " has " + std::to_string(count) + " entries; its neighbours have " +
-                  std::to_string(entries.size()));
+      throw Error(fmt::format("array {} has {} entries; its neighbours have {}", path, count, entries.size()));
   }
 
   const Hdf5File& file_;

@@ -6,6 +6,8 @@
 #include "model/model_layout.hpp"
 #include "model/vtk_arrays.hpp"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -35,7 +37,7 @@ void write_whole(const Model& model, const std::string& path)
   file.close();
 }
 
-/// Makes sure that a file, or the entries of a folder, are on the disk.
+/// Writes a file, or the entries of a folder, to the disk.
 void synchronise(const std::string& path)
 {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -49,7 +51,7 @@ void synchronise(const std::string& path)
     throw Error(std::string("cannot be written to the disk: ") + std::strerror(reason));
 }
 
-/// Reads a model, of one scene where `scene_hash` names it.
+/// Reads a model; where `scene_hash` is given, it must be the model of that scene.
 Model read(const std::string& path, const std::string* scene_hash)
 {
   try
@@ -57,10 +59,10 @@ Model read(const std::string& path, const std::string* scene_hash)
     const Hdf5File file = Hdf5File::open(path);
     const std::int64_t version = file.attribute(root, "model_file_version", -1);
     if (version < 0)
-      throw Error("is an HDF5 file, but not a model; one written by 'frontalis bake' is wanted");
+      throw Error("is an HDF5 file, but not a model; must be written by 'frontalis bake'");
     if (version != model_file_version)
-      throw Error("has version " + std::to_string(version) + "; this program reads version " +
-                  std::to_string(model_file_version) + ": bake the scene again");
+      throw Error(fmt::format("has version {}; this program reads version {}: bake the scene again", version,
+                              model_file_version));
     Model model;
     ModelReader reader(file);
     if (scene_hash != nullptr)
@@ -69,11 +71,11 @@ Model read(const std::string& path, const std::string* scene_hash)
       reader.value(package_version, baked_by);
       reader.value(root + "/scene_hash", model.scene_hash);
       if (model.scene_hash != *scene_hash)
-        throw Error("is of another scene (content hash '" + model.scene_hash + "'; '" + *scene_hash +
-                    "' is wanted); bake the scene again");
+        throw Error(fmt::format("is of another scene (content hash '{}', not '{}'); bake the scene again",
+                                model.scene_hash, *scene_hash));
       if (baked_by != FRONTALIS_VERSION)
-        throw Error("was baked by version " + baked_by +
-                    " of frontalis, and this is " FRONTALIS_VERSION "; bake the scene again");
+        throw Error(fmt::format("was baked by version {} of frontalis, and this is {}; bake the scene again", baked_by,
+                                FRONTALIS_VERSION));
     }
     exchange_model(reader, model, root);
     build_nodes(model);

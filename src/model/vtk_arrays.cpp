@@ -85,7 +85,8 @@ void write_cell_data(Hdf5File& file, const Model& model)
 
 void write_point_data(Hdf5File& file, const Model& model)
 {
-  // 0 free, 1 rigid, 2 sliding, 3 prescribed; by what: constraints, then loads; -1: nothing
+  // constraint: 0 free, 1 rigid, 2 sliding, 3 prescribed; held_by: index of a constraint, loads counted behind the
+  // constraints; -1: none
   std::vector<std::uint8_t> constraint(model.nodes.size(), 0);
   std::vector<std::int32_t> held_by(model.nodes.size(), -1);
   std::vector<float> distance(model.nodes.size(), 0.f);

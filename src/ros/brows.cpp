@@ -13,10 +13,10 @@ namespace
 
 using Point = std::array<double, 3>;
 
-constexpr double half_width = 4.0e-3;    // [m] of the band at its inner end
-constexpr double inner_length = 9.0e-3;  // [m] drawn beyond the innermost landmark
-constexpr double outer_length = 11e-3;   // [m] drawn beyond the outermost landmark
-constexpr double density = 0.85;         // of the hair in the middle of the band
+constexpr double half_width = 4.0e-3;     // half the width of the band at its inner end [m]
+constexpr double inner_length = 9.0e-3;   // of the band beyond the innermost landmark [m]
+constexpr double outer_length = 11.0e-3;  // of the band beyond the outermost landmark [m]
+constexpr double density = 0.85;          // share of the skin that hair covers in the middle of the band
 
 Point blend(const Point& a, const Point& b, double share)
 {
@@ -26,15 +26,15 @@ Point blend(const Point& a, const Point& b, double share)
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// Distance from the face's middle plane [m].
-double from_middle(const Model& model, const Point& local)
+double distance_from_middle(const Model& model, const Point& local)
 {
   const auto& map = model.to_face;
   return std::abs(map.rotation[3] * local[0] + map.rotation[4] * local[1] + map.rotation[5] * local[2] +
                   map.translation[1]);
 }
 
-/// The brow's line on one side, from the inner to the outer end; empty where there are too few landmarks.
-std::vector<Point> line(const Model& model, const std::string& side)
+/// The line of the brow on one side, from its inner to its outer end; empty if there are fewer than two landmarks.
+std::vector<Point> brow_line(const Model& model, const std::string& side)
 {
   std::vector<Point> points;
   for (std::size_t landmark = 0; landmark < model.landmarks.size(); ++landmark)
@@ -47,7 +47,8 @@ std::vector<Point> line(const Model& model, const std::string& side)
   if (points.size() < 2)
     return {};
   std::sort(points.begin(), points.end(),
-            [&](const Point& a, const Point& b) { return from_middle(model, a) < from_middle(model, b); });
+            [&](const Point& a, const Point& b)
+            { return distance_from_middle(model, a) < distance_from_middle(model, b); });
   const double inner = distance(points[0], points[1]);
   const double outer = distance(points[points.size() - 2], points.back());
   if (!(inner > 0) || !(outer > 0))
@@ -57,8 +58,8 @@ std::vector<Point> line(const Model& model, const std::string& side)
   return points;
 }
 
-/// Distance from the line [m] and the share of its length at the closest point.
-std::pair<double, double> closest(const std::vector<Point>& points, const Point& vertex)
+/// Distance of a vertex from a line [m], and the share of the line's length at which the closest point is, 0..1.
+std::pair<double, double> closest_on_line(const std::vector<Point>& points, const Point& vertex)
 {
   double length = 0, best = 1e9, at = 0;
   for (std::size_t end = 1; end < points.size(); ++end)
@@ -87,13 +88,13 @@ std::vector<float> brow_cover(const Model& model)
   std::vector<float> cover(model.skin.vertices.size(), 0.0f);
   for (const char* const side : { "_left", "_right" })
   {
-    const auto points = line(model, side);
+    const auto points = brow_line(model, side);
     if (points.empty())
       continue;
     for (std::size_t vertex = 0; vertex < cover.size(); ++vertex)
     {
-      // full in the middle, soft at the border, narrower towards the temple
-      const auto [off, along] = closest(points, model.skin.vertices[vertex]);
+      // dense in the middle, soft at the border, and narrower towards the temple
+      const auto [off, along] = closest_on_line(points, model.skin.vertices[vertex]);
       const double width = half_width * (1 - 0.55 * along);
       const double share = std::clamp((1.5 * width - off) / width, 0.0, 1.0);
       cover[vertex] = std::max(cover[vertex], static_cast<float>(density * share * share * (3 - 2 * share)));

@@ -1,6 +1,9 @@
 #include "frontalis/ros/conversions.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/runner/face_frame.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstring>
@@ -10,14 +13,6 @@ namespace frontalis
 
 namespace
 {
-
-bool finite(const std::vector<std::array<float, 3>>& points)
-{
-  for (const auto& point : points)
-    if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
-      return false;
-  return true;
-}
 
 void set_cloud_layout(std::size_t points, sensor_msgs::PointCloud2& out)
 {
@@ -32,10 +27,7 @@ void set_cloud_layout(std::size_t points, sensor_msgs::PointCloud2& out)
     out.fields[field].datatype = sensor_msgs::PointField::FLOAT32;
     out.fields[field].count = 1;
   }
-  const std::uint16_t probe = 1;
-  std::uint8_t first_byte = 0;
-  std::memcpy(&first_byte, &probe, 1);
-  out.is_bigendian = first_byte == 0;
+  out.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
   out.point_step = 7 * sizeof(float);
   out.row_step = out.point_step * out.width;
   out.is_dense = true;
@@ -46,23 +38,19 @@ void set_cloud_layout(std::size_t points, sensor_msgs::PointCloud2& out)
 
 std::vector<std::array<float, 3>> rest_in_face(const Model& model)
 {
-  const auto& rotation = model.to_face.rotation;
-  std::vector<std::array<float, 3>> out(model.skin.vertices.size());
-  for (std::size_t vertex = 0; vertex < out.size(); ++vertex)
-  {
-    const auto& local = model.skin.vertices[vertex];
-    for (int row = 0; row < 3; ++row)
-      out[vertex][row] = static_cast<float>(rotation[3 * row] * local[0] + rotation[3 * row + 1] * local[1] +
-                                            rotation[3 * row + 2] * local[2] + model.to_face.translation[row]);
-  }
-  return out;
+  SkinState skin;
+  skin.vertices.reserve(model.skin.vertices.size());
+  for (const auto& vertex : model.skin.vertices)
+    skin.vertices.push_back(
+        { { static_cast<float>(vertex[0]), static_cast<float>(vertex[1]), static_cast<float>(vertex[2]) } });
+  to_face_frame(model, skin);
+  return skin.vertices;
 }
 
 bool is_publishable(const SkinState& skin, const Model& model)
 {
   return skin.vertices.size() == model.skin.vertices.size() && skin.normals.size() == skin.vertices.size() &&
-         skin.landmarks.size() == model.landmarks.size() && finite(skin.vertices) && finite(skin.normals) &&
-         finite(skin.landmarks);
+         skin.landmarks.size() == model.landmarks.size() && is_finite(skin);
 }
 
 shape_msgs::Mesh to_mesh(const Model& model)
@@ -200,7 +188,7 @@ RigidTransform to_motion(const geometry_msgs::Transform& transform)
   const auto& q = transform.rotation;
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(length - 1) < 1e-3))
-    throw Error("rotation is a quaternion of length " + std::to_string(length) + "; must be 1");
+    throw Error(fmt::format("the rotation is a quaternion of length {}; must be 1", length));
   const double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
   RigidTransform motion;
   motion.rotation = { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),

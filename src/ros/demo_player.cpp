@@ -39,7 +39,7 @@ std::map<std::string, double> DemoPlayer::activation(double time) const
   while (index + 1 < phases_.size() && within >= phases_[index + 1].begin)
     ++index;
 
-  // the very first phase starts relaxed, the first one of later rounds where the last one ended
+  // the very first phase starts relaxed, the first phase of later rounds from the expression of the last phase
   const Phase& phase = phases_[index];
   const Phase& last = phases_[index > 0 ? index - 1 : phases_.size() - 1];
   const bool from_rest = index == 0 && round < 1;

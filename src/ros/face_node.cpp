@@ -14,12 +14,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double tick_period = 1.0 / 30;    // [s] of the demo's controls
-constexpr double idle_period = 0.5;         // [s] after which a face that stands still is shown again
-constexpr double diagnostics_period = 1.0;  // [s]
-constexpr double stalled_after = 3.0;       // [s] without a frame
-constexpr double speed_after = 3.0;         // [s] of running after which its speed is told
-constexpr double slow = 0.95;               // of real time
+constexpr double demo_period = 1.0 / 30;     // time between two settings of the demo's activations [s]
+constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
+constexpr double diagnostics_period = 1.0;   // time between two messages [s]
+constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
+constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 
 }  // namespace
 
@@ -29,15 +28,19 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       name_(name),
       updater_(handle, private_handle, name),
       publisher_(private_handle),
-      published_(ros::WallTime::now())
+      last_frame_(ros::WallTime::now())
 {
   updater_.setHardwareID("none");
   updater_.add("simulation", this, &FaceNode::diagnose);
 
   subscribers_.push_back(private_handle_.subscribe<MuscleActivation>(
-      "muscle_activation", 10, [this](const MuscleActivation::ConstPtr& message) { on_muscle_activation(*message); }));
+      "muscle_activation", 10,
+      [this](const MuscleActivation::ConstPtr& message)
+      { set_activation("muscle_activation", message->name, message->activation); }));
   subscribers_.push_back(private_handle_.subscribe<sensor_msgs::JointState>(
-      "joint_states", 10, [this](const sensor_msgs::JointState::ConstPtr& message) { on_joint_states(*message); }));
+      "joint_states", 10,
+      [this](const sensor_msgs::JointState::ConstPtr& message)
+      { set_activation("joint_states", message->name, message->position); }));
   subscribers_.push_back(private_handle_.subscribe<std_msgs::String>(
       "expression", 10, [this](const std_msgs::String::ConstPtr& message) { on_expression(*message); }));
   subscribers_.push_back(private_handle_.subscribe<geometry_msgs::TransformStamped>(
@@ -48,19 +51,19 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   services_.push_back(private_handle_.advertiseService("switch_effect", &FaceNode::on_switch_effect, this));
   services_.push_back(private_handle_.advertiseService("list_muscles", &FaceNode::on_list_muscles, this));
 
-  tick_ = private_handle_.createWallTimer(ros::WallDuration(tick_period),
-                                          [this](const ros::WallTimerEvent&) { on_tick(); });
-  diagnostics_ = private_handle_.createWallTimer(ros::WallDuration(diagnostics_period),
-                                                 [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(demo_period),
+                                                 [this](const ros::WallTimerEvent&) { repeat_frame_and_play_demo(); });
+  diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(diagnostics_period),
+                                                       [this](const ros::WallTimerEvent&) { updater_.force_update(); });
   loader_ = std::thread([this] { load(); });
 }
 
 FaceNode::~FaceNode()
 {
-  // no callback may begin any more, then the loader and the runner end, while the publishers are still there
+  // First no callback may begin any more; then the loader and the runner end, which still use the publishers.
   stopping_ = true;
-  tick_.stop();
-  diagnostics_.stop();
+  frame_timer_.stop();
+  diagnostics_timer_.stop();
   for (auto& subscriber : subscribers_)
     subscriber.shutdown();
   if (const auto running = runner())
@@ -94,7 +97,7 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
     {
       ROS_INFO_STREAM(name_ << ": " << line);
       const std::lock_guard<std::mutex> lock(runner_mutex_);
-      stage_ = "baking: " + line;
+      loading_stage_ = "baking: " + line;
     };
     model = std::make_shared<const Model>(bake_in_process(request, log, stopping_));
   }
@@ -125,8 +128,9 @@ void FaceNode::load()
       demo_playing_ = parameters.demo && !demo->empty();
     }
 
-    // the runner's first frame may come before its constructor returns: frames wait until the publisher has the model
-    // (declared after the runner: on an exception frames flow again before the runner's thread is joined)
+    // The runner's first frame may come before its constructor returns: the lock makes frames wait until the publisher
+    // has the model. It is declared after the runner, so that after an exception the runner's thread, which may wait
+    // for it, can end.
     std::shared_ptr<Runner> made;
     std::unique_lock<std::mutex> frames(frame_mutex_);
     RunnerSettings settings = parameters.runner;
@@ -135,11 +139,11 @@ void FaceNode::load()
     made = std::make_shared<Runner>(model, settings, [this](const Frame& frame) { on_frame(frame); });
     const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
     publisher_.start(model, frame_name, parameters.parent_frame, made->description());
-    published_ = shown_ = ros::WallTime::now();
+    last_frame_ = last_published_ = ros::WallTime::now();
     frames.unlock();
 
     paused_ = made->paused();
-    // in lock-step nothing moves yet: show the face at rest
+    // in lock-step no frame comes before the first ~step: publish the face at rest
     if (parameters.runner.pace == Pace::lock_step)
       made->reset();
     if (const std::string measured = measured_profile(*model); !measured.empty())
@@ -151,17 +155,17 @@ void FaceNode::load()
   catch (const std::exception& error)
   {
     if (!stopping_)
-      ROS_ERROR_STREAM(name_ << ": no face to simulate: " << error.what());
+      ROS_ERROR_STREAM(name_ << ": there is no face to simulate: " << error.what());
     const std::lock_guard<std::mutex> lock(runner_mutex_);
     load_fault_ = error.what();
   }
 }
 
-std::shared_ptr<Runner> FaceNode::runner(std::string* why) const
+std::shared_ptr<Runner> FaceNode::runner(std::string* reason) const
 {
   const std::lock_guard<std::mutex> lock(runner_mutex_);
-  if (!runner_ && why)
-    *why = load_fault_.empty() ? "the model is not ready yet (" + stage_ + ")" : load_fault_;
+  if (!runner_ && reason)
+    *reason = load_fault_.empty() ? "the model is not ready yet (" + loading_stage_ + ")" : load_fault_;
   return runner_;
 }
 
@@ -170,8 +174,8 @@ void FaceNode::on_frame(const Frame& frame)
   const std::lock_guard<std::mutex> lock(frame_mutex_);
   frame_ = frame;
   has_frame_ = true;
-  published_ = shown_ = ros::WallTime::now();
-  tell_speed();
+  last_frame_ = last_published_ = ros::WallTime::now();
+  log_speed_once();
   frame_finite_ = publisher_.publish(frame_, ros::Time::now(), paused_);
   if (!frame_finite_)
   {
@@ -180,20 +184,20 @@ void FaceNode::on_frame(const Frame& frame)
   }
 }
 
-// once, when the real-time factor has settled
-void FaceNode::tell_speed()
+// logs the real-time factor once it has settled
+void FaceNode::log_speed_once()
 {
-  if (!speed_.empty() || !publisher_.model() || parameters_.runner.pace == Pace::lock_step || frame_.failed ||
-      frame_.wall_time < speed_after || !(frame_.real_time_factor > 0))
+  if (!speed_report_.empty() || !publisher_.model() || parameters_.runner.pace == Pace::lock_step || frame_.failed ||
+      frame_.wall_time < speed_settled_after || !(frame_.real_time_factor > 0))
     return;
-  speed_ = speed_report(*publisher_.model(), frame_.real_time_factor);
-  if (frame_.real_time_factor < slow)
-    ROS_WARN_STREAM(name_ << ": " << speed_);
+  speed_report_ = speed_report(*publisher_.model(), frame_.real_time_factor);
+  if (frame_.real_time_factor < sufficient_real_time_factor)
+    ROS_WARN_STREAM(name_ << ": " << speed_report_);
   else
-    ROS_INFO_STREAM(name_ << ": " << speed_);
+    ROS_INFO_STREAM(name_ << ": " << speed_report_);
 }
 
-void FaceNode::on_tick()
+void FaceNode::repeat_frame_and_play_demo()
 {
   const auto running = runner();
   std::string fault;
@@ -205,18 +209,18 @@ void FaceNode::on_tick()
   double time = 0;
   {
     const std::lock_guard<std::mutex> lock(frame_mutex_);
-    idle = (ros::WallTime::now() - shown_).toSec() > idle_period;
+    idle = (ros::WallTime::now() - last_published_).toSec() > repetition_period;
     time = frame_.time;
     if (idle)
-      shown_ = ros::WallTime::now();
-    // a face that stands still is shown again, for those who came late
+      last_published_ = ros::WallTime::now();
+    // the frame of a face that stands still is sent again for late subscribers
     if (idle && running && has_frame_ && frame_finite_)
       publisher_.publish(frame_, ros::Time::now(), paused_);
-    // one that is still being baked has not failed
+    // a face whose model could not be made has failed; one that is still being baked has not
     if (idle && !fault.empty())
       publisher_.publish_fault(fault, ros::Time::now());
   }
-  // in lock-step the demo's target is set by the step alone
+  // in lock-step ~step sets the demo's activations
   if (running && !paused_ && parameters_.runner.pace != Pace::lock_step)
     play_demo(time);
 }
@@ -237,36 +241,36 @@ void FaceNode::play_demo(double time)
 void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
 {
   using diagnostic_msgs::DiagnosticStatus;
-  std::string why;
-  const auto running = runner(&why);
+  std::string reason;
+  const auto running = runner(&reason);
   if (!running)
   {
     const std::lock_guard<std::mutex> lock(runner_mutex_);
-    status.summary(load_fault_.empty() ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR, why);
+    status.summary(load_fault_.empty() ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR, reason);
     return;
   }
 
   const std::lock_guard<std::mutex> lock(frame_mutex_);
-  const bool own_pace = parameters_.runner.pace != Pace::lock_step && !paused_;
-  const double silence = (ros::WallTime::now() - published_).toSec();
+  const bool moves_by_itself = parameters_.runner.pace != Pace::lock_step && !paused_;
+  const double silence = (ros::WallTime::now() - last_frame_).toSec();
   if (frame_.failed)
     status.summary(DiagnosticStatus::ERROR, frame_.failure);
   else if (!frame_finite_)
     status.summary(DiagnosticStatus::ERROR, "the latest frame is not finite and was not published; call ~reset");
-  else if (own_pace && (!has_frame_ || silence > stalled_after))
-    status.summary(DiagnosticStatus::WARN, "no frame for seconds");
-  else if (!own_pace)
-    status.summary(DiagnosticStatus::OK, parameters_.runner.pace == Pace::lock_step ? "waits for ~step" : "paused");
+  else if (moves_by_itself && (!has_frame_ || silence > stalled_after))
+    status.summaryf(DiagnosticStatus::WARN, "no frame for more than %g seconds", stalled_after);
+  else if (!moves_by_itself)
+    status.summary(DiagnosticStatus::OK, parameters_.runner.pace == Pace::lock_step ? "waiting for ~step" : "paused");
   else if (parameters_.runner.pace == Pace::real_time && frame_.time > 1 &&
            frame_.real_time_factor < parameters_.real_time_factor_warning)
-    status.summaryf(DiagnosticStatus::WARN, "slow: real-time factor %.3g, below %.3g", frame_.real_time_factor,
-                    parameters_.real_time_factor_warning);
+    status.summaryf(DiagnosticStatus::WARN, "too slow: the real-time factor is %.3g, below %.3g",
+                    frame_.real_time_factor, parameters_.real_time_factor_warning);
   else
-    status.summaryf(DiagnosticStatus::OK, "runs, real-time factor %.3g", frame_.real_time_factor);
+    status.summaryf(DiagnosticStatus::OK, "running with a real-time factor of %.3g", frame_.real_time_factor);
 
   status.add("backend", running->description());
   status.add("accuracy", measured_profile(running->model()));
-  status.add("speed", speed_);
+  status.add("speed", speed_report_);
   status.add("simulated time [s]", frame_.time);
   status.add("real-time factor", frame_.real_time_factor);
   status.add("time step [s]", frame_.time_step);
@@ -275,11 +279,11 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("internal energy [J]", frame_.monitor.internal);
   status.add("hourglass energy [J]", frame_.monitor.hourglass);
   status.add("smallest volume ratio", frame_.monitor.worst_jacobian);
-  status.add("voxels inside out", frame_.monitor.inverted);
-  status.add("times gone back to a stable state", frame_.guard.rollbacks);
+  status.add("inverted voxels", frame_.monitor.inverted);
+  status.add("returns to an earlier stable state", frame_.guard.rollbacks);
   if (frame_.guard.rollbacks > 0)
-    status.add("why gone back the last time", words_for(frame_.guard.latest));
-  status.add("frames not published because not finite", frames_dropped_);
+    status.add("reason of the latest return", words_for(frame_.guard.latest));
+  status.add("frames not published as not finite", frames_dropped_);
 }
 
 }  // namespace frontalis

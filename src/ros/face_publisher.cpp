@@ -12,9 +12,10 @@ namespace frontalis
 namespace
 {
 
-/// The message in `slot`, or a fresh one where a subscriber in this process still holds it; with its header set.
+/// The message in `slot` with its header set. If a subscriber in this process still holds the message, it is replaced
+/// by a new one.
 template <typename Message>
-Message& renewed(boost::shared_ptr<Message>& slot, const std::string& frame, const ros::Time& stamp)
+Message& reuse_or_make(boost::shared_ptr<Message>& slot, const std::string& frame, const ros::Time& stamp)
 {
   if (!slot || slot.use_count() > 1)
     slot = boost::make_shared<Message>();
@@ -64,28 +65,28 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
 
   if (skin_.getNumSubscribers() > 0)
   {
-    to_marker(*model_, *shading_, frame.skin, renewed(skin_message_, face_frame_, stamp));
+    to_marker(*model_, *shading_, frame.skin, reuse_or_make(skin_message_, face_frame_, stamp));
     skin_.publish(skin_message_);
   }
   if (points_.getNumSubscribers() > 0)
   {
-    to_point_cloud(frame.skin, distances(frame.skin, rest_), renewed(points_message_, face_frame_, stamp));
+    to_point_cloud(frame.skin, distances(frame.skin, rest_), reuse_or_make(points_message_, face_frame_, stamp));
     points_.publish(points_message_);
   }
-  // a frame made before there was a subscriber has no field
+  // a frame that was made before there were subscribers has no field
   if (shows_field() && frame.field.size() == frame.skin.vertices.size())
   {
-    to_point_cloud(frame.skin, frame.field, renewed(field_message_, face_frame_, stamp));
+    to_point_cloud(frame.skin, frame.field, reuse_or_make(field_message_, face_frame_, stamp));
     field_.publish(field_message_);
   }
   if (landmarks_.getNumSubscribers() > 0)
   {
-    to_poses(frame.skin, renewed(landmarks_message_, face_frame_, stamp));
+    to_poses(frame.skin, reuse_or_make(landmarks_message_, face_frame_, stamp));
     landmarks_.publish(landmarks_message_);
   }
   if (state_.getNumSubscribers() > 0)
   {
-    SimulationState& state = renewed(state_message_, face_frame_, stamp);
+    SimulationState& state = reuse_or_make(state_message_, face_frame_, stamp);
     to_state(*model_, frame, state);
     state.paused = paused;
     state.backend = backend_;
@@ -100,7 +101,7 @@ void FacePublisher::publish_fault(const std::string& message, const ros::Time& s
 {
   if (state_.getNumSubscribers() == 0)
     return;
-  SimulationState& state = renewed(state_message_, face_frame_, stamp);
+  SimulationState& state = reuse_or_make(state_message_, face_frame_, stamp);
   state.failed = true;
   state.message = message;
   state_.publish(state_message_);

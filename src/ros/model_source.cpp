@@ -3,23 +3,31 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 
+#include <boost/asio/io_context.hpp>
+#include <boost/process/async_pipe.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/args.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/environment.hpp>
+#include <fmt/format.h>
+
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <system_error>
 #include <vector>
-
-extern char** environ;
 
 namespace frontalis
 {
@@ -27,7 +35,11 @@ namespace frontalis
 namespace
 {
 
+namespace asio = boost::asio;
+namespace bp = boost::process;
 namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds cancellation_period(50);  // between two checks whether the bake is cancelled
 
 bool is_program(const fs::path& path)
 {
@@ -35,7 +47,7 @@ bool is_program(const fs::path& path)
   return fs::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
 }
 
-/// A folder under the system's temporary folder, removed with what is in it.
+/// A folder in the system's temporary folder. The destructor removes it with all that it contains.
 class TemporaryFolder
 {
 public:
@@ -43,7 +55,7 @@ public:
   {
     std::string pattern = (fs::temp_directory_path() / "frontalis-XXXXXX").string();
     if (!mkdtemp(pattern.data()))
-      throw Error(pattern + ": cannot make a temporary folder: " + std::strerror(errno));
+      throw Error(fmt::format("{}: cannot make a temporary folder: {}", pattern, std::strerror(errno)));
     path_ = pattern;
   }
   ~TemporaryFolder()
@@ -59,148 +71,115 @@ private:
   fs::path path_;
 };
 
-/// Both ends of a pipe, closed when it goes.
-struct Pipe
-{
-  int ends[2] = { -1, -1 };
-
-  Pipe()
-  {
-    if (pipe2(ends, O_CLOEXEC) != 0)
-      throw Error(std::string("cannot make a pipe: ") + std::strerror(errno));
-  }
-  ~Pipe()
-  {
-    close_end(0);
-    close_end(1);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_end(int end)
-  {
-    if (ends[end] >= 0)
-      close(ends[end]);
-    ends[end] = -1;
-  }
-};
-
-/// Cuts a stream of bytes into lines; a carriage return ends a line too.
-class Lines
+/// Reads a pipe to its end and hands on each line. A carriage return ends a line too, as programs that rewrite a line
+/// of progress print it instead of a newline.
+class LineReader
 {
 public:
-  explicit Lines(std::function<void(const std::string&)> use) : use_(std::move(use)) {}
-  void add(const char* bytes, std::size_t count)
+  LineReader(asio::io_context& context, BakeLog use) : pipe_(context), use_(std::move(use))
   {
-    for (std::size_t i = 0; i < count; ++i)
-      if (bytes[i] == '\n' || bytes[i] == '\r')
-        finish();
-      else
-        line_ += bytes[i];
+    // a process that another thread starts must not hold the pipe open
+    for (const int end : { pipe_.native_source(), pipe_.native_sink() })
+      fcntl(end, F_SETFD, FD_CLOEXEC);
   }
-  void finish()
+  bp::async_pipe& pipe() { return pipe_; }
+  void read()
+  {
+    pipe_.async_read_some(asio::buffer(bytes_),
+                          [this](const boost::system::error_code& ended, std::size_t count)
+                          {
+                            for (std::size_t i = 0; i < count; ++i)
+                              if (bytes_[i] == '\n' || bytes_[i] == '\r')
+                                finish_line();
+                              else
+                                line_ += bytes_[i];
+                            if (ended)
+                              finish_line();
+                            else
+                              read();
+                          });
+  }
+
+private:
+  void finish_line()
   {
     if (!line_.empty())
       use_(line_);
     line_.clear();
   }
 
-private:
-  std::function<void(const std::string&)> use_;
+  bp::async_pipe pipe_;
+  BakeLog use_;
+  std::array<char, 4096> bytes_{};
   std::string line_;
 };
 
-pid_t spawn(const std::vector<std::string>& arguments, const Pipe& output, const Pipe& errors)
+/// Starts a program and connects its output and error streams to two readers. Throws an Error if it cannot be run.
+bp::child start(const std::string& program, const std::vector<std::string>& arguments, LineReader& output,
+                LineReader& errors)
 {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output.ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors.ends[1], STDERR_FILENO);
-
-  // signals as a fresh process has them, whatever the node blocks or ignores
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none, all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-
-  std::vector<char*> pointers;
-  pointers.reserve(arguments.size() + 1);
-  for (const auto& argument : arguments)
-    pointers.push_back(const_cast<char*>(argument.c_str()));
-  pointers.push_back(nullptr);
-  pid_t child = -1;
-  const int fault = posix_spawn(&child, pointers[0], &actions, &attributes, pointers.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (fault != 0)
-    throw Error(arguments[0] + ": cannot be run: " + std::strerror(fault));
-  return child;
-}
-
-/// Hands on what the child writes until it has closed both streams; ends the child once `cancelled` is true.
-void follow(pid_t child, Pipe& output, Pipe& errors, Lines& output_lines, Lines& error_lines,
-            const std::atomic<bool>& cancelled)
-{
-  bool ended = false;
-  while (output.ends[0] >= 0 || errors.ends[0] >= 0)
+  const pid_t parent = getpid();
+  const auto prepare = [parent](const auto&)
   {
-    if (cancelled && !ended)
-    {
-      kill(child, SIGTERM);
-      ended = true;
-    }
-    std::array<pollfd, 2> watched{ { { output.ends[0], POLLIN, 0 }, { errors.ends[0], POLLIN, 0 } } };
-    if (poll(watched.data(), watched.size(), 100) < 0 && errno != EINTR)
-      return;
-    for (int stream = 0; stream < 2; ++stream)
-    {
-      if (!(watched[stream].revents & (POLLIN | POLLHUP | POLLERR)))
-        continue;
-      char buffer[4096];
-      const ssize_t count = read(watched[stream].fd, buffer, sizeof buffer);
-      if (count > 0)
-        (stream == 0 ? output_lines : error_lines).add(buffer, static_cast<std::size_t>(count));
-      else if (count == 0 || errno != EINTR)
-        (stream == 0 ? output : errors).close_end(0);
-    }
+    // the system kills the program when the thread that started it ends, so that it does not outlive a node that dies
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent)
+      _exit(EXIT_FAILURE);
+    // the program must not inherit which signals the node blocks or ignores
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    for (int number = 1; number < NSIG; ++number)
+      signal(number, SIG_DFL);
+  };
+  try
+  {
+    return bp::child(bp::exe = program, bp::args = arguments, bp::std_in<bp::null, bp::std_out> output.pipe(),
+                     bp::std_err > errors.pipe(), bp::extend::on_exec_setup = prepare);
+  }
+  catch (const bp::process_error& error)
+  {
+    throw Error(fmt::format("{}: cannot be run: {}", program, error.code().message()));
   }
 }
 
-/// Runs a program to its end. Throws Error where it does not end with 0.
-void run(const std::vector<std::string>& arguments, const BakeLog& log, const std::atomic<bool>& cancelled)
+/// Runs a program to its end. Throws an Error if it is cancelled, crashes or does not exit with 0.
+void run(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
+         const std::atomic<bool>& cancelled)
 {
-  Pipe output, errors;
-  const pid_t child = spawn(arguments, output, errors);
-  output.close_end(1);
-  errors.close_end(1);
-
+  static std::mutex starting;  // between the pipes' creation and the start no other bake may start and inherit them
+  std::unique_lock<std::mutex> lock(starting);
+  asio::io_context context;
   std::string said;
-  Lines output_lines([&](const std::string& line) { log(line); });
-  Lines error_lines(
-      [&](const std::string& line)
-      {
-        said += (said.empty() ? "" : "\n") + line;
-        log(line);
-      });
-  follow(child, output, errors, output_lines, error_lines, cancelled);
-  output_lines.finish();
-  error_lines.finish();
+  LineReader output(context, log);
+  LineReader errors(context,
+                    [&](const std::string& line)
+                    {
+                      said += (said.empty() ? "" : "\n") + line;
+                      log(line);
+                    });
+  bp::child child = start(program, arguments, output, errors);
+  lock.unlock();
 
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR)
-      throw Error(arguments[0] + ": lost sight of the process: " + std::strerror(errno));
+  output.read();
+  errors.read();
+  while (!context.stopped() && !cancelled)  // the context stops when both streams have ended
+    context.run_for(cancellation_period);
+  // child.terminate() would leave a zombie process, since it does not wait
+  if (cancelled)
+    kill(child.id(), SIGKILL);
+  std::error_code fault;
+  child.wait(fault);
   if (cancelled)
     throw Error("the bake was interrupted");
+  if (fault)
+    throw Error(fmt::format("{}: its exit status cannot be read: {}", program, fault.message()));
+  const int status = child.native_exit_code();
   if (WIFSIGNALED(status))
-    throw Error(arguments[0] + " bake: ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
-                strsignal(WTERMSIG(status)) + ")" + (said.empty() ? "" : "\n" + said));
-  if (WEXITSTATUS(status) != 0)
-    throw Error(said.empty() ? arguments[0] + " bake: ended with " + std::to_string(WEXITSTATUS(status)) : said);
+    throw Error(fmt::format("{} bake: ended by signal {} ({}){}{}", program, WTERMSIG(status),
+                            strsignal(WTERMSIG(status)), said.empty() ? "" : "\n", said));
+  if (child.exit_code() != 0)
+    throw Error(said.empty() ? fmt::format("{} bake: ended with exit status {}", program, child.exit_code()) : said);
 }
 
 }  // namespace
@@ -211,7 +190,7 @@ std::string find_program(const std::string& wanted)
   {
     if (is_program(wanted))
       return wanted;
-    throw Error(wanted + ": no program there; ~program must be the path of the program frontalis");
+    throw Error(wanted + ": is not a program; ~program must be the path of the program frontalis");
   }
 
   std::vector<fs::path> places;
@@ -222,15 +201,8 @@ std::string find_program(const std::string& wanted)
   Dl_info library{};
   if (dladdr(reinterpret_cast<const void*>(&find_program), &library) && library.dli_fname)
     places.push_back(fs::absolute(library.dli_fname, ignored).parent_path() / "frontalis" / "frontalis");
-  const char* const path = std::getenv("PATH");
-  std::string folders = path ? path : "";
-  for (std::size_t begin = 0; begin < folders.size();)
-  {
-    const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    if (end > begin)
-      places.push_back(fs::path(folders.substr(begin, end - begin)) / "frontalis");
-    begin = end + 1;
-  }
+  for (const auto& folder : boost::this_process::path())
+    places.push_back(fs::path(folder.string()) / "frontalis");
 
   std::string tried;
   for (const auto& place : places)
@@ -254,14 +226,14 @@ Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std:
 {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "model.vtkhdf").string();
-  std::vector<std::string> arguments{ request.program, "bake", request.scene, "-o", file };
+  std::vector<std::string> arguments{ "bake", request.scene, "-o", file };
   if (!request.mesh_directory.empty())
     arguments.insert(arguments.end(), { "--mesh-dir", request.mesh_directory });
   if (!request.accuracy.empty())
     arguments.insert(arguments.end(), { "--accuracy", request.accuracy });
   if (!request.cache.empty())
     arguments.insert(arguments.end(), { "--cache", request.cache });
-  run(arguments, log, cancelled);
+  run(request.program, arguments, log, cancelled);
   return read_model(file);
 }
 

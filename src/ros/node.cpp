@@ -7,7 +7,7 @@ int main(int count, char** arguments)
   ros::init(count, arguments, "face");
   frontalis::FaceNode face(ros::NodeHandle(), ros::NodeHandle("~"), ros::this_node::getName());
 
-  // two threads: a long ~step must not hold up the diagnostics
+  // two threads, so that a long ~step does not delay the diagnostics
   ros::MultiThreadedSpinner spinner(2);
   spinner.spin();
   return 0;

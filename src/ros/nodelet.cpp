@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// frontalis/face: the face in a nodelet manager.
+/// The nodelet frontalis/face.
 class FaceNodelet : public nodelet::Nodelet
 {
   void onInit() override { face_ = std::make_unique<FaceNode>(getMTNodeHandle(), getMTPrivateNodeHandle(), getName()); }

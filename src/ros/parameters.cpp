@@ -3,9 +3,10 @@
 #include "frontalis/error.hpp"
 #include "frontalis/ros/model_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace frontalis
 {
@@ -13,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-/// Reads parameters one by one and gathers what is wrong with them.
+/// Reads parameters one by one and collects what is wrong with them.
 class Reader
 {
 public:
@@ -25,10 +26,10 @@ public:
     int number = 0;
     if (!handle_.hasParam(key) || handle_.getParam(key, value))
       return handle_.hasParam(key) ? value : fallback;
-    // roslaunch turns a value such as 1 into a number
+    // roslaunch turns a text such as 1 into a number
     if (handle_.getParam(key, number))
-      return std::to_string(number);
-    fault(key, "a text");
+      return fmt::format("{}", number);
+    add_fault(key, "has the wrong type; allowed is a text");
     return fallback;
   }
 
@@ -37,44 +38,56 @@ public:
   {
     T found = fallback;
     if (handle_.hasParam(key) && !handle_.getParam(key, found))
-      fault(key, allowed);
+      add_fault(key, fmt::format("has the wrong type; allowed is {}", allowed));
     return found;
   }
 
-  void check(bool good, const std::string& key, const std::string& found, const std::string& allowed)
+  template <typename Found>
+  void check(bool good, const std::string& key, const Found& found, const std::string& allowed)
   {
     if (!good)
-      faults_ << "\n" << handle_.resolveName(key) << ": found " << found << "; allowed is " << allowed;
+      add_fault(key, fmt::format("found {}; allowed is {}", found, allowed));
   }
 
-  template <typename Convert>
-  void convert(const std::string& key, Convert&& use)
+  /// The value that `value_of` has for the text of a parameter; it throws an Error if it has none.
+  template <typename Value>
+  Value named(const std::string& key, const std::string& fallback, Value (*value_of)(const std::string&))
   {
     try
     {
-      use();
+      return value_of(text(key, fallback));
     }
     catch (const Error& error)
     {
-      faults_ << "\n" << handle_.resolveName(key) << ": " << error.what();
+      add_fault(key, error.what());
+      return value_of(fallback);
     }
   }
 
   void finish() const
   {
-    if (!faults_.str().empty())
-      throw Error("bad parameters:" + faults_.str());
+    if (!faults_.empty())
+      throw Error("bad parameters:" + faults_);
   }
 
 private:
-  void fault(const std::string& key, const std::string& allowed)
+  void add_fault(const std::string& key, const std::string& fault)
   {
-    faults_ << "\n" << handle_.resolveName(key) << ": has the wrong type; allowed is " << allowed;
+    faults_ += fmt::format("\n{}: {}", handle_.resolveName(key), fault);
   }
 
   ros::NodeHandle handle_;
-  std::ostringstream faults_;
+  std::string faults_;
 };
+
+Pace pace_from_name(const std::string& name)
+{
+  for (const auto& [known, pace] :
+       { std::pair{ "real_time", Pace::real_time }, { "fastest", Pace::fastest }, { "lock_step", Pace::lock_step } })
+    if (name == known)
+      return pace;
+  throw Error(fmt::format("found '{}'; allowed are real_time, fastest and lock_step", name));
+}
 
 }  // namespace
 
@@ -92,37 +105,21 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   out.cache = reader.text("cache", default_cache());
   out.program = reader.text("program", "");
 
-  const std::string backend = reader.text("backend", "auto");
-  reader.convert("backend", [&] { out.runner.solver.backend = backend_from_name(backend); });
-  out.runner.solver.threads = reader.value("threads", 0, "a whole number, 0: one a core");
-  reader.check(out.runner.solver.threads >= 0, "threads", std::to_string(out.runner.solver.threads),
-               "0 (one a core) or more");
-  out.runner.solver.sleep = reader.value("sleep", 0.0, "a length [m], 0: all is computed");
-  reader.check(std::isfinite(out.runner.solver.sleep) && out.runner.solver.sleep >= 0, "sleep",
-               std::to_string(out.runner.solver.sleep), "0 (all is computed) or more [m]");
-
-  const std::string pace = reader.text("pace", "real_time");
-  if (pace == "real_time")
-    out.runner.pace = Pace::real_time;
-  else if (pace == "fastest")
-    out.runner.pace = Pace::fastest;
-  else if (pace == "lock_step")
-    out.runner.pace = Pace::lock_step;
-  else
-    reader.check(false, "pace", "'" + pace + "'", "real_time, fastest or lock_step");
-
-  out.runner.frame_rate = reader.value("frame_rate", 0.0, "a number [1/s], 0: the model's");
-  reader.check(std::isfinite(out.runner.frame_rate) && out.runner.frame_rate >= 0, "frame_rate",
-               std::to_string(out.runner.frame_rate), "0 (the model's) or more [1/s]");
+  out.runner.solver.backend = reader.named("backend", "auto", &backend_from_name);
+  out.runner.solver.threads = reader.value("threads", 0, "a whole number; 0: one per core");
+  reader.check(out.runner.solver.threads >= 0, "threads", out.runner.solver.threads, "0 (one per core) or more");
+  out.runner.pace = reader.named("pace", "real_time", &pace_from_name);
+  out.runner.frame_rate = reader.value("frame_rate", 0.0, "a number [1/s]; 0: the model's");
+  reader.check(std::isfinite(out.runner.frame_rate) && out.runner.frame_rate >= 0, "frame_rate", out.runner.frame_rate,
+               "0 (the model's) or more [1/s]");
   GuardSettings guard;
-  const int interval = reader.value("guard_interval", -1, "a whole number of steps, 0: no guard");
-  reader.check(interval >= -1, "guard_interval", std::to_string(interval), "0 (no guard), more, or -1 (the backend's)");
+  const int interval = reader.value("guard_interval", -1, "a whole number of time steps; 0: no guard");
+  reader.check(interval >= -1, "guard_interval", interval, "0 (no guard) or more, or -1 (the backend's choice)");
   guard.interval = std::max(interval, 0);
   out.runner.guard.reset();
   if (interval != 0)
     out.runner.guard = guard;
-  const std::string field = reader.text("skin_field", "strain");
-  reader.convert("skin_field", [&] { out.skin_field = skin_field_from_name(field); });
+  out.skin_field = reader.named("skin_field", "strain", &skin_field_from_name);
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");
   out.demo = reader.value("demo", false, "true or false");

@@ -20,22 +20,23 @@ Vector unit(const Vector& a)
   return { { a[0] / length, a[1] / length, a[2] / length } };
 }
 
-/// Lambert's cosine wrapped around the terminator by w, as light scattered below the skin does.
+/// Diffuse light (Lambert's cosine) that reaches beyond the edge of the shadow, as light that scatters below the skin
+/// does. With w = 0 it ends at the edge.
 float wrapped(float cosine, float w) { return std::max(0.0f, (cosine + w) / (1 + w)); }
 
-// face frame: x out of the face, y to its left, z up
+// directions in the face frame: x out of the face, y to its left, z up
 const Vector key_light = unit({ { 0.52f, 0.40f, 0.76f } });
 const Vector fill_light = unit({ { 0.55f, -0.80f, 0.05f } });
 const Vector view = { { 1, 0, 0 } };
 const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
 
-const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear
-const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // red light goes farthest
+const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear, before gamma
+const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // how far each colour scatters; red goes farthest
 const Vector hair_albedo = { { 0.050f, 0.030f, 0.020f } };
 const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
-constexpr float hollow_depth = 5.0e-3f;  ///< [m] light lost a unit of mean curvature
+constexpr float hollow_depth = 5.0e-3f;  // share of light that a hollow loses per unit of mean curvature [m]
 
 }  // namespace
 
@@ -68,7 +69,8 @@ void SkinShading::colours(const SkinState& skin, std::vector<std::array<float, 3
     const Vector& position = skin.vertices[vertex];
     const Vector& normal = skin.normals[vertex];
 
-    // mean normal curvature [1/m], positive in hollows: twice the neighbours' height over their squared distance
+    // mean normal curvature [1/m], positive in hollows: the mean over the neighbours of twice their height above the
+    // tangent plane, divided by their squared distance
     float curvature = 0;
     const auto begin = neighbour_begin_[vertex], end = neighbour_begin_[vertex + 1];
     for (auto entry = begin; entry < end; ++entry)

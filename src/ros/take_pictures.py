@@ -3,9 +3,9 @@
 
 usage: take_pictures.py SCENE FOLDER [LAUNCH_ARGUMENT:=VALUE ...]
 
-Launches SCENE.launch of this package in lock-step with rviz full screen, under Xvfb where there is no display, moves the face by
-~expression and ~step, so that every picture shows an exact simulated time, and prints each picture's path with the landmarks'
-movement. Needs the environment of the package's setup file, Xvfb and ImageMagick.
+Launches SCENE.launch of this package in lock-step, with rviz full screen, under Xvfb if there is no display. Moves the face by
+~expression and ~step, so that each picture shows an exact simulated time, and prints the path of each picture and how far the
+landmarks moved. Needs the environment of the package's setup file, Xvfb and ImageMagick.
 """
 
 import os
@@ -17,10 +17,10 @@ import sys
 import time
 
 SCREEN = "1280x900x24"
-RAMP = 0.3  # [s] simulated, from one expression to the next
-HOLD = 0.9  # [s] simulated, until the picture
-START_TIMEOUT = 300  # [s] wall, for baking and for rviz
-DRAW_TIMEOUT = 20  # [s] wall, for rviz to show a new skin
+RAMP = 0.3  # [s] simulated time from one expression to the next
+HOLD = 0.9  # [s] simulated time from then to the picture
+START_TIMEOUT = 300  # [s] wall time, for baking and for rviz to start
+DRAW_TIMEOUT = 60  # [s] wall time, for rviz to show a new skin
 
 
 def fail(message):
@@ -29,7 +29,7 @@ def fail(message):
 
 
 def enter_display():
-    """Runs this script again under Xvfb where no display is there."""
+    """Runs this script again under Xvfb if there is no display."""
     if os.environ.get("DISPLAY"):
         return
     if not shutil.which("xvfb-run"):
@@ -52,7 +52,7 @@ def grab():
 
 
 def is_blank(picture):
-    """True while the middle of the screen shows no face: a shaded face has many colours."""
+    """Whether the middle of the screen shows no face. A shaded face has many colours."""
     header, size = picture[:15].split(b"\n")[0:2]
     assert header == b"P6", "unexpected picture format"
     width, height = (int(number) for number in size.split())
@@ -62,7 +62,7 @@ def is_blank(picture):
 
 
 def settled_picture(before):
-    """Waits until rviz shows a face that differs from the picture before, and shows it twice alike."""
+    """Waits until two pictures in a row are equal, show a face, and differ from the picture `before`."""
     deadline = time.monotonic() + DRAW_TIMEOUT
     last = None
     while time.monotonic() < deadline:
@@ -82,7 +82,7 @@ def save(picture, path):
 
 
 class Face:
-    """The face under /face, as this script drives it. ROS is imported once the master's address is set."""
+    """The face /face. ROS is imported here, after the address of the master has been set."""
 
     def __init__(self):
         import rosgraph
@@ -109,13 +109,13 @@ class Face:
         self.state = message
 
     def is_seen(self):
-        """True once rviz listens to the skin."""
+        """Whether rviz has subscribed to the skin."""
         subscribers = dict(self.master.getSystemState()[1])
         return any("rviz" in node for node in subscribers.get("/face/skin", []))
 
     def express(self, name):
-        """Commands an expression and advances until it is held. Returns the simulated time [s]."""
-        # a topic and a service are two ways in: go on only once the command has arrived
+        """Commands an expression and steps until the face holds it. Returns the simulated time [s]."""
+        # topics and services are not ordered: go on only after the command has arrived
         self.command("relax", lambda target: not any(target))
         if name != "relax":
             self.command(name, any)
@@ -190,7 +190,7 @@ def main():
     enter_display()
     os.makedirs(folder, exist_ok=True)
 
-    # software rendering, a master of our own that nobody else talks to
+    # software rendering, and a ROS master of its own so that no other nodes take part
     os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")
     os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % free_port()
     port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]

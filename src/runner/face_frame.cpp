@@ -9,6 +9,7 @@ namespace frontalis
 namespace
 {
 
+// the rotation of `map` applied to a vector, plus `translated` times its translation: 1 for points, 0 for directions
 std::array<float, 3> transformed(const RigidTransform& map, const std::array<float, 3>& p, double translated)
 {
   std::array<float, 3> result{};

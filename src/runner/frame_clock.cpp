@@ -5,36 +5,37 @@ namespace frontalis
 namespace
 {
 
-double seconds(FrameClock::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+double seconds(FrameClock::TimePoint from, FrameClock::TimePoint to)
+{
+  return std::chrono::duration<double>(to - from).count();
+}
 
 }  // namespace
 
-void FrameClock::restart(double simulated)
+void FrameClock::restart(TimePoint now, double simulated)
 {
-  anchor_ = Clock::now();
-  anchor_simulated_ = simulated;
-  notes_.assign(1, { anchor_, simulated });
+  start_ = now;
+  simulated_start_ = simulated;
+  frames_.assign(1, { now, simulated });
 }
 
-double FrameClock::due(double simulated, double slack)
+double FrameClock::behind(TimePoint now, double simulated, double limit)
 {
-  const auto now = Clock::now();
-  const double behind = anchor_simulated_ + seconds(now - anchor_) - simulated;
-  if (behind <= slack)
+  const double behind = simulated_start_ + seconds(start_, now) - simulated;
+  if (behind <= limit)
     return behind;
-  anchor_ = now;
-  anchor_simulated_ = simulated + slack;
-  return slack;
+  start_ = now;
+  simulated_start_ = simulated + limit;
+  return limit;
 }
 
-double FrameClock::note(double simulated)
+double FrameClock::record_frame(TimePoint now, double simulated)
 {
-  const auto now = Clock::now();
-  notes_.push_back({ now, simulated });
-  while (notes_.size() > 2 && seconds(now - notes_[1].first) > 1)
-    notes_.pop_front();
-  const double wall = seconds(now - notes_.front().first);
-  return wall > 0 ? (simulated - notes_.front().second) / wall : 0;
+  frames_.push_back({ now, simulated });
+  while (frames_.size() > 2 && seconds(frames_[1].first, now) > 1)
+    frames_.pop_front();
+  const double wall = seconds(frames_.front().first, now);
+  return wall > 0 ? (simulated - frames_.front().second) / wall : 0;
 }
 
 }  // namespace frontalis

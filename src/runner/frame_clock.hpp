@@ -7,23 +7,26 @@
 namespace frontalis
 {
 
-/// Wall clock of a running face: how much simulated time is due, and the honest ratio of the two over the last second.
+/// Relates simulated time to wall time: how far the simulation is behind the wall clock, and the real-time factor over
+/// the last second. All times are given by the caller, wall times as time points and simulated times in seconds.
 class FrameClock
 {
 public:
-  using Clock = std::chrono::steady_clock;
+  using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Starts anew, for instance after a pause: nothing is due and no ratio is known.
-  void restart(double simulated);
-  /// Simulated seconds due now at real time. More than `slack` behind is not caught up: the clock lets it go.
-  double due(double simulated, double slack);
-  /// Notes a frame at a simulated time; returns simulated over wall seconds over the last second noted.
-  double note(double simulated);
+  /// Starts again, for instance after a pause: at `now` the simulation is neither behind nor ahead.
+  void restart(TimePoint now, double simulated);
+  /// By how many seconds the simulated time is behind the wall clock; negative if it is ahead. A simulation that is
+  /// behind by more than `limit` need not make up for the rest: the clock forgets it and returns `limit`.
+  double behind(TimePoint now, double simulated, double limit);
+  /// Records a frame and returns the real-time factor: simulated over wall seconds since the latest recorded frame that
+  /// is older than a second, or since the restart.
+  double record_frame(TimePoint now, double simulated);
 
 private:
-  Clock::time_point anchor_{};
-  double anchor_simulated_ = 0;
-  std::deque<std::pair<Clock::time_point, double>> notes_;
+  TimePoint start_{};           ///< wall time at which the simulation was neither behind nor ahead
+  double simulated_start_ = 0;  ///< simulated time at that moment [s]
+  std::deque<std::pair<TimePoint, double>> frames_;
 };
 
 }  // namespace frontalis

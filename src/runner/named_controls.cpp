@@ -3,6 +3,8 @@
 #include "frontalis/error.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace frontalis
@@ -12,25 +14,26 @@ namespace
 
 const std::string& name_of(const std::string& name) { return name; }
 template <class Named>
-const std::string& name_of(const Named& one)
+const std::string& name_of(const Named& named)
 {
-  return one.name;
+  return named.name;
 }
 
 template <class Named>
 std::string names_of(const std::vector<Named>& all)
 {
-  std::string text;
-  for (const Named& one : all)
-    text += (text.empty() ? "" : ", ") + name_of(one);
-  return text.empty() ? "none" : text;
+  std::vector<std::string> names;
+  names.reserve(all.size());
+  for (const Named& named : all)
+    names.push_back(name_of(named));
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 template <class Named>
 std::size_t index_of(const std::vector<Named>& all, const std::string& name)
 {
   return static_cast<std::size_t>(
-      std::find_if(all.begin(), all.end(), [&](const Named& one) { return name_of(one) == name; }) - all.begin());
+      std::find_if(all.begin(), all.end(), [&](const Named& named) { return name_of(named) == name; }) - all.begin());
 }
 
 }  // namespace
@@ -38,23 +41,22 @@ std::size_t index_of(const std::vector<Named>& all, const std::string& name)
 void set_activations(const Model& model, const std::map<std::string, double>& named, std::vector<float>& activation)
 {
   std::vector<float> changed = activation;
-  std::string unknown, faults;
+  std::vector<std::string> unknown, faults;
   for (const auto& [name, value] : named)
   {
     const std::size_t muscle = index_of(model.muscles, name);
     if (muscle == model.muscles.size())
-      unknown += (unknown.empty() ? "'" : ", '") + name + "'";
+      unknown.push_back("'" + name + "'");
     else if (!(value >= 0 && value <= 1))
-      faults += (faults.empty() ? "activation of '" : "; activation of '") + name + "' is " + std::to_string(value) +
-                "; must be from 0 to 1";
+      faults.push_back(fmt::format("activation of '{}' is {}; must be from 0 to 1", name, value));
     else
       changed[muscle] = static_cast<float>(value);
   }
   if (!unknown.empty())
-    faults = "no muscle is called " + unknown + "; the muscles are " + names_of(model.muscles) +
-             (faults.empty() ? "" : "; ") + faults;
+    faults.insert(faults.begin(), fmt::format("no muscle is called {}; the muscles are {}", fmt::join(unknown, ", "),
+                                              names_of(model.muscles)));
   if (!faults.empty())
-    throw Error(faults);
+    throw Error(fmt::format("{}", fmt::join(faults, "; ")));
   activation = changed;
 }
 

@@ -1,20 +1,13 @@
 #include "frontalis/runner/profile_report.hpp"
 
-#include <algorithm>
-#include <cstdio>
+#include <fmt/format.h>
 
 namespace frontalis
 {
 namespace
 {
 
-std::string text(double value)
-{
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.2g", value);
-  return digits;
-}
-
+// the profile that the model was baked with; null if its cost was not measured
 const Model::AccuracyProfile* present_profile(const Model& model)
 {
   for (const Model::AccuracyProfile& profile : model.profiles)
@@ -30,37 +23,39 @@ std::string measured_profile(const Model& model)
   const Model::AccuracyProfile* const profile = present_profile(model);
   if (profile == nullptr)
     return {};
-  return "accuracy profile '" + profile->name + "': its skin was measured to be off by " + text(1e3 * profile->error) +
-         " mm RMS, and a simulated second to take " + text(profile->cost) + " s" +
-         (profile->machine.empty() ? "" : " on " + profile->machine);
+  return fmt::format(
+      "accuracy profile '{}': measured skin error {:.2g} mm RMS, measured cost {:.2g} s per simulated "
+      "second{}{}",
+      profile->name, 1e3 * profile->error, profile->cost, profile->machine.empty() ? "" : " on ", profile->machine);
 }
 
 std::string speed_report(const Model& model, double real_time_factor)
 {
-  std::string report = "runs at " + text(real_time_factor) + " of real time here";
+  std::string report = fmt::format("real-time factor {:.2g}", real_time_factor);
   const Model::AccuracyProfile* const present = present_profile(model);
-  if (real_time_factor >= 0.95 || !(real_time_factor > 0) || present == nullptr)
+  if (real_time_factor >= sufficient_real_time_factor || !(real_time_factor > 0) || present == nullptr)
     return report;
-  // the most accurate that would do, else the cheapest there is
-  const double slower = 1 / real_time_factor / present->cost;
-  const Model::AccuracyProfile *enough = nullptr, *cheapest = present;
+  report += ", too slow for real time; ";
+  const double slower_than_measured = 1 / real_time_factor / present->cost;
+  const Model::AccuracyProfile *fast_enough = nullptr, *cheapest = present;
   for (const Model::AccuracyProfile& profile : model.profiles)
   {
     if (!(profile.cost > 0))
       continue;
-    if (profile.cost * slower <= 1 && (enough == nullptr || profile.error < enough->error))
-      enough = &profile;
+    if (profile.cost * slower_than_measured <= 1 && (fast_enough == nullptr || profile.error < fast_enough->error))
+      fast_enough = &profile;
     if (profile.cost < cheapest->cost)
       cheapest = &profile;
   }
-  if (enough != nullptr)
-    return report + ", too slow for real time; profile '" + enough->name + "' would do: about " +
-           text(enough->cost * slower) + " s a simulated second, its skin off by " + text(1e3 * enough->error) +
-           " mm RMS";
-  report += ", too slow for real time, and no profile of the scene would do";
-  return cheapest == present ? report + ": this is the cheapest"
-                             : report + "; the cheapest, '" + cheapest->name + "', would run at about " +
-                                   text(1 / (cheapest->cost * slower)) + " of it";
+  if (fast_enough != nullptr)
+    return report + fmt::format(
+                        "profile '{}' would run in real time: about {:.2g} s per simulated second, skin error "
+                        "{:.2g} mm RMS",
+                        fast_enough->name, fast_enough->cost * slower_than_measured, 1e3 * fast_enough->error);
+  report += "no profile of the scene would run in real time; ";
+  return cheapest == present ? report + "this is the cheapest"
+                             : report + fmt::format("the cheapest, '{}', would have a real-time factor of about {:.2g}",
+                                                    cheapest->name, 1 / (cheapest->cost * slower_than_measured));
 }
 
 }  // namespace frontalis

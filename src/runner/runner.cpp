@@ -4,6 +4,8 @@
 #include "frontalis/runner/named_controls.hpp"
 #include "runner/runner_implementation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,14 +20,14 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
   if (!(self_->settings.frame_rate > 0))
     self_->settings.frame_rate = self_->model->frame_rate;
   if (!(self_->settings.frame_rate >= 0.1 && self_->settings.frame_rate <= 1000))
-    throw Error("frame rate " + std::to_string(self_->settings.frame_rate) + " Hz: allowed is 0.1 to 1000");
+    throw Error(fmt::format("frame rate {} Hz: allowed is 0.1 to 1000", self_->settings.frame_rate));
   self_->on_frame = std::move(on_frame);
   self_->solver = make_solver(self_->model, settings.solver);
   if (settings.guard)
     self_->guard = std::make_unique<Guard>(*self_->solver, self_->model, *settings.guard);
   self_->target = self_->solver->controls();
   self_->effects = self_->solver->effects();
-  self_->thread = std::thread([this] { self_->guarded_loop(); });
+  self_->thread = std::thread([this] { self_->run(); });
 }
 
 Runner::~Runner()
@@ -112,7 +114,7 @@ void Runner::cancel_step()
 Frame Runner::step(double seconds)
 {
   if (!(seconds > 0) || !std::isfinite(seconds))
-    throw Error("step of " + std::to_string(seconds) + " s: allowed are finite durations above 0");
+    throw Error(fmt::format("step of {} s: allowed are finite durations above 0", seconds));
   Implementation::StepRequest request;
   request.seconds = seconds;
   std::unique_lock<std::mutex> lock(self_->mutex);

@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-/// The runner's state and what its thread does (runner_loop.cpp); callers' threads come in by runner.cpp.
+/// The runner's state. runner.cpp has what the callers' threads do, runner_loop.cpp what the runner's own thread does.
 struct Runner::Implementation
 {
   using Clock = std::chrono::steady_clock;
@@ -20,18 +20,18 @@ struct Runner::Implementation
   RunnerSettings settings;
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
-  std::unique_ptr<Guard> guard;  // may be none
+  std::unique_ptr<Guard> guard;  ///< null: the motion is not checked
 
-  // shared with the callers' threads, under the mutex
+  // shared with the callers' threads and protected by the mutex
   mutable std::mutex mutex;
   std::condition_variable wake;
   Controls target;
   bool stop = false;
   bool paused = false;
   bool reset_wanted = false;
-  bool cancel_wanted = false;
+  bool cancel_wanted = false;  ///< of the step under way
   std::uint64_t resets_done = 0;
-  std::string reset_error;  // of the latest; empty: it was done
+  std::string reset_error;  ///< why the latest reset failed; empty if it did not
   struct StepRequest
   {
     double seconds = 0;
@@ -49,29 +49,35 @@ struct Runner::Implementation
   };
   SwitchRequest* switch_request = nullptr;
   EffectSet effects;
-  std::mutex switch_mutex;  // one switch at a time
+  std::mutex switch_mutex;  ///< held by the caller that switches an effect, so that there is one request at a time
 
-  // the runner's thread alone
+  // used by the runner's thread alone
   Frame frame;
   FrameClock clock;
-  Clock::time_point deadline{};  ///< of the frame under way; frames keep to a schedule, late or not
+  Clock::time_point deadline{};  ///< wall time at which the present frame ends
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
   std::thread thread;
 
+  /// Wall time per frame [s].
   double period() const { return 1 / settings.frame_rate; }
-  /// On the clock on which activations are given.
+  /// Simulated time on the clock of the activations [s]. With time scaling it differs from the solver's time.
   double time() const { return solver->time() * model->time_scaling; }
+  /// Duration of a slice: the solver steps so long without looking at requests and at the wall clock [s].
+  double slice() const;
 
-  void advance(double seconds, const Controls& to);
+  void advance(double seconds, const Controls& controls);
+  Controls controls_after(double seconds) const;
+  void fail(const std::string& reason);
   void make_frame(bool renew_monitor);
   void publish(bool renew_monitor = false);
   void run_frame();
   void serve_step(StepRequest& request);
   void serve_switch(SwitchRequest& request);
   void refuse_requests(const std::string& error);
-  void loop();
-  void guarded_loop();
+  void reset();
+  void serve_until_stopped();
+  void run();
 };
 
 }  // namespace frontalis

@@ -11,48 +11,70 @@ namespace frontalis
 namespace
 {
 
-// time steps between two looks at the wall clock
-constexpr int steps_a_slice = 32;
+// time steps per slice: few enough that requests do not wait, and enough that reading the clock and taking the mutex
+// once per slice cost little
+constexpr int steps_per_slice = 32;
+// wall time after which a frame has its energies and volume ratios computed anew
+constexpr std::chrono::seconds monitor_period(1);
 
-// too close for the difference to be seen
-bool close(const RigidTransform& a, const RigidTransform& b)
+// whether two poses of a bone differ by less than one can see: 1e-5 rad, 1e-6 m
+bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
 {
-  const auto near = [](double within) { return [within](double x, double y) { return std::abs(x - y) < within; }; };
-  return std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), near(1e-5)) &&
-         std::equal(a.translation.begin(), a.translation.end(), b.translation.begin(), near(1e-6));
+  const auto within = [](double limit) { return [limit](double x, double y) { return std::abs(x - y) < limit; }; };
+  return std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), within(1e-5)) &&
+         std::equal(a.translation.begin(), a.translation.end(), b.translation.begin(), within(1e-6));
+}
+
+constexpr const char* ended_early = "the step was ended early";
+
+// ends a request, if there is one, with an error for its caller
+template <class Request>
+void refuse(Request*& request, const std::string& error)
+{
+  if (request == nullptr)
+    return;
+  request->error = error;
+  request->done = true;
+  request = nullptr;
 }
 
 }  // namespace
 
-// advances on the activations' clock; a motion that cannot be trusted stops the face until reset
-void Runner::Implementation::advance(double seconds, const Controls& to)
+double Runner::Implementation::slice() const { return steps_per_slice * solver->time_step() * model->time_scaling; }
+
+void Runner::Implementation::fail(const std::string& reason)
+{
+  frame.failed = true;
+  frame.failure = reason;
+}
+
+// advances by seconds on the clock of the activations; a motion that cannot be trusted stops the face until reset
+void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
   {
     if (guard)
-      guard->advance(seconds / model->time_scaling, to);
+      guard->advance(seconds / model->time_scaling, controls);
     else
-      solver->advance(seconds / model->time_scaling, to);
+      solver->advance(seconds / model->time_scaling, controls);
   }
   catch (const Error& error)
   {
-    frame.failed = true;
-    frame.failure = error.what();
+    fail(error.what());
   }
 }
 
 void Runner::Implementation::make_frame(bool renew_monitor)
 {
   const auto now = Clock::now();
-  if (!frame.failed && (renew_monitor || now - last_monitor > std::chrono::seconds(1)))
+  if (!frame.failed && (renew_monitor || now - last_monitor > monitor_period))
   {
     const Monitor monitor = solver->monitor();
     last_monitor = now;
-    frame.failed = !monitor.finite;
-    if (frame.failed)
-      frame.failure = "the motion is no longer finite";
-    else
+    if (monitor.finite)
       frame.monitor = monitor;
+    else
+      fail("the motion is no longer finite");
   }
   if (!frame.failed)
   {
@@ -69,10 +91,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
         frame.field.clear();
     }
     else
-    {
-      frame.failed = true;
-      frame.failure = "the skin is no longer finite";
-    }
+      fail("the skin is no longer finite");
   }
   frame.time = time();
   frame.wall_time = std::chrono::duration<double>(now - start).count();
@@ -86,43 +105,53 @@ void Runner::Implementation::make_frame(bool renew_monitor)
 
 void Runner::Implementation::publish(bool renew_monitor)
 {
-  frame.real_time_factor = clock.note(time());
+  frame.real_time_factor = clock.record_frame(Clock::now(), time());
   make_frame(renew_monitor);
   if (on_frame)
     on_frame(frame);
 }
 
-// one frame's worth of stepping: until the simulated time that is due is reached or the frame's wall time is over
+// Controls at the end of the next slice. They approach their targets gradually, so that they do not jump within a time
+// step: a slice covers three times its share of a frame, so that a frame covers 95 % of the way (1 - exp(-3)).
+Controls Runner::Implementation::controls_after(double seconds) const
+{
+  Controls next = target;
+  const Controls& now = solver->controls();
+  const auto share = std::min(1.0f, 3 * static_cast<float>(std::min(1.0, seconds / period())));
+  for (std::size_t m = 0; m < next.activation.size(); ++m)
+  {
+    const float difference = next.activation[m] - now.activation[m];
+    if (std::abs(difference) >= 1e-4f)
+      next.activation[m] = now.activation[m] + share * difference;
+  }
+  for (std::size_t b = 0; b < next.bone.size(); ++b)
+    if (!nearly_equal(now.bone[b], next.bone[b]))
+      next.bone[b] = interpolate(now.bone[b], next.bone[b], share);
+  return next;
+}
+
+// steps until the simulated time of this frame is reached or its wall time is over, and publishes the frame
 void Runner::Implementation::run_frame()
 {
   const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
-  // the next one on the schedule; a frame that is lost altogether is not caught up
+  // Deadlines follow a fixed schedule, so that late frames do not make the next ones late. Each frame has at least a
+  // quarter of its length; a frame that was missed altogether is not made up for.
   deadline = std::max(deadline + length, Clock::now() + length / 4);
   deadline = std::min(deadline, Clock::now() + length);
-  const double end =
-      settings.pace == Pace::fastest ? time() + 1e9 : time() + clock.due(time(), 2 * period()) + period();
+  const double end = settings.pace == Pace::fastest
+                         ? time() + 1e9
+                         : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
   while (!frame.failed && time() < end && Clock::now() < deadline)
   {
-    Controls to;
+    const double seconds = std::min(end - time(), slice());
+    Controls controls;
     {
       const std::lock_guard<std::mutex> lock(mutex);
       if (stop || paused || reset_wanted || step_request != nullptr)
         return;
-      to = target;
+      controls = controls_after(seconds);
     }
-    // controls reach their target within a frame's time, not in one step
-    const double slice = std::min(end - time(), steps_a_slice * solver->time_step() * model->time_scaling);
-    const auto part = static_cast<float>(std::min(1.0, slice / period()));
-    const Controls& now = solver->controls();
-    for (std::size_t m = 0; m < to.activation.size(); ++m)
-    {
-      const float way = to.activation[m] - now.activation[m];
-      to.activation[m] = std::abs(way) < 1e-4f ? to.activation[m] : now.activation[m] + way * std::min(1.0f, 3 * part);
-    }
-    for (std::size_t b = 0; b < to.bone.size(); ++b)
-      if (!close(now.bone[b], to.bone[b]))
-        to.bone[b] = interpolate(now.bone[b], to.bone[b], std::min(1.0f, 3 * part));
-    advance(slice, to);
+    advance(seconds, controls);
   }
   publish();
   std::unique_lock<std::mutex> lock(mutex);
@@ -133,25 +162,24 @@ void Runner::Implementation::run_frame()
 
 void Runner::Implementation::serve_step(StepRequest& request)
 {
-  Controls to;
+  Controls end;
   {
     const std::lock_guard<std::mutex> lock(mutex);
-    to = target;
+    end = target;
   }
   if (frame.failed)
     request.error = frame.failure + "; reset first";
-  const Controls from = solver->controls();
-  clock.restart(time());
+  const Controls begin = solver->controls();
+  clock.restart(Clock::now(), time());
   for (double done = 0; done < request.seconds && request.error.empty();)
   {
-    // in slices, so that a long step can be stopped
-    const double slice = std::min(request.seconds - done, steps_a_slice * solver->time_step() * model->time_scaling);
-    done += slice;
-    advance(slice, interpolate(from, to, std::min(1.0, done / request.seconds)));
+    const double seconds = std::min(request.seconds - done, slice());
+    done += seconds;
+    advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)));
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
     if (stop || reset_wanted || cancel_wanted)
-      request.error = "the step was ended early";
+      request.error = ended_early;
     else if (switch_request != nullptr)
       serve_switch(*switch_request);
   }
@@ -159,19 +187,18 @@ void Runner::Implementation::serve_step(StepRequest& request)
   request.frame = frame;
 }
 
-// under the mutex
+// the caller holds the mutex
 void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
   try
   {
-    // else a state gone bad since the latest check would become the one to go back to
+    // a state that went bad since the latest check must not become the one that the guard goes back to
     if (guard && !frame.failed)
       guard->check();
   }
   catch (const Error& error)
   {
-    frame.failed = true;
-    frame.failure = error.what();
+    fail(error.what());
   }
   try
   {
@@ -189,37 +216,40 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
   wake.notify_all();
 }
 
-// under the mutex
+// the caller holds the mutex
 void Runner::Implementation::refuse_requests(const std::string& error)
 {
-  if (step_request != nullptr)
-  {
-    step_request->error = error;
-    step_request->done = true;
-    step_request = nullptr;
-  }
-  if (switch_request != nullptr)
-  {
-    switch_request->error = error;
-    switch_request->done = true;
-    switch_request = nullptr;
-  }
+  refuse(step_request, error);
+  refuse(switch_request, error);
   cancel_wanted = false;
   wake.notify_all();
 }
 
-void Runner::Implementation::loop()
+void Runner::Implementation::reset()
 {
-  clock.restart(time());
+  solver->reset();
+  if (guard)
+    guard->restart();
+  frame.failed = false;
+  frame.failure.clear();
+  clock.restart(Clock::now(), 0);
+  publish(true);
+  const std::lock_guard<std::mutex> lock(mutex);
+  reset_error.clear();
+  ++resets_done;
+}
+
+void Runner::Implementation::serve_until_stopped()
+{
+  clock.restart(Clock::now(), time());
   for (;;)
   {
     StepRequest* request = nullptr;
-    bool reset = false;
-    bool rest = false;
+    bool reset_now = false, was_idle = false;
     {
       std::unique_lock<std::mutex> lock(mutex);
       const auto idle = [&] { return paused || settings.pace == Pace::lock_step; };
-      rest = idle();
+      was_idle = idle();
       wake.wait(lock, [&]
                 { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr || !idle(); });
       if (stop)
@@ -230,22 +260,17 @@ void Runner::Implementation::loop()
         if (idle())
           continue;
       }
-      std::swap(reset, reset_wanted);
+      std::swap(reset_now, reset_wanted);
+      // a step that was requested before the reset but has not begun yet is ended too
+      if (reset_now)
+      {
+        refuse(step_request, ended_early);
+        cancel_wanted = false;
+      }
       request = step_request;
     }
-    if (reset)
-    {
-      solver->reset();
-      if (guard)
-        guard->restart();
-      frame.failed = false;
-      frame.failure.clear();
-      clock.restart(0);
-      publish(true);
-      const std::lock_guard<std::mutex> lock(mutex);
-      reset_error.clear();
-      ++resets_done;
-    }
+    if (reset_now)
+      reset();
     else if (request != nullptr)
     {
       serve_step(*request);
@@ -256,8 +281,8 @@ void Runner::Implementation::loop()
     }
     else
     {
-      if (rest)
-        clock.restart(time());
+      if (was_idle)
+        clock.restart(Clock::now(), time());
       run_frame();
       continue;
     }
@@ -265,23 +290,22 @@ void Runner::Implementation::loop()
   }
 }
 
-// whatever a backend or a listener throws ends the motion, not the process
-void Runner::Implementation::guarded_loop()
+// an exception of a backend or a listener ends the motion, not the process
+void Runner::Implementation::run()
 {
   for (;;)
     try
     {
-      loop();
+      serve_until_stopped();
       return;
     }
     catch (const std::exception& error)
     {
-      frame.failed = true;
-      frame.failure = error.what();
+      fail(error.what());
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
       reset_error = frame.failure;
-      ++resets_done;  // a reset that failed must not keep its caller waiting
+      ++resets_done;  // the caller of a reset that failed must not wait for ever
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }
 }

@@ -5,6 +5,8 @@
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -28,7 +30,7 @@ std::string hash_of_file(const std::string& path)
   return hash.text();
 }
 
-// one line of words, each preceded by a blank; texts are preceded by their length, so that no two scenes look alike
+// one line of words, each after a blank; texts carry their length, so that different scenes give different lines
 class Line
 {
 public:
@@ -44,7 +46,7 @@ public:
   }
   Line& add(const std::string& text)
   {
-    content_ += ' ' + std::to_string(text.size()) + ':' + text;
+    content_ += fmt::format(" {}:{}", text.size(), text);
     return *this;
   }
   Line& add(const Vector3& vector) { return add(vector[0]).add(vector[1]).add(vector[2]); }
@@ -81,7 +83,7 @@ void add_surface(const Surface& surface, std::string& content)
   line.add(surface.name);
   if (!surface.shape)
   {
-    // the extension decides how the bytes are read
+    // the extension decides which format the bytes are in
     line.add("file").add(std::filesystem::path(surface.file).extension().string());
     line.add(surface.unit).add(hash_of_file(surface.file));
     return;

@@ -1,5 +1,7 @@
 #include "frontalis/scene/content_hash.hpp"
 
+#include <fmt/format.h>
+
 namespace frontalis
 {
 
@@ -12,13 +14,7 @@ void ContentHash::add(const void* bytes, std::size_t size)
   value_ = value;
 }
 
-std::string ContentHash::text() const
-{
-  std::string text(16, '0');
-  for (int i = 0; i < 16; ++i)
-    text[static_cast<std::size_t>(i)] = "0123456789abcdef"[(value_ >> (60 - 4 * i)) & 15];
-  return text;
-}
+std::string ContentHash::text() const { return fmt::format("{:016x}", value_); }
 
 std::string content_hash(const std::string& content)
 {

@@ -15,7 +15,7 @@ namespace
 struct Unit
 {
   const char* name;
-  double factor;  ///< SI units a unit
+  double factor;  ///< in SI units
 };
 
 const std::vector<Unit>& units_of(Dimension dimension)
@@ -61,7 +61,7 @@ std::string expected(Dimension dimension)
   return units.empty() ? "a number without a unit" : "a number, alone or with one of the units " + names_of(units);
 }
 
-// lower-case words that YAML and C use for numbers that are none
+// whether a text is one of the words of YAML and C for infinity and not-a-number
 bool names_not_finite(std::string text)
 {
   if (!text.empty() && (text[0] == '-' || text[0] == '+'))
@@ -106,7 +106,7 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
   if (names_not_finite(found))
     throw Error("'" + found + "' is not finite; must be " + expected(dimension));
 
-  // std::from_chars reads the same in every locale, but knows no leading plus
+  // std::from_chars does not depend on the locale, but does not accept a leading plus
   const char* begin = found.data() + (found.size() > 1 && found[0] == '+' && found[1] != '-' ? 1 : 0);
   const char* end = found.data() + found.size();
   double value = 0;

@@ -6,7 +6,8 @@
 namespace frontalis
 {
 
-/// What a number of a scene measures: decides which units it may carry and what it means without one.
+/// What a number of a scene measures, with the units that it may carry; behind the semicolon, what a plain number
+/// means.
 enum class Dimension
 {
   number,       ///< no unit
@@ -39,7 +40,7 @@ constexpr Bound proportion{ 0, 1, true, true };
 /// not finite are refused.
 double parse_quantity(const std::string& text, Dimension dimension, double length_unit);
 
-/// Metres a length unit. Throws Error naming the units that exist.
+/// Metres per length unit. Throws Error naming the units that exist.
 double parse_length_unit(const std::string& text);
 
 /// Shortest text that reads back as the same number, whatever the locale.

@@ -87,7 +87,7 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
     Mapping measured(node_of_key);
     profile.measured.error = measured.required("error", "a length").number(Dimension::length, positive, 0);
     profile.measured.cost =
-        measured.required("cost", "wall seconds a simulated second").number(Dimension::number, positive, 0);
+        measured.required("cost", "wall seconds per simulated second").number(Dimension::number, positive, 0);
     if (const Node machine = measured.optional("machine"); machine.given())
       profile.measured.machine = machine.text();
   }
@@ -111,13 +111,13 @@ AccuracyProfile read_profile_file(const std::string& path, double length_unit, c
   if (profiles.size() == 1)
     profile = read_profile(profiles[0].first, profiles[0].second, names);
   else
-    root.fault("found " + std::to_string(profiles.size()) + " profiles; must be one, NAME: {voxel: ...}");
+    root.fault("found {} profiles; must be one, NAME: {{voxel: ...}}", profiles.size());
   if (!context.faults.empty())
     throw Error(context.faults.text());
   return profile;
 }
 
-// the edge that options ask for instead of the profile's
+// takes the voxel edge of the options in place of the profile's
 void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
@@ -136,7 +136,7 @@ void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
   if (!(edge > 0))
     return;
   scene.accuracy.voxel = { edge, edge, edge };
-  // what was measured was measured with other voxels
+  // the measurement was made with other voxels
   scene.accuracy.measured = {};
   for (AccuracyProfile& profile : scene.profiles)
     if (profile.name == scene.accuracy.name)
@@ -173,7 +173,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
-    // it takes the place of one of its name
+    // it replaces a profile of the same name
     const auto same = [&](const AccuracyProfile& profile) { return profile.name == scene.accuracy.name; };
     scene.profiles.erase(std::remove_if(scene.profiles.begin(), scene.profiles.end(), same), scene.profiles.end());
     scene.profiles.push_back(scene.accuracy);

@@ -7,8 +7,7 @@ namespace frontalis
 namespace
 {
 
-// exactly one of `keys` must be there; returns it, or an empty text after recording the fault. Keys that are not there
-// are not asked for
+// exactly one of `keys` must be there: returns it, or records a fault and returns an empty text
 std::string one_of(const Node& entry, const Mapping& mapping, const std::vector<std::string>& keys)
 {
   std::vector<std::string> there;
@@ -22,8 +21,7 @@ std::string one_of(const Node& entry, const Mapping& mapping, const std::vector<
   if (there.size() == 1)
     return there[0];
   if (entry.is_mapping())
-    entry.fault("found " + (there.empty() ? "none" : std::to_string(there.size())) + " of " + all +
-                "; must have exactly one");
+    entry.fault("found {} of {}; must have exactly one", there.empty() ? "none" : fmt::format("{}", there.size()), all);
   return {};
 }
 
@@ -39,9 +37,7 @@ void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
     SceneConstraint constraint;
     constraint.line = entry.line();
     Mapping mapping(entry);
-    const Node name = mapping.required("name", "a name");
-    constraint.name = name.name();
-    check_unique(name, constraint.name, earlier);
+    constraint.name = read_unique_name(mapping, earlier);
     const std::string kind = one_of(entry, mapping, { "rigid", "sliding" });
     if (kind.empty())
     {
@@ -67,9 +63,7 @@ void read_loads(const Node& node, Scene& scene, const SceneNames& names)
     SceneLoad load;
     load.line = entry.line();
     Mapping mapping(entry);
-    const Node name = mapping.required("name", "a name");
-    load.name = name.name();
-    check_unique(name, load.name, earlier);
+    load.name = read_unique_name(mapping, earlier);
     const std::string kind = one_of(entry, mapping, { "traction", "pressure", "displacement" });
     if (kind.empty())
     {

@@ -35,8 +35,8 @@ ControlNet read_net(const Node& node)
       mapping.required("size", "three whole numbers: control points along, across and through the muscle");
   const auto sizes = size.entries();
   if (size.is_list() && sizes.size() != 3)
-    size.fault("found a list of " + std::to_string(sizes.size()) +
-               "; must be three whole numbers: control points along, across and through the muscle");
+    size.fault("found a list of {}; must be three whole numbers: control points along, across and through the muscle",
+               sizes.size());
   for (std::size_t a = 0; sizes.size() == 3 && a < 3; ++a)
     net.size[a] = sizes[a].integer(2, 100, 2);
   net.ring = mapping.optional("ring").boolean(false);
@@ -48,16 +48,16 @@ ControlNet read_net(const Node& node)
   for (const Node& point : points.entries())
     net.points.push_back(point.vector(Dimension::length, any_number, {}));
   if (points.is_list() && count > 0 && net.points.size() != count)
-    points.fault("found " + std::to_string(net.points.size()) + " points; size asks for " + std::to_string(count));
+    points.fault("found {} points; size asks for {}", net.points.size(), count);
   const Node weights = mapping.optional("weights");
   for (const Node& weight : weights.entries())
     net.weights.push_back(weight.number(Dimension::number, positive, 1));
   if (weights.is_list() && count > 0 && net.weights.size() != count)
-    weights.fault("found " + std::to_string(net.weights.size()) + " weights; size asks for " + std::to_string(count));
+    weights.fault("found {} weights; size asks for {}", net.weights.size(), count);
   return net;
 }
 
-/// What says where the fibres run: at most one way of doing so.
+/// The keys that say where the fibres run: at most one way may be used.
 void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
 {
   const Node fibre = mapping.optional("fibre"), net = mapping.optional("net"), ring = mapping.optional("ring"),

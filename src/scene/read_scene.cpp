@@ -68,7 +68,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected)
 {
-  const auto place = [&](int line) { return path + ":" + std::to_string(line) + ": " + what + ": "; };
+  const auto place = [&](int line) { return fmt::format("{}:{}: {}: ", path, line, what); };
   YAML::Node root;
   try
   {

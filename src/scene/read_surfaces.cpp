@@ -80,7 +80,7 @@ Shape read_shape(const Node& kind_node, Mapping& mapping)
   return shape;
 }
 
-// where mesh files are looked for; found out once the first file is met, since shapes need no folder
+// where mesh files are looked for; checked when the first file is read, since shapes need no folder
 class MeshFolder
 {
 public:
@@ -115,17 +115,17 @@ public:
     return path.string();
   }
 
-  /// Records what files are missing: one fault each, but one for all where it is the folder that must be wrong.
+  /// Records the files that are missing: one fault per file, but one in all where the folder itself must be wrong.
   void report(const Node& surfaces) const
   {
     const std::string remedy = "; must be relative to the mesh directory '" + folder_.string() +
                                "', which mesh_dir or the option --mesh-dir sets";
     if (missing_.size() > 1 && !any_there_)
-      surfaces.fault("none of the " + std::to_string(missing_.size()) + " mesh files is there, the first being '" +
-                     missing_[0].second + "'" + remedy);
+      surfaces.fault("none of the {} mesh files is there, the first being '{}'{}", missing_.size(), missing_[0].second,
+                     remedy);
     else
       for (const auto& [file, path] : missing_)
-        file.fault(std::string("no file '").append(path).append("'").append(remedy));
+        file.fault("no file '{}'{}", path, remedy);
   }
 
 private:
@@ -170,7 +170,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
     names.surfaces.names.push_back(name);
     {
       Mapping mapping(entry);
-      // only the one that is there is asked for, so that the message on an unknown key does not offer the other
+      // asked for only if it is there, so that messages on unknown keys do not offer both
       const Node absent(entry.path(), entry.line(), entry.context());
       const Node shape = mapping.has("shape") ? mapping.optional("shape") : absent;
       const Node file = mapping.has("file") ? mapping.optional("file") : absent;

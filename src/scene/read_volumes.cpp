@@ -43,21 +43,21 @@ Region read_region(const Node& node)
   for (std::size_t i = 0; i < 3; ++i)
     if (region.lower[i] >= region.upper[i])
     {
-      node.fault("lower " + std::string(1, "xyz"[i]) + " " + number_text(region.lower[i]) + " m is not below upper " +
-                 std::string(1, "xyz"[i]) + " " + number_text(region.upper[i]) + " m; must be less");
+      node.fault("lower {0} {1} m is not below upper {0} {2} m; must be less", "xyz"[i], region.lower[i],
+                 region.upper[i]);
       break;
     }
   return region;
 }
 
-void check_unique(const Node& node, const std::string& name, std::vector<std::string>& earlier)
+std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier)
 {
-  if (name.empty())
-    return;
-  if (std::find(earlier.begin(), earlier.end(), name) != earlier.end())
+  const Node node = mapping.required("name", "a name");
+  const std::string name = node.name();
+  if (!name.empty() && std::find(earlier.begin(), earlier.end(), name) != earlier.end())
     node.fault("'" + name + "' is there already; names must differ");
-  else
-    earlier.push_back(name);
+  earlier.push_back(name);
+  return name;
 }
 
 void read_volumes(const Node& node, Scene& scene, SceneNames& names)
@@ -107,9 +107,7 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names)
     Layer layer;
     layer.line = entry.line();
     Mapping mapping(entry);
-    const Node name = mapping.required("name", "a name");
-    layer.name = name.name();
-    check_unique(name, layer.name, earlier);
+    layer.name = read_unique_name(mapping, earlier);
     layer.surface = mapping.required("surface", "the name of a surface").reference(names.surfaces);
     const Node volume = mapping.required("volume", "the name of a tissue volume");
     layer.volume = volume.reference(names.volumes);

@@ -22,7 +22,7 @@ struct SceneNames
   Names expressions{ "expression", { "relax" }, true };
 };
 
-// one function a section, called in this order; each takes the section's node, given or not
+// one function per section, in the order of the calls; each takes the section's node, given or not
 void read_frame(const Node& node, FaceFrame& frame);
 void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
                    SceneNames& names);
@@ -47,7 +47,7 @@ Region read_region(const Node& node);
 /// The mapping of a file that holds a `what`. Throws Error: no such file, not YAML, not what is expected.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
-/// Records a fault where `name` stands in `earlier`; otherwise adds it.
-void check_unique(const Node& node, const std::string& name, std::vector<std::string>& earlier);
+/// The `name` of a list's entry, which must differ from the earlier ones; adds it to them.
+std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier);
 
 }  // namespace frontalis

@@ -45,8 +45,7 @@ std::string Faults::text() const
   std::stable_sort(sorted.begin(), sorted.end(), [](const Fault& a, const Fault& b) { return a.line < b.line; });
   std::string text;
   for (const Fault& fault : sorted)
-    text +=
-        (text.empty() ? "" : "\n") + file_ + ":" + std::to_string(fault.line) + ": " + fault.key + ": " + fault.text;
+    text += fmt::format("{}{}:{}: {}: {}", text.empty() ? "" : "\n", file_, fault.line, fault.key, fault.text);
   return text;
 }
 
@@ -61,6 +60,14 @@ std::string Node::found() const
   if (yaml_.IsMap())
     return "found a mapping";
   return "found '" + yaml_.Scalar() + "'";
+}
+
+bool Node::is_triple(const std::string& expected) const
+{
+  if (is_list() && yaml_.size() == 3)
+    return true;
+  fault("{}; must be {}", is_list() ? fmt::format("found a list of {}", yaml_.size()) : found(), expected);
+  return false;
 }
 
 bool Node::scalar(std::string& text, const std::string& expected) const
@@ -116,7 +123,7 @@ bool Node::boolean(bool fallback) const
 
 int Node::integer(int lower, int upper, int fallback) const
 {
-  const std::string expected = "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper);
+  const std::string expected = fmt::format("a whole number from {} to {}", lower, upper);
   std::string text;
   if (!given_ || !scalar(text, expected))
     return fallback;
@@ -160,12 +167,8 @@ std::array<double, 3> Node::vector(Dimension dimension, const Bound& bound, cons
 {
   if (!given_)
     return fallback;
-  if (!yaml_.IsSequence() || yaml_.size() != 3)
-  {
-    fault((yaml_.IsSequence() ? "found a list of " + std::to_string(yaml_.size()) : found()) +
-          "; must be a list of three numbers");
+  if (!is_triple("a list of three numbers"))
     return fallback;
-  }
   std::array<double, 3> vector = fallback;
   const std::vector<Node> components = entries();
   for (std::size_t i = 0; i < 3; ++i)
@@ -177,12 +180,8 @@ std::optional<std::array<std::optional<double>, 3>> Node::open_vector(Dimension 
 {
   if (!given_)
     return std::nullopt;
-  if (!yaml_.IsSequence() || yaml_.size() != 3)
-  {
-    fault((yaml_.IsSequence() ? "found a list of " + std::to_string(yaml_.size()) : found()) +
-          "; must be a list of three, each a number or null");
+  if (!is_triple("a list of three, each a number or null"))
     return std::nullopt;
-  }
   std::array<std::optional<double>, 3> vector;
   const std::vector<Node> components = entries();
   for (std::size_t i = 0; i < 3; ++i)
@@ -206,7 +205,7 @@ std::array<double, 3> Node::direction(const std::array<double, 3>& fallback) con
     fault("found a zero vector; must have a direction");
     return fallback;
   }
-  // scaled first, so that no square overflows
+  // divided by its largest component first, so that no square overflows
   const double x = vector[0] / largest;
   const double y = vector[1] / largest;
   const double z = vector[2] / largest;
@@ -263,7 +262,7 @@ std::vector<Node> Node::entries() const
     return result;
   }
   for (std::size_t i = 0; i < yaml_.size(); ++i)
-    result.emplace_back(yaml_[i], path_ + "[" + std::to_string(i) + "]", line_of(yaml_[i], line_), *context_);
+    result.emplace_back(yaml_[i], fmt::format("{}[{}]", path_, i), line_of(yaml_[i], line_), *context_);
   return result;
 }
 
@@ -290,9 +289,8 @@ std::vector<std::pair<std::string, Node>> Node::pairs() const
     const auto earlier =
         std::find_if(result.begin(), result.end(), [&](const auto& other) { return other.first == key; });
     if (earlier != result.end())
-      context_->faults.add(
-          line, path,
-          "given twice, first on line " + std::to_string(earlier->second.line()) + "; a key may stand once");
+      context_->faults.add(line, path,
+                           fmt::format("given twice, first on line {}; a key may stand once", earlier->second.line()));
     else
       result.emplace_back(key, Node(pair.second, path, line, *context_));
   }

@@ -2,6 +2,7 @@
 
 #include "scene/quantity.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <array>
@@ -23,7 +24,7 @@ public:
   bool empty() const { return faults_.empty(); }
   /// Whether a fault was found at `key` or below it.
   bool any_at(const std::string& key) const;
-  /// One line a fault, FILE:LINE: KEY: fault, in the order of the lines.
+  /// One line per fault, FILE:LINE: KEY: fault, in the order of the lines.
   std::string text() const;
 
 private:
@@ -40,7 +41,7 @@ private:
 struct ReadingContext
 {
   Faults faults;
-  double length_unit = 1;  ///< metres a plain number
+  double length_unit = 1;  ///< metres per plain number
 };
 
 /// Names that a section defines, for references to them.
@@ -53,8 +54,8 @@ struct Names
   bool has(const std::string& name) const;
 };
 
-/// A value of the file, or the lack of one, with its dotted path and line. Each reading function returns `fallback`
-/// where the value is absent, and where it is wrong it records a fault too.
+/// A value of the file, or the absence of one, with its dotted path and line. Each reading function returns `fallback`
+/// where the value is absent or wrong; where it is wrong, it records a fault.
 class Node
 {
 public:
@@ -62,7 +63,7 @@ public:
       : yaml_(yaml), path_(std::move(path)), line_(line), context_(&context), given_(true)
   {
   }
-  /// The lack of a value.
+  /// An absent value.
   Node(std::string path, int line, ReadingContext& context) : path_(std::move(path)), line_(line), context_(&context) {}
 
   Node(const Node&) = default;
@@ -81,6 +82,13 @@ public:
   const std::string& path() const { return path_; }
   ReadingContext& context() const { return *context_; }
   void fault(const std::string& text) const { context_->faults.add(line_, path_, text); }
+  template <class First, class... Rest>
+  void fault(fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest) const
+  {
+    fault(fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
+  /// Whether a fault was found in this value.
+  bool faulty() const { return context_->faults.any_at(path_); }
 
   std::string text(const std::string& fallback = {}) const;
   std::string name() const;  ///< text of [A-Za-z0-9_]+
@@ -110,6 +118,7 @@ public:
   std::string found() const;  ///< "found a list", "found 'text'"
 
 private:
+  bool is_triple(const std::string& expected) const;  ///< or records a fault
   bool scalar(std::string& text, const std::string& expected) const;
 
   YAML::Node yaml_;
@@ -119,8 +128,8 @@ private:
   bool given_ = false;
 };
 
-/// A mapping with fixed keys. Keys that nobody has asked for when it goes out of scope are unknown: a fault each, which
-/// lists those that were asked for.
+/// A mapping with fixed keys. When it goes out of scope, each key that was never asked for is recorded as a fault that
+/// lists the known keys.
 class Mapping
 {
 public:
@@ -132,7 +141,7 @@ public:
   bool has(const std::string& key) const;
   Node optional(const std::string& key);
   Node required(const std::string& key, const std::string& expected);
-  /// The keys left may not be judged, since which are allowed could not be found out.
+  /// Accepts the keys left, where it could not be found out which are allowed.
   void ignore_rest() { judged_ = false; }
 
 private:

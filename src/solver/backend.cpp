@@ -1,94 +1,89 @@
-#include "frontalis/error.hpp"
-#include "solver/stepping/stepping_solver.hpp"
+#include "frontalis/solver/backend.hpp"
 
-#include <cmath>
+#include <fmt/format.h>
 
-#if defined(FRONTALIS_WITH_CUDA)
-#include "cuda/backend/cuda_backend.hpp"
-#endif
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
 
 namespace frontalis
 {
-
-Backend backend_from_name(const std::string& name)
-{
-  for (const Backend backend : { Backend::automatic, Backend::reference, Backend::cpu, Backend::cuda })
-    if (name == name_of(backend))
-      return backend;
-  throw Error("backend \"" + name + "\": allowed are auto, reference, cpu, cuda");
-}
-
-std::string name_of(Backend backend)
-{
-  switch (backend)
-  {
-    case Backend::reference:
-      return "reference";
-    case Backend::cpu:
-      return "cpu";
-    case Backend::cuda:
-      return "cuda";
-    default:
-      return "auto";
-  }
-}
-
 namespace
 {
 
-// why this model cannot run on a GPU here; empty where it can
-std::string missing_gpu([[maybe_unused]] const Model& model)
+std::string missing_of(const BackendDescription& backend)
 {
-#if defined(FRONTALIS_WITH_CUDA)
-  return missing_cuda_device();
-#else
-  return "this build has no CUDA solver";
-#endif
+  return backend.missing == nullptr ? std::string() : backend.missing();
 }
 
-std::unique_ptr<Solver> make_gpu_solver([[maybe_unused]] const std::shared_ptr<const Model>& model,
-                                        [[maybe_unused]] const SolverSettings& settings)
+// The first backend that can run. A user who gets another than the preferred one is told why, once per process.
+std::unique_ptr<Solver> make_preferred(const std::shared_ptr<const Model>& model, const SolverSettings& settings)
 {
-  const std::string missing = missing_gpu(*model);
-  if (!missing.empty())
-    throw Error("backend cuda: " + missing + "; allowed here are auto, reference, cpu");
-#if defined(FRONTALIS_WITH_CUDA)
-  return make_cuda_solver(model, settings);
-#else
-  return nullptr;
-#endif
+  std::string remark;
+  for (const BackendDescription& backend : registered_backends())
+  {
+    std::string fault;
+    if (const std::string missing = missing_of(backend); !missing.empty())
+      fault = fmt::format("backend {}: {}", backend.name, missing);
+    else
+      try
+      {
+        auto solver = backend.make(model, settings, remark);
+        static std::once_flag warned;
+        if (!remark.empty())
+          std::call_once(warned,
+                         [&] { fmt::print(stderr, "warning: backend {} is used ({})\n", backend.name, remark); });
+        return solver;
+      }
+      catch (const BackendUnavailable& error)
+      {
+        fault = error.what();
+      }
+    remark += (remark.empty() ? "" : "; ") + fault;
+  }
+  throw BackendUnavailable(remark);
 }
 
 }  // namespace
 
+std::vector<Backend> backend_names()
+{
+  std::vector<Backend> names{ "auto" };
+  for (const BackendDescription& backend : registered_backends())
+    names.push_back(backend.name);
+  return names;
+}
+
+Backend backend_from_name(const std::string& name)
+{
+  const std::vector<Backend> names = backend_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw Error(fmt::format("backend \"{}\": this build has {}", name, fmt::join(names, ", ")));
+  return name;
+}
+
 std::vector<Backend> available_backends()
 {
-  std::vector<Backend> backends{ Backend::reference, Backend::cpu };
-  if (missing_gpu({}).empty())
-    backends.push_back(Backend::cuda);
-  return backends;
+  std::vector<Backend> names;
+  for (const BackendDescription& backend : registered_backends())
+    if (missing_of(backend).empty())
+      names.push_back(backend.name);
+  return names;
 }
 
 std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
 {
-  if (!(settings.sleep >= 0) || !std::isfinite(settings.sleep))
-    throw Error("sleep within " + std::to_string(settings.sleep) +
-                " m: allowed are finite lengths from 0 (all is computed)");
-  switch (settings.backend)
-  {
-    case Backend::reference:
-      return make_reference_solver(std::move(model), settings);
-    case Backend::cuda:
-      return make_gpu_solver(model, settings);
-    case Backend::cpu:
-      return make_cpu_solver(std::move(model), settings);
-    default:
-    {
-      const std::string missing = missing_gpu(*model);
-      return missing.empty() ? make_gpu_solver(model, settings)
-                             : make_cpu_solver(std::move(model), settings, "no GPU: " + missing);
-    }
-  }
+  const Backend name = backend_from_name(settings.backend);
+  if (name == "auto")
+    return make_preferred(model, settings);
+  const auto& all = registered_backends();
+  const BackendDescription& backend =
+      *std::find_if(all.begin(), all.end(), [&](const BackendDescription& one) { return one.name == name; });
+  const std::string missing = missing_of(backend);
+  if (!missing.empty())
+    throw BackendUnavailable(
+        fmt::format("backend {}: {}; available are auto, {}", name, missing, fmt::join(available_backends(), ", ")));
+  return backend.make(std::move(model), settings, {});
 }
 
 }  // namespace frontalis

@@ -1,55 +1,29 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
-#include "frontalis/physics/guccione.hpp"
-#include "frontalis/physics/holzapfel.hpp"
-#include "frontalis/physics/mooney_rivlin.hpp"
-#include "frontalis/physics/ogden.hpp"
+#include "frontalis/physics/materials/all.hpp"
 
 namespace frontalis
 {
 
-/// Calls visit(material, families...) with the law's struct filled from a material's parameters (their order: Law). A
-/// law more is a case more. Neo-Hookean and the volumetric part, which every voxel has, are not laws of this list.
+/// Calls visit(solid) or visit(solid, directions) with the law's struct filled from a material's numbers. Neo-Hookean
+/// and the volumetric part, which every voxel has, are left out: kernels compute them apart.
 template <class T, class Visit>
-FRONTALIS_LAW void visit_law(Law law, const T* p, Visit&& visit)
+FRONTALIS_LAW void visit_law(Law law, const T* numbers, Visit&& visit)
 {
-  switch (law)
-  {
-    case Law::mooney_rivlin:
-      visit(physics::MooneyRivlin<T>{ p[0], p[2] });
-      break;
-    case Law::ogden:
-      visit(physics::Ogden<T>{ { p[0], p[3] }, { p[2], p[4] } });
-      break;
-    case Law::fung:
-      visit(physics::FungExponential<T>{ p[0], p[2] });
-      break;
-    case Law::holzapfel:
-    {
-      const physics::Vec3<T> families[2] = { { p[5], p[6], p[7] }, { p[8], p[9], p[10] } };
-      visit(physics::HolzapfelGasserOgden<T>{ p[0], p[2], p[3], p[4] }, families);
-      break;
-    }
-    case Law::guccione:
-      visit(physics::Guccione<T>{ p[0], p[2], p[3], p[4] }, physics::Vec3<T>{ p[5], p[6], p[7] });
-      break;
-    case Law::neo_hookean:
-      break;
-  }
+  physics::visit_table<1>(law, numbers, visit);
 }
 
 /// Adds weight times the law's first Piola-Kirchhoff stress to P.
 template <class T>
-FRONTALIS_LAW void add_law_stress(Law law, const T* parameters, const T& weight, const physics::Kinematics<T>& k,
+FRONTALIS_LAW void add_law_stress(Law law, const T* numbers, const T& weight, const physics::Kinematics<T>& k,
                                   physics::Matrix3<T>& P)
 {
   physics::Matrix3<T> own;
   for (auto& row : own.a)
     for (auto& x : row)
       x = physics::Number<T>::of(0);
-  visit_law(law, parameters,
-            [&](const auto& material, const auto&... families) { add_stress(material, k, families..., own); });
+  visit_law(law, numbers,
+            [&](const auto& solid, const auto&... directions) { add_stress(solid, k, directions..., own); });
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       P.a[i][j] = P.a[i][j] + weight * own.a[i][j];
@@ -57,22 +31,22 @@ FRONTALIS_LAW void add_law_stress(Law law, const T* parameters, const T& weight,
 
 /// Bound of the law's tangent shear stiffness [Pa] at a deformation, for the time step.
 template <class T>
-FRONTALIS_LAW T law_stiffness(Law law, const T* parameters, const physics::Kinematics<T>& k)
+FRONTALIS_LAW T law_stiffness(Law law, const T* numbers, const physics::Kinematics<T>& k)
 {
   T stiffness = physics::Number<T>::of(0);
-  visit_law(law, parameters,
-            [&](const auto& material, const auto&... families)
-            { stiffness = tangent_stiffness(material, k, families...); });
+  visit_law(law, numbers,
+            [&](const auto& solid, const auto&... directions)
+            { stiffness = tangent_stiffness(solid, k, directions...); });
   return stiffness;
 }
 
 /// What a law adds to the bound of a voxel's stiffness since rest [N/m]. per_tangent: LawPart's.
 template <class T>
-FRONTALIS_LAW T law_stiffening(Law law, const T* parameters, const T& at_rest, const T& per_tangent,
+FRONTALIS_LAW T law_stiffening(Law law, const T* numbers, const T& at_rest, const T& per_tangent,
                                const physics::Kinematics<T>& k)
 {
   using N = physics::Number<T>;
-  return per_tangent * N::max(law_stiffness(law, parameters, k) - at_rest, N::of(0));
+  return per_tangent * N::max(law_stiffness(law, numbers, k) - at_rest, N::of(0));
 }
 
 }  // namespace frontalis

@@ -31,9 +31,8 @@ double area(const TriangleMesh& mesh)
   double sum = 0;
   for (const auto& t : mesh.triangles)
   {
-    const Vector3 a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    sum += 0.5 * cross(mesh.vertices[static_cast<std::size_t>(t[1])] - a,
-                       mesh.vertices[static_cast<std::size_t>(t[2])] - a)[2];
+    const auto [a, b, c] = corners(mesh, t);
+    sum += 0.5 * (b - a).cross(c - a)[2];
   }
   return sum;
 }
@@ -48,7 +47,7 @@ TEST(CutMesh, KeepsTheAreaAndTheOrientationInsideTheRegion)
   const TriangleMesh part = cut_mesh(square(5), region);
   EXPECT_NEAR(area(part), 2.25 * 2.25, 1e-12);
   for (const auto& v : part.vertices)
-    EXPECT_TRUE(contains(region, v));
+    EXPECT_TRUE(to_box(region).contains(to_vector(v)));
 }
 
 TEST(CutMesh, NeighboursShareTheNewVertices)
@@ -60,7 +59,7 @@ TEST(CutMesh, NeighboursShareTheNewVertices)
   const auto rim = unbalanced_edges(part);
   double length = 0;
   for (const auto& edge : rim)
-    length += norm(part.vertices[static_cast<std::size_t>(edge[1])] - part.vertices[static_cast<std::size_t>(edge[0])]);
+    length += (vertex(part, edge[1]) - vertex(part, edge[0])).norm();
   EXPECT_NEAR(length, 2 * (2.3 + 4), 1e-12);
 }
 

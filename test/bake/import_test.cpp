@@ -143,9 +143,8 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
   const Triangle split = mesh.triangles[0];
   const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
-  const Vector3 a = mesh.vertices[static_cast<std::size_t>(split[0])],
-                b = mesh.vertices[static_cast<std::size_t>(split[1])];
-  mesh.vertices.push_back(0.5 * (a + b));
+  const Vector3d a = vertex(mesh, split[0]), b = vertex(mesh, split[1]);
+  mesh.vertices.push_back(to_array(0.5 * (a + b)));
   mesh.triangles[0] = { split[0], middle, split[2] };
   mesh.triangles.push_back({ middle, split[1], split[2] });
   mesh.triangles.push_back({ split[0], split[1], middle });
@@ -167,7 +166,7 @@ TEST_F(Import, HolesAreDataAndMeasured)
   {
     double lowest = 1e9;
     for (const std::int32_t v : t)
-      lowest = std::min(lowest, mesh.vertices[static_cast<std::size_t>(v)][2]);
+      lowest = std::min(lowest, mesh.vertices[v][2]);
     keep.push_back(lowest < 9);
   }
   const LoadedSurface surface = load(keep_triangles(mesh, keep));

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace
 {
@@ -30,21 +29,9 @@ protected:
   {
     TriangleMesh mesh = make_shape(*sphere_surface("", { 0, 0, 0 }, 1, 0.04).shape);
     join_vertices(mesh);
-    std::ofstream out(folder_ / (name + ".obj"));
-    char line[128];
-    for (const Vector3& v : mesh.vertices)
-    {
-      std::snprintf(line, sizeof(line), "v %.9g %.9g %.9g\n", v[0], v[1], v[2]);
-      out << line;
-    }
-    for (const Triangle& t : mesh.triangles)
-    {
-      bool left = false;
-      for (const std::int32_t v : t)
-        left = left || leave(mesh.vertices[static_cast<std::size_t>(v)]);
-      if (!left)
-        out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-    }
+    const auto keep = [&](const Triangle& t)
+    { return std::none_of(t.begin(), t.end(), [&](std::int32_t v) { return leave(mesh.vertices[v]); }); };
+    write_obj(mesh, (folder_ / (name + ".obj")).string(), keep);
     return file_surface(name, (folder_ / (name + ".obj")).string(), radius);
   }
 
@@ -87,16 +74,8 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   TriangleMesh shell = make_shape(*sphere_surface("", { 0, 0, 0 }, 15, 0.8).shape);
   TriangleMesh inner = make_shape(*sphere_surface("", { 0, 0, 0 }, 13, 0.8).shape);
   flip(inner);
-  const auto base = static_cast<std::int32_t>(shell.vertices.size());
-  shell.vertices.insert(shell.vertices.end(), inner.vertices.begin(), inner.vertices.end());
-  for (const Triangle& t : inner.triangles)
-    shell.triangles.push_back({ base + t[0], base + t[1], base + t[2] });
-  std::ofstream out(folder_ / "bone.obj");
-  for (const Vector3& v : shell.vertices)
-    out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
-  for (const Triangle& t : shell.triangles)
-    out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-  out.close();
+  append(shell, inner);
+  write_obj(shell, (folder_ / "bone.obj").string(), [](const Triangle&) { return true; });
 
   Scene scene = plain_scene(1e-3);
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),

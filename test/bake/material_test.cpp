@@ -1,6 +1,7 @@
 #include "scene_pieces.hpp"
 
 #include "frontalis/bake/bake.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,24 +50,37 @@ double bulk(double shear) { return shear * 2 * 1.45 / (3 * 0.1); }
 
 TEST(Materials, EveryLawArrivesWithItsBulkModulus)
 {
+  for (const auto& description : physics::material_table)
+  {
+    std::map<std::string, double> given;
+    for (const auto& parameter : description)
+      given[parameter.key] = parameter.example;
+    const Material material = bake_material(of_law(description.name, given)).materials[0];
+    ASSERT_EQ(physics::description_of(material.law).name, description.name);
+    const auto expected = physics::example_of(material.law, 0.45);
+    for (int slot = 0; slot < physics::first_direction; ++slot)
+      EXPECT_EQ(material.parameters[slot], expected[slot]) << description.name;
+    EXPECT_NEAR(material.parameters[1], bulk(physics::shear_modulus_of(material.law, expected)), 1e-6);
+  }
+
   const Model rubber = bake_material(of_law("mooney_rivlin", { { "c1", 4e3 }, { "c2", 1e3 } }));
-  EXPECT_EQ(rubber.materials[0].law, Law::mooney_rivlin);
+  EXPECT_EQ(rubber.materials[0].law, law_of<physics::MooneyRivlin>);
   EXPECT_NEAR(rubber.materials[0].parameters[1], bulk(10e3), 1e-6);
   EXPECT_EQ(rubber.materials[0].parameters[2], 1e3);
   EXPECT_EQ(rubber.hourglass, HourglassControl::assumed_strain);
 
   const Model ogden =
       bake_material(of_law("ogden", { { "mu1", 6e3 }, { "alpha1", 2.5 }, { "mu2", -2e3 }, { "alpha2", -2 } }));
-  EXPECT_EQ(ogden.materials[0].law, Law::ogden);
+  EXPECT_EQ(ogden.materials[0].law, law_of<physics::Ogden>);
   EXPECT_NEAR(ogden.materials[0].parameters[1], bulk(0.5 * (15e3 + 4e3)), 1e-6);
   EXPECT_EQ(ogden.materials[0].parameters[4], -2);
 
   const Model fung = bake_material(of_law("fung", { { "shear", 8e3 }, { "b", 1.5 } }));
-  EXPECT_EQ(fung.materials[0].law, Law::fung);
+  EXPECT_EQ(fung.materials[0].law, law_of<physics::FungExponential>);
   EXPECT_NEAR(fung.materials[0].parameters[1], bulk(8e3), 1e-6);
 
   const Model heart = bake_material(of_law("guccione", { { "c", 2e3 }, { "bf", 8 }, { "bt", 2 }, { "bfs", 4 } }));
-  EXPECT_EQ(heart.materials[0].law, Law::guccione);
+  EXPECT_EQ(heart.materials[0].law, law_of<physics::Guccione>);
   EXPECT_NEAR(heart.materials[0].parameters[1], bulk(8e3), 1e-6);
   EXPECT_EQ(heart.materials[0].parameters[4], 4);
 }

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "bake/vector.hpp"
 #include "frontalis/bake/bake.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
-
-constexpr double pi = 3.14159265358979323846;
 
 inline Surface box_surface(const std::string& name, const Vector3& centre, const Vector3& size, double edge = 0)
 {
@@ -42,6 +42,21 @@ inline Surface file_surface(const std::string& name, const std::string& file, do
   surface.file = file;
   surface.unit = unit;
   return surface;
+}
+
+/// Writes an OBJ file of the triangles that `keep` accepts.
+template <class Keep>
+void write_obj(const TriangleMesh& mesh, const std::string& path, const Keep& keep)
+{
+  std::ofstream out(path);
+  out.precision(9);
+  for (const Vector3& v : mesh.vertices)
+    out << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles)
+  {
+    if (keep(t))
+      out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  }
 }
 
 inline Surface forehead_surface(const std::string& part)

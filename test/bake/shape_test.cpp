@@ -103,7 +103,7 @@ TEST_F(MeshFile, QuadsAreSplitAndUnitsApplied)
   const TriangleMesh mesh = joined(import_mesh(file, 1e-3));
   EXPECT_EQ(mesh.triangles.size(), 2u);
   ASSERT_EQ(mesh.vertices.size(), 4u);
-  EXPECT_NEAR(bounding_box(mesh).upper[1], 3e-3, 1e-9);
+  EXPECT_NEAR(bounding_box(mesh).max()[1], 3e-3, 1e-9);
 }
 
 TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
@@ -120,10 +120,8 @@ TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
   {
     const TriangleMesh mesh = joined(import_mesh(file, 1));
     ASSERT_EQ(mesh.triangles.size(), 1u) << file;
-    const Vector3& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][0])];
-    const Vector3& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][1])];
-    const Vector3& c = mesh.vertices[static_cast<std::size_t>(mesh.triangles[0][2])];
-    EXPECT_NEAR(cross(b - a, c - a)[2], 1, 1e-6) << file;
+    const auto [a, b, c] = corners(mesh, mesh.triangles[0]);
+    EXPECT_NEAR((b - a).cross(c - a)[2], 1, 1e-6) << file;
   }
 }
 
@@ -169,8 +167,8 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
                      file_surface("mixed", write_box("mixed.obj", false, true)) };
   BakeReport report;
   const BakeProgress progress;
-  BakeStages stages(&report, progress);
-  for (const auto& surface : prepare_surfaces(scene, stages))
+  BakeMonitor monitor(&report, progress);
+  for (const auto& surface : prepare_surfaces(scene, monitor))
     EXPECT_NEAR(signed_volume(surface->mesh()), 1, 1e-6) << surface->name();
   const auto reported = [&](const std::string& name, const std::string& text)
   {
@@ -206,26 +204,28 @@ TEST(Forehead, HasTheStatedDimensions)
 {
   const TriangleMesh skin = forehead("skin");
   const Box box = bounding_box(skin);
-  EXPECT_NEAR(box.upper[2], 88e-3, 3e-3);  // hairline: brow height and forehead height over the sellion
-  EXPECT_NEAR(box.lower[2], -3e-3, 1e-3);
-  EXPECT_NEAR(box.upper[1], -box.lower[1], 1e-12);
-  EXPECT_GT(box.upper[1], 60e-3);
-  EXPECT_LT(box.upper[1], 75e-3);
+  EXPECT_NEAR(box.max()[2], 88e-3, 3e-3);  // hairline: brow height and forehead height over the sellion
+  EXPECT_NEAR(box.min()[2], -3e-3, 1e-3);
+  EXPECT_NEAR(box.max()[1], -box.min()[1], 1e-12);
+  EXPECT_GT(box.max()[1], 60e-3);
+  EXPECT_LT(box.max()[1], 75e-3);
   // the sellion is the origin, and the skin faces forwards
   const PreparedSurface surface("skin", skin, 0);
   EXPECT_LT(surface.tree().closest({ 0, 0, 0 }).distance, 0.2e-3);
   double area_x = 0;
   for (const Triangle& t : skin.triangles)
-    area_x += cross(skin.vertices[static_cast<std::size_t>(t[1])] - skin.vertices[static_cast<std::size_t>(t[0])],
-                    skin.vertices[static_cast<std::size_t>(t[2])] - skin.vertices[static_cast<std::size_t>(t[0])])[0];
+  {
+    const auto [a, b, c] = corners(skin, t);
+    area_x += (b - a).cross(c - a)[0];
+  }
   EXPECT_GT(area_x, 0.01);
   // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
   const PreparedSurface skull("skull", forehead("skull"), 0);
   double thinnest = 1, thickest = 0;
   for (const Vector3& v : skin.vertices)
   {
-    const ClosestPoint closest = skull.tree().closest(v);
-    EXPECT_GT(skull.signed_distance(v, closest), 0);
+    const ClosestPoint closest = skull.tree().closest(to_vector(v));
+    EXPECT_GT(skull.signed_distance(to_vector(v), closest), 0);
     EXPECT_FALSE(skull.rim_within(closest.point, 1e-3));
     thinnest = std::min(thinnest, closest.distance);
     thickest = std::max(thickest, closest.distance);
@@ -242,8 +242,7 @@ TEST(Forehead, SkinIsEvenlyTriangulated)
   {
     for (std::size_t c = 0; c < 3; ++c)
     {
-      const double edge =
-          norm(skin.vertices[static_cast<std::size_t>(t[c])] - skin.vertices[static_cast<std::size_t>(t[(c + 1) % 3])]);
+      const double edge = (vertex(skin, t[c]) - vertex(skin, t[(c + 1) % 3])).norm();
       shortest = std::min(shortest, edge);
       longest = std::max(longest, edge);
     }
@@ -260,7 +259,7 @@ TEST(Forehead, MusclesLieBetweenSkinAndBone)
     const TriangleMesh mesh = forehead(part);
     std::size_t outside = 0;
     for (const Vector3& v : mesh.vertices)
-      outside += tissue.tree().winding_number(v) < 0.5 ? 1 : 0;
+      outside += tissue.tree().winding_number(to_vector(v)) < 0.5 ? 1 : 0;
     EXPECT_LT(static_cast<double>(outside), 0.25 * static_cast<double>(mesh.vertices.size())) << part;
   }
 }
@@ -268,8 +267,8 @@ TEST(Forehead, MusclesLieBetweenSkinAndBone)
 TEST(Forehead, LeftAndRightMirror)
 {
   EXPECT_NEAR(signed_volume(forehead("frontalis_left")), signed_volume(forehead("frontalis_right")), 1e-12);
-  EXPECT_GT(bounding_box(forehead("corrugator_left")).lower[1], 0);
-  EXPECT_NEAR(bounding_box(forehead("corrugator_left")).upper[1], -bounding_box(forehead("corrugator_right")).lower[1],
+  EXPECT_GT(bounding_box(forehead("corrugator_left")).min()[1], 0);
+  EXPECT_NEAR(bounding_box(forehead("corrugator_left")).max()[1], -bounding_box(forehead("corrugator_right")).min()[1],
               1e-12);
 }
 

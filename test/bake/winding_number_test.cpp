@@ -20,27 +20,28 @@ TriangleMesh sphere_with_holes()
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {
-    const Vector3& v = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Vector3d v = vertex(mesh, t[0]);
     keep.push_back(v[2] < 0.8 && v[0] < 0.95 && v[1] > -0.97);
   }
   return keep_triangles(mesh, keep);
 }
 
-double exact_winding(const TriangleMesh& mesh, const Vector3& p)
+double exact_winding(const TriangleMesh& mesh, const Vector3d& p)
 {
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
-    sum += winding_of_triangle(p, mesh.vertices[static_cast<std::size_t>(t[0])],
-                               mesh.vertices[static_cast<std::size_t>(t[1])],
-                               mesh.vertices[static_cast<std::size_t>(t[2])]);
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    sum += winding_of_triangle(p, a, b, c);
+  }
   return sum;
 }
 
-std::vector<Vector3> points(std::size_t count, double reach)
+std::vector<Vector3d> points(std::size_t count, double reach)
 {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-reach, reach);
-  std::vector<Vector3> list;
+  std::vector<Vector3d> list;
   for (std::size_t i = 0; i < count; ++i)
     list.push_back({ uniform(random), uniform(random), uniform(random) });
   return list;
@@ -51,9 +52,9 @@ TEST(WindingNumber, IsOneInsideAndZeroOutsideAClosedSurface)
   TriangleMesh mesh = make_shape(*sphere_surface("ball", { 0, 0, 0 }, 1, 0.05).shape);
   join_vertices(mesh);
   const TriangleTree tree(mesh);
-  for (const Vector3& p : points(500, 1.5))
+  for (const Vector3d& p : points(500, 1.5))
   {
-    const double radius = norm(p);
+    const double radius = p.norm();
     if (radius > 0.98 && radius < 1.001)
       continue;
     EXPECT_NEAR(tree.winding_number(p), radius < 1 ? 1 : 0, 5e-3);
@@ -66,7 +67,7 @@ TEST(WindingNumber, AgreesWithTheExactSumOnASphereWithHoles)
   ASSERT_FALSE(unbalanced_edges(mesh).empty());
   const TriangleTree tree(mesh);
   double worst = 0;
-  for (const Vector3& p : points(2000, 1.5))
+  for (const Vector3d& p : points(2000, 1.5))
     worst = std::max(worst, std::abs(tree.winding_number(p) - exact_winding(mesh, p)));
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 5e-3);
@@ -79,7 +80,7 @@ TEST(WindingNumber, VariationBoundHoldsAwayFromTheSurface)
   ASSERT_FALSE(surface.closed());
   const double radius = 0.02;
   int checked = 0;
-  for (const Vector3& p : points(3000, 1.2))
+  for (const Vector3d& p : points(3000, 1.2))
   {
     if (surface.tree().closest(p).distance < 2 * radius)
       continue;
@@ -87,7 +88,7 @@ TEST(WindingNumber, VariationBoundHoldsAwayFromTheSurface)
     const double here = exact_winding(surface.mesh(), p);
     for (std::size_t a = 0; a < 3; ++a)
     {
-      Vector3 q = p;
+      Vector3d q = p;
       q[a] += radius;
       ASSERT_LE(std::abs(exact_winding(surface.mesh(), q) - here), bound + 1e-12);
     }
@@ -102,12 +103,12 @@ TEST(WindingNumber, FarQueriesAreFast)
 {
   const TriangleMesh mesh = sphere_with_holes();
   const TriangleTree tree(mesh);
-  const std::vector<Vector3> list = points(20000, 1.5);
+  const std::vector<Vector3d> list = points(20000, 1.5);
   double best = 1e9, sum = 0;
   for (int attempt = 0; attempt < 3; ++attempt)
   {
     const auto begin = std::chrono::steady_clock::now();
-    for (const Vector3& p : list)
+    for (const Vector3d& p : list)
       sum += tree.winding_number({ p[0] + 5, p[1], p[2] });
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
     best = std::min(best, elapsed.count() / static_cast<double>(list.size()));
@@ -122,12 +123,12 @@ TEST(SurfaceDistance, IsExactWithTheRightSign)
   join_vertices(mesh);
   const PreparedSurface surface("box", mesh, 0);
   ASSERT_TRUE(surface.closed());
-  for (const Vector3& p : points(2000, 2))
+  for (const Vector3d& p : points(2000, 2))
   {
     // distance to a cube of half edge 1
-    const Vector3 q{ std::abs(p[0]) - 1, std::abs(p[1]) - 1, std::abs(p[2]) - 1 };
-    const Vector3 out{ std::max(q[0], 0.0), std::max(q[1], 0.0), std::max(q[2], 0.0) };
-    const double expected = norm(out) + std::min(0.0, std::max({ q[0], q[1], q[2] }));
+    const Vector3d q{ std::abs(p[0]) - 1, std::abs(p[1]) - 1, std::abs(p[2]) - 1 };
+    const Vector3d out{ std::max(q[0], 0.0), std::max(q[1], 0.0), std::max(q[2], 0.0) };
+    const double expected = out.norm() + std::min(0.0, std::max({ q[0], q[1], q[2] }));
     const ClosestPoint closest = surface.tree().closest(p);
     EXPECT_NEAR(surface.signed_distance(p, closest), expected, 1e-12);
     EXPECT_EQ(surface.tree().closest(p, 0.999 * std::abs(expected)).triangle, -1);

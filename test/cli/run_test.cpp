@@ -92,8 +92,8 @@ protected:
 
 TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
 {
-  const ProgramResult result =
-      run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "0.3", "--frames", frames });
+  const ProgramResult result = run_program(
+      { "run", model, "--backend", "cpu", "--activate", "pull=0.5", "--seconds", "0.3", "--frames", frames });
   ASSERT_EQ(result.code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");
   for (const char* word :

@@ -1,4 +1,4 @@
-#include "study/bench/shell_model.hpp"
+#include "cuda/bench/shell_model.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ protected:
   void SetUp() override
   {
     const auto backends = available_backends();
-    if (std::find(backends.begin(), backends.end(), Backend::cuda) == backends.end())
+    if (std::find(backends.begin(), backends.end(), "cuda") == backends.end())
       GTEST_SKIP() << "no CUDA device";
     ShellSettings settings;
     settings.voxel = 3e-3;
@@ -55,9 +55,9 @@ protected:
 
 TEST_F(Shell, MovesAsTheReferenceDoes)
 {
-  const SkinState reference = after(Backend::reference, 0.15, 1), cuda = after(Backend::cuda, 0.15, 1);
+  const SkinState reference = after("reference", 0.15, 1), cuda = after("cuda", 0.15, 1);
   SkinState rest;
-  make_solver(model_, { Backend::cuda, 0, 0 })->skin(rest);
+  make_solver(model_, { "cuda", 0, 0 })->skin(rest);
   EXPECT_GT(difference(rest, reference), 0.5e-3);
   EXPECT_LT(difference(cuda, reference), 5e-6);
   double normals = 0;
@@ -79,15 +79,15 @@ TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
       model.rigid.push_back({ node.node, -1 });
   model.sliding.clear();
   model_ = std::make_shared<const Model>(model);
-  const SkinState reference = after(Backend::reference, 0.15, 1);
-  const double cuda = difference(after(Backend::cuda, 0.15, 1), reference);
+  const SkinState reference = after("reference", 0.15, 1);
+  const double cuda = difference(after("cuda", 0.15, 1), reference);
   EXPECT_LT(cuda, 5e-6);
-  EXPECT_LT(cuda, 2 * difference(after(Backend::cpu, 0.15, 1), reference) + 1e-8);
+  EXPECT_LT(cuda, 2 * difference(after("cpu", 0.15, 1), reference) + 1e-8);
 }
 
 TEST_F(Shell, GivesTheSameBitsFromRunToRun)
 {
-  const SkinState first = after(Backend::cuda, 0.05, 0.75f, 7), second = after(Backend::cuda, 0.05, 0.75f, 7);
+  const SkinState first = after("cuda", 0.05, 0.75f, 7), second = after("cuda", 0.05, 0.75f, 7);
   EXPECT_EQ(first.vertices, second.vertices);
   EXPECT_EQ(first.normals, second.normals);
   EXPECT_EQ(first.landmarks, second.landmarks);
@@ -97,7 +97,7 @@ TEST_F(Shell, FetchingTheSkinDoesNotChangeTheMotion)
 {
   const auto run = [&](bool look)
   {
-    const auto solver = make_solver(model_, { Backend::cuda, 0, 0 });
+    const auto solver = make_solver(model_, { "cuda", 0, 0 });
     SkinState skin;
     for (int i = 0; i < 10; ++i)
     {
@@ -113,7 +113,7 @@ TEST_F(Shell, FetchingTheSkinDoesNotChangeTheMotion)
 
 TEST_F(Shell, StartsAgainAfterReset)
 {
-  const auto solver = make_solver(model_, { Backend::cuda, 0, 0 });
+  const auto solver = make_solver(model_, { "cuda", 0, 0 });
   const Controls controls{ std::vector<float>(model_->muscles.size(), 0.5f), {} };
   SkinState first, second;
   solver->advance(0.02, controls);
@@ -132,10 +132,10 @@ TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
   settings.voxel = 5e-3;
   settings.tendon = false;
   model_ = std::make_shared<const Model>(shell_model(settings));
-  const double seconds = 20 * make_solver(model_, { Backend::cuda, 0, 0 })->time_step();
-  const SkinState reference = after(Backend::reference, seconds, 1), cuda = after(Backend::cuda, seconds, 1);
+  const double seconds = 20 * make_solver(model_, { "cuda", 0, 0 })->time_step();
+  const SkinState reference = after("reference", seconds, 1), cuda = after("cuda", seconds, 1);
   SkinState rest;
-  make_solver(model_, { Backend::cuda, 0, 0 })->skin(rest);
+  make_solver(model_, { "cuda", 0, 0 })->skin(rest);
   EXPECT_GT(difference(rest, reference), 1e-9);
   EXPECT_LT(difference(cuda, reference), 1e-3 * difference(rest, reference));
 }
@@ -145,7 +145,7 @@ TEST_F(Shell, StaysWhereItIsForAMillionSteps)
 {
   Model model = *model_;
   model.gravity = { { -9.81, 0, 0 } };
-  const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::cuda, 0, 0 });
+  const auto solver = make_solver(std::make_shared<const Model>(model), { "cuda", 0, 0 });
   const Controls controls{ std::vector<float>(model.muscles.size(), 0.3f), {} };
   SkinState rest, first, last;
   solver->skin(rest);

@@ -1,5 +1,5 @@
 #include "cuda/partition/voxel_patches.hpp"
-#include "study/bench/shell_model.hpp"
+#include "cuda/bench/shell_model.hpp"
 #include "frontalis/model/effects.hpp"
 #include "solver/effect_scene.hpp"
 

@@ -25,6 +25,9 @@ bool wanted(const char* name)
 const bool blind_guard = wanted("guard");
 const bool time_step_of_rest = wanted("time_step");
 const bool laws_not_continued = wanted("material");
+const bool no_friction = wanted("friction");
+const bool lost_corner = wanted("patches");
+const bool no_gpu_gravity = wanted("gpu_gravity");
 
 }  // namespace mutation
 }  // namespace frontalis

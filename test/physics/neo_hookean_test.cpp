@@ -1,41 +1,23 @@
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
+#include "physics/deformation.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <random>
 
 using namespace frontalis::physics;
+using namespace frontalis::physics::test;
 
 namespace
 {
 
-using Matrix = Matrix3<double>;
-
-Kinematics<double> kinematics_of(const Matrix& F)
-{
-  // gradients sit at modes 1, 2, 4; scale 1 leaves them as they are
-  double mode[3][8] = {};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      mode[i][gradient_mode(j)] = F.a[i][j] - (i == j);
-  const double one[3] = { 1, 1, 1 };
-  return kinematics(mode[0], mode[1], mode[2], one);
-}
-
 Matrix first_piola(const NeoHookean<double>& material, const Matrix& F)
 {
-  const auto k = kinematics_of(F);
-  const auto s = stress(material, k);
-  Matrix P;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      P.a[i][j] = s.on_gradient * F.a[i][j] + s.on_cofactor * k.cofactor.a[i][j];
+  Matrix P{};
+  add_stress(material, kinematics_of(F), P);
   return P;
 }
-
-Matrix diagonal(double x, double y, double z) { return { { { x, 0, 0 }, { 0, y, 0 }, { 0, 0, z } } }; }
 
 // nu = 0.49, mu = 1
 const NeoHookean<double> material{ 1.0, 2.0 * 1.49 / (3.0 * 0.02) };

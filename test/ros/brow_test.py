@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Raises the brows of the generated forehead while it runs, and sees by landmark that they go up and come back."""
+"""Raises the brows of the generated forehead in real time; the landmarks show that they go up and come back."""
 
 import math
 import unittest
@@ -20,7 +20,7 @@ class Brow(unittest.TestCase):
         rest = {name: face.height(name) for name in BROWS}
 
         face.command(frontalis_left=0.75, frontalis_right=0.75)
-        wait(lambda: all(face.height(name) - rest[name] > 2e-3 for name in BROWS), "both brows 2 mm up", 120)
+        wait(lambda: all(face.height(name) - rest[name] > 2e-3 for name in BROWS), "both brows 2 mm up")
         self.settle(face)
         up = {name: face.height(name) - rest[name] for name in BROWS}
         for name in BROWS:
@@ -29,7 +29,7 @@ class Brow(unittest.TestCase):
         self.assertLess(abs(up["brow_left"] - up["brow_right"]), 1e-3, "the forehead is symmetric")
 
         face.command(frontalis_left=0, frontalis_right=0)
-        wait(lambda: all(abs(face.height(name) - rest[name]) < 0.5e-3 for name in BROWS), "both brows back", 120)
+        wait(lambda: all(abs(face.height(name) - rest[name]) < 0.5e-3 for name in BROWS), "both brows back")
         self.settle(face)
         for name in BROWS:
             self.assertLess(abs(face.height(name) - rest[name]), 0.5e-3)
@@ -39,18 +39,18 @@ class Brow(unittest.TestCase):
         face = Face()
         face.wait_until_ready()
         self.assertTrue(face.reset().success)
-        wait(lambda: not any(face.state.activation), "rest", 30)
+        wait(lambda: not any(face.state.activation), "rest")
         self.settle(face)
         rest = {name: face.height(name) for name in BROWS}
         face.command(frontalis_left=0.75)
-        wait(lambda: face.height("brow_left") - rest["brow_left"] > 2e-3, "the left brow 2 mm up", 120)
+        wait(lambda: face.height("brow_left") - rest["brow_left"] > 2e-3, "the left brow 2 mm up")
         self.assertLess(abs(face.height("brow_right") - rest["brow_right"]), 1e-3)
         face.command(frontalis_left=0)
 
     def settle(self, face):
-        """Half a simulated second more."""
+        """Waits for half a second of simulated time."""
         end = face.state.time + 0.5
-        wait(lambda: face.state.time > end, "half a simulated second", 120)
+        wait(lambda: face.state.time > end, "half a simulated second")
         for pose in face.landmarks.poses:
             self.assertTrue(math.isfinite(pose.position.x + pose.position.y + pose.position.z))
 

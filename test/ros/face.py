@@ -1,4 +1,8 @@
-"""The face under test, as the tests of this folder see it: its latest messages, its services, and waiting with a time limit."""
+"""The face under test: its latest messages, its services, and waiting for conditions.
+
+Waits end as soon as their condition holds. Their time limits only end a test that would otherwise never end, so that the tests
+pass on slow machines too.
+"""
 
 import time
 
@@ -9,11 +13,14 @@ from frontalis.srv import ListMuscles, Step, SwitchEffect
 from geometry_msgs.msg import PoseArray
 from std_srvs.srv import SetBool, Trigger
 
+LIMIT = 180  # [s] of wall time, for each wait
+
 
 class Face:
     def __init__(self, name="/face"):
         self.name = name
         self.state = None
+        self.states = 0  # number of messages on ~state
         self.landmarks = None
         self.diagnostics = []
         self.activation = rospy.Publisher(name + "/muscle_activation", MuscleActivation, queue_size=10)
@@ -28,6 +35,7 @@ class Face:
 
     def take_state(self, message):
         self.state = message
+        self.states += 1
 
     def take_landmarks(self, message):
         self.landmarks = message
@@ -37,14 +45,23 @@ class Face:
         self.diagnostics = mine or self.diagnostics
 
     def wait_for_service(self):
-        rospy.wait_for_service(self.name + "/list_muscles", 60)
+        rospy.wait_for_service(self.name + "/list_muscles", LIMIT)
 
-    def wait_until_ready(self, timeout=180):
-        """Until the model is there and frames come."""
+    def wait_until_ready(self):
+        """Waits until the face has a model, sends frames and receives commands."""
         self.wait_for_service()
-        wait(lambda: self.list_muscles().success, "the model", timeout)
-        wait(lambda: self.state is not None and self.landmarks is not None, "frames", 60)
-        wait(lambda: self.activation.get_num_connections() > 0, "the face's ear", 30)
+        wait(lambda: self.list_muscles().success, "the model")
+        wait(lambda: self.state is not None and self.landmarks is not None, "frames")
+        wait(lambda: self.activation.get_num_connections() > 0, "the connection for commands")
+
+    def wait_for_frame(self, condition, what):
+        """Waits until the latest state and landmarks are of one frame, for which the condition holds."""
+        wait(lambda: self.state.header.stamp == self.landmarks.header.stamp and condition(), what)
+
+    def wait_for_states(self, count):
+        """Waits until so many further states have come."""
+        end = self.states + count
+        wait(lambda: self.states >= end, "%d more states" % count)
 
     def command(self, **activation):
         self.send(list(activation), list(activation.values()))
@@ -63,10 +80,10 @@ class Face:
         return self.landmarks.poses[self.state.landmark.index(landmark)].position.z
 
 
-def wait(condition, what, timeout):
-    """Waits until the condition holds; fails with the name of what was waited for."""
-    deadline = time.monotonic() + timeout
+def wait(condition, what):
+    """Waits until the condition holds. Fails if it does not hold within the time limit; `what` names it."""
+    deadline = time.monotonic() + LIMIT
     while not condition():
         if time.monotonic() > deadline:
-            raise AssertionError("waited %g s in vain for %s" % (timeout, what))
+            raise AssertionError("waited %g s in vain for %s" % (LIMIT, what))
         time.sleep(0.05)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Faces that have nothing to simulate stay alive, answer, and say in /diagnostics what is wrong."""
+"""Faces without a model stay alive, answer services, and say in /diagnostics what is wrong."""
 
 import unittest
 
@@ -15,14 +15,14 @@ class Fault(unittest.TestCase):
     def check(self, name, *words):
         face = Face(name)
         face.wait_for_service()
-        wait(lambda: face.diagnostics and face.diagnostics[0].level == ERROR, "an error of " + name, 60)
+        wait(lambda: face.diagnostics and face.diagnostics[0].level == ERROR, "an error of " + name)
         for word in words:
             self.assertIn(word, face.diagnostics[0].message)
         for answer in (face.list_muscles(), face.reset(), face.pause(True), face.step(0.1)):
             self.assertFalse(answer.success)
             self.assertEqual(answer.message, face.diagnostics[0].message)
         face.command(lift=0.5)
-        wait(lambda: face.state is not None and face.state.failed, "a failed state", 20)
+        wait(lambda: face.state is not None and face.state.failed, "a failed state")
         self.assertEqual(face.state.message, face.diagnostics[0].message)
         self.assertFalse(face.list_muscles().success)
 

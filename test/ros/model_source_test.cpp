@@ -4,15 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <poll.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <array>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace frontalis
@@ -172,21 +174,49 @@ TEST_F(ModelSource, FindsTheProgramBesideTheLibraryOrOnThePath)
   EXPECT_TRUE(fs::equivalent(find_program(""), FRONTALIS_PROGRAM));
 }
 
-TEST_F(ModelSource, ABakeCanBeInterrupted)
+TEST_F(ModelSource, ABakeCanBeInterruptedEvenIfItIgnoresRequestsToEnd)
 {
   BakeRequest request;
-  request.program = program("exec sleep 60");
-  std::thread later(
-      [this]
-      {
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        cancelled_ = true;
-      });
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_NE(fault(request).find("interrupted"), std::string::npos);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
-  later.join();
+  request.program = program("trap '' TERM INT; echo started; while :; do sleep 0.1; done");
+  std::string fault;
+  try
+  {
+    bake_in_process(
+        request, [this](const std::string& line) { cancelled_ = line == "started"; }, cancelled_);
+  }
+  catch (const Error& error)
+  {
+    fault = error.what();
+  }
+  EXPECT_NE(fault.find("interrupted"), std::string::npos);
   EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(ModelSource, ABakeEndsWithTheProcessThatStartedIt)
+{
+  BakeRequest request;
+  // the loop limits how long a failing test leaves the program behind
+  request.program = program("trap '' HUP INT TERM; echo started; for i in $(seq 600); do sleep 1; done");
+  // the program inherits the writing end, so that the reading end tells when nobody holds it any more
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t node = fork();
+  ASSERT_GE(node, 0);
+  if (node == 0)
+  {
+    bake_in_process(
+        request, [&](const std::string&) { EXPECT_EQ(write(ends[1], "s", 1), 1); }, cancelled_);
+    _exit(0);
+  }
+  close(ends[1]);
+  char byte = 0;
+  EXPECT_EQ(read(ends[0], &byte, 1), 1);  // the program runs
+  kill(node, SIGKILL);
+  EXPECT_EQ(waitpid(node, nullptr, 0), node);
+  pollfd closed{ ends[0], POLLIN, 0 };
+  ASSERT_EQ(poll(&closed, 1, 60000), 1);
+  EXPECT_EQ(read(ends[0], &byte, 1), 0);
+  close(ends[0]);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // what good scenes are read as
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/scene/read_scene.hpp"
 #include "files.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,6 +67,68 @@ TEST(EveryKey, surfaces)
   EXPECT_EQ(surfaces[6].shape->part, "skull");
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("brow_thickness"), 0.008, 1e-15);
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("width"), 0.12, 1e-15);
+}
+
+// a scene with one material: `keys` are what its law asks for
+std::string fault_of_material(const std::string& keys, Scene& scene)
+{
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("material.yaml",
+                   "unit: mm\nsurfaces: {bar: {shape: box, size: [30, 10, 10]}}\nskin: {surface: bar}\n"
+                   "volumes: {tissue: {inside: bar, material: flesh, tissue: true}}\n"
+                   "materials: {flesh: {poisson: 0.49, density: 1000, " +
+                       keys + "}}\n");
+  try
+  {
+    scene = read_scene(path);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(EveryLaw, reads_what_its_description_asks_for)
+{
+  for (const auto& law : physics::material_table)
+  {
+    // all keys, but with `other` in place of the value of `key`, or without it
+    const auto keys = [&](const std::string& key = {}, const std::string& other = {})
+    {
+      std::string text = fmt::format("law: {}", law.name);
+      for (const auto& parameter : law)
+        if (parameter.key != key)
+          text += fmt::format(", {}: {}", parameter.key, parameter.example);
+        else if (!other.empty())
+          text += fmt::format(", {}: {}", key, other);
+      return text + (law.directions == 1   ? ", fibre: [4, 3, 0]"
+                     : law.directions == 2 ? ", families: [[4, 3, 0], [4, -3, 0]]"
+                                           : "");
+    };
+    Scene scene;
+    ASSERT_EQ(fault_of_material(keys(), scene), "");
+    const SceneMaterial& material = scene.materials.at(0);
+    EXPECT_EQ(material.law, law.name);
+    EXPECT_EQ(material.parameters.size(), static_cast<std::size_t>(law.count()) + 1);
+    for (int d = 0; d < law.directions; ++d)
+      expect_vector(material.families[d], { 0.8, d == 0 ? 0.6 : -0.6, 0 });
+    for (const auto& parameter : law)
+    {
+      const std::string place = fmt::format(":5: materials.flesh.{}: ", parameter.key);
+      const auto has = [&](const std::string& fault, const std::string& text)
+      { return fault.find(place) != std::string::npos && fault.find(text) != std::string::npos; };
+      EXPECT_EQ(material.parameters.at(parameter.key), parameter.example);
+      EXPECT_TRUE(
+          has(fault_of_material(keys(parameter.key), scene), fmt::format("missing; must be {}", parameter.meaning)));
+      EXPECT_TRUE(has(fault_of_material(keys(parameter.key, "1 kg"), scene), "unit"));
+      EXPECT_TRUE(parameter.range.lower != 0 ||
+                  has(fault_of_material(keys(parameter.key, "-1"), scene), "found '-1'; must be "));
+      EXPECT_TRUE(parameter.range.zero_allowed ||
+                  has(fault_of_material(keys(parameter.key, "0"), scene), "must not be 0"));
+    }
+  }
 }
 
 TEST(EveryLaw, has_its_parameters)

@@ -204,7 +204,7 @@ TEST(Precision, slow_motion_far_from_rest_is_kept_by_compensation)
   const auto lost = [&](Precision precision)
   {
     model.precision = precision;
-    const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::cpu, 1, 2e-6 });
+    const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", 1, 2e-6 });
     solver->set_displacements(far);
     solver->set_velocities(slow);
     solver->advance(0.5, {});
@@ -230,8 +230,8 @@ TEST(Precision, double_agrees_with_the_reference)
   {
     model.hourglass = form;
     const auto shared = std::make_shared<const Model>(model);
-    const auto fast = make_solver(shared, { Backend::cpu, 2, 0 });
-    const auto plain = make_solver(shared, { Backend::reference, 0, 0 });
+    const auto fast = make_solver(shared, { "cpu", 2, 0 });
+    const auto plain = make_solver(shared, { "reference", 0, 0 });
     fast->advance(0.02, {});
     plain->advance(0.02, {});
     fast->displacements(a);

@@ -20,10 +20,10 @@ protected:
   {
     return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, 0 });
   }
-  bool single_precision() const { return GetParam() != Backend::reference; }
+  bool single_precision() const { return GetParam() != "reference"; }
 };
 
-inline std::string backend_name(const testing::TestParamInfo<Backend>& info) { return name_of(info.param); }
+inline std::string backend_name(const testing::TestParamInfo<Backend>& info) { return info.param; }
 
 }  // namespace test
 }  // namespace frontalis

@@ -2,6 +2,8 @@
 
 #include "block_model.hpp"
 
+#include "frontalis/physics/materials/all.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -54,7 +56,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
   if (effects & other_law)
   {
     Material other = model.materials[0];
-    other.law = Law::mooney_rivlin;
+    other.law = law_of<physics::MooneyRivlin>;
     other.parameters[0] /= 4;
     other.parameters[2] = other.parameters[0];
     model.materials.push_back(other);

@@ -110,7 +110,7 @@ TEST_P(EnergyGradient, IsTheForce)
   Model model = test::block_model(s);
   model.hourglass = std::get<1>(GetParam());
   // energy comes from the reference in double; the forces from the backend under test
-  const auto energies = make_solver(std::make_shared<const Model>(model), { Backend::reference, 0, 0 });
+  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = make_solver(std::make_shared<const Model>(model), { std::get<0>(GetParam()), 0, 0 });
   const Vectors u = random_displacements(model, 2e-4);
   solver_->set_displacements(u);
@@ -145,7 +145,7 @@ TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)
   muscle.passive = true;
   test::add_muscle(model, { { 0.6f, 0.0f, 0.8f } }, muscle);
   const Vectors u = random_displacements(model, 3e-4);
-  const auto reference = make_solver(std::make_shared<const Model>(model), { Backend::reference, 0, 0 });
+  const auto reference = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = solver(model);
   Vectors expected, found;
   for (auto* s : { reference.get(), solver_.get() })

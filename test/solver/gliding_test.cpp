@@ -297,7 +297,7 @@ TEST_P(SpinningShell, IsBrakedByFrictionAsInTheReference)
     const Model model = model_of(parts, 1.5);
     const double braked = spin_after(*spinning(model, GetParam()), model, 20e-3);
     EXPECT_LT(braked, (parts ? 0.92 : 0.8) * free);
-    EXPECT_NEAR(braked, spin_after(*spinning(model, Backend::reference), model, 20e-3), 0.01 * braked);
+    EXPECT_NEAR(braked, spin_after(*spinning(model, "reference"), model, 20e-3), 0.01 * braked);
   }
 }
 
@@ -306,7 +306,7 @@ TEST_P(SpinningShell, LosesToFrictionWhatItDoesInTheReference)
   for (const bool parts : { false, true })
   {
     const Model model = model_of(parts, 1.5);
-    const auto here = spinning(model, GetParam(), true), there = spinning(model, Backend::reference, true);
+    const auto here = spinning(model, GetParam(), true), there = spinning(model, "reference", true);
     here->advance(10e-3, here->controls());
     there->advance(10e-3, there->controls());
     const EnergyLedger ledger = here->ledger();

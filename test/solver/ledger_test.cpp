@@ -164,13 +164,13 @@ TEST(LedgerOnCpu, leaves_the_motion_alone_and_does_not_depend_on_threads)
   model.gravity = { { 0, 0, -9.81 } };
   const auto shared = std::make_shared<const Model>(model);
   Vectors reference, moved;
-  const auto plain = make_solver(shared, { Backend::cpu, 1, 0 });
+  const auto plain = make_solver(shared, { "cpu", 1, 0 });
   plain->advance(0.02, {});
   plain->displacements(reference);
   double damping = -1;
   for (const int threads : { 1, 2, 4 })
   {
-    const auto solver = make_solver(shared, { Backend::cpu, threads, 0, true });
+    const auto solver = make_solver(shared, { "cpu", threads, 0, true });
     solver->advance(0.02, {});
     solver->displacements(moved);
     EXPECT_EQ(reference, moved) << threads;

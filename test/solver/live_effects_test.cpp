@@ -114,7 +114,7 @@ TEST_P(LiveEffects, one_that_is_off_moves_nothing_and_pairs_neither)
       for (const Effect effect : { first, second })
         switch_live(*solver, effect, false);
       EXPECT_EQ(solver->effects(), effects_of(without));
-      const auto expected = make_solver(std::make_shared<const Model>(without), { Backend::reference, 1, dt });
+      const auto expected = make_solver(std::make_shared<const Model>(without), { "reference", 1, dt });
       go(*solver);
       go(*expected);
       EXPECT_LT(difference(displacements(*solver), displacements(*expected)), 2e-3)
@@ -278,7 +278,7 @@ TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
   EXPECT_EQ(without.count("elasticity: account of energies"), 0u);
   // velocities before and after the update of each node at least
   EXPECT_GE(with["elasticity: account of energies"], 6 * sizeof(float) * model->nodes.size());
-  if (GetParam() != Backend::cuda)
+  if (GetParam() != "cuda")
     return;
   booked->monitor();
   EXPECT_GE(bytes_of(*booked)["elasticity: what the monitor looks at"], 36 * model->voxels.size());

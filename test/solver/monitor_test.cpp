@@ -36,8 +36,7 @@ TEST_P(Monitors, agree_with_the_reference)
         Monitor seen[2];
         for (const bool own : { false, true })
         {
-          const auto solver =
-              make_solver(std::make_shared<const Model>(model), { own ? GetParam() : Backend::reference, 2 });
+          const auto solver = make_solver(std::make_shared<const Model>(model), { own ? GetParam() : "reference", 2 });
           solver->set_displacements(random_field(model, size, 1));
           auto velocities = random_field(model, 0.1, 2);
           // a backend may leave out nodes that cannot move
@@ -85,7 +84,7 @@ TEST(CpuMonitor, same_input_same_bits_on_any_number_of_threads)
   Monitor seen[2];
   for (const int threads : { 1, 4 })
   {
-    const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::cpu, threads });
+    const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", threads });
     solver->set_displacements(random_field(model, 2e-4, 1));
     seen[threads / 4] = solver->monitor();
   }

@@ -115,7 +115,7 @@ TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
   const auto run = [&](const char* instructions, int threads)
   {
     ::setenv("FRONTALIS_INSTRUCTION_SET", instructions, 1);
-    const auto solver = make_solver(std::make_shared<const Model>(model), { Backend::cpu, threads, 0 });
+    const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", threads, 0 });
     ::unsetenv("FRONTALIS_INSTRUCTION_SET");
     solver->advance(15e-3, {});
     Vectors u;

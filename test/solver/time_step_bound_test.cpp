@@ -2,6 +2,7 @@
 #include "block_model.hpp"
 #include "true_frequency.hpp"
 
+#include "frontalis/physics/materials/all.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ Model random_mixture(std::mt19937& random)
   }
   if (share(random) < 0.3)
   {
-    model.materials[1].law = Law::fung;
+    model.materials[1].law = law_of<physics::FungExponential>;
     model.materials[1].parameters[2] = 2;
   }
   if (share(random) < 0.3)
@@ -94,7 +95,7 @@ std::vector<double> masses(const Model& model)
 
 double critical_step(const Model& model)
 {
-  return make_solver(std::make_shared<const Model>(model), { Backend::reference, 1, 0 })->monitor().critical_time_step;
+  return make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 })->monitor().critical_time_step;
 }
 
 // with voxels of another material where it is asked for

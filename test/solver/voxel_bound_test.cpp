@@ -1,6 +1,7 @@
 #include "block_model.hpp"
 #include "true_frequency.hpp"
 
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <gtest/gtest.h>
@@ -83,7 +84,7 @@ struct Tissue
   const char* name;
   Law law;
   double poisson;
-  std::array<double, 11> own;  // in place of parameters that are not 0 here
+  physics::MaterialNumbers own;  // in place of parameters that are not 0 here
   double allowed;
 };
 constexpr double mu = 34e3 / 2.98;
@@ -141,12 +142,29 @@ TEST(FibreBound, holds_for_fibres_that_are_stretched_and_pressed)
 
 INSTANTIATE_TEST_SUITE_P(
     Laws, TimeStepBound,
-    testing::Values(Tissue{ "neo_hookean", Law::neo_hookean, 0.49, {}, 1.01 },
-                    Tissue{ "neo_hookean_compressible", Law::neo_hookean, 0.3, {}, 1.1 },
-                    Tissue{ "neo_hookean_nearly_incompressible", Law::neo_hookean, 0.4999, {}, 1.01 },
-                    Tissue{ "mooney_rivlin", Law::mooney_rivlin, 0.49, { 0.25 * mu, 0, 0.25 * mu }, 1.01 },
-                    Tissue{ "ogden", Law::ogden, 0.49, { 0.5 * mu, 0, 2, -0.25 * mu, -4 }, 1.01 },
-                    Tissue{ "fung", Law::fung, 0.49, { 0, 0, 4 }, 1.02 },
-                    Tissue{ "holzapfel", Law::holzapfel, 0.49, { mu, 0, mu, 5, 0, 1, 0, 0, 0, 1, 0 }, 1.02 },
-                    Tissue{ "guccione", Law::guccione, 0.49, { 0.25 * mu, 0, 8, 2, 4, 1, 0, 0 }, 1.01 }),
+    testing::Values(
+        Tissue{ "neo_hookean", Law::neo_hookean, 0.49, {}, 1.01 },
+        Tissue{ "neo_hookean_compressible", Law::neo_hookean, 0.3, {}, 1.1 },
+        Tissue{ "neo_hookean_nearly_incompressible", Law::neo_hookean, 0.4999, {}, 1.01 },
+        Tissue{ "mooney_rivlin", law_of<physics::MooneyRivlin>, 0.49, { 0.25 * mu, 0, 0.25 * mu }, 1.01 },
+        Tissue{ "ogden", law_of<physics::Ogden>, 0.49, { 0.5 * mu, 0, 2, -0.25 * mu, -4 }, 1.01 },
+        Tissue{ "fung", law_of<physics::FungExponential>, 0.49, { 0, 0, 4 }, 1.02 },
+        Tissue{ "holzapfel", law_of<physics::HolzapfelGasserOgden>, 0.49, { mu, 0, mu, 5, 0, 1, 0, 0, 0, 1, 0 }, 1.02 },
+        Tissue{ "guccione", law_of<physics::Guccione>, 0.49, { 0.25 * mu, 0, 8, 2, 4, 1, 0, 0 }, 1.01 }),
     [](const auto& of) { return of.param.name; });
+
+namespace
+{
+
+std::vector<Tissue> examples()
+{
+  std::vector<Tissue> tissues;
+  for (const Law law : physics::every_law)
+    tissues.push_back({ physics::description_of(law).name, law, 0.49, physics::example_of(law), 1.02 });
+  return tissues;
+}
+
+}  // namespace
+
+INSTANTIATE_TEST_SUITE_P(Examples, TimeStepBound, testing::ValuesIn(examples()),
+                         [](const auto& of) { return of.param.name; });

@@ -132,8 +132,7 @@ double true_error(const AccuracySetting& setting)
   SkinState skins[2];
   for (const int which : { 0, 1 })
   {
-    const auto solver =
-        make_solver(std::make_shared<const Model>(bar(which == 0 ? setting : finer)), { Backend::cpu, 1 });
+    const auto solver = make_solver(std::make_shared<const Model>(bar(which == 0 ? setting : finer)), { "cpu", 1 });
     solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
     solver->skin(skins[which]);
   }
@@ -149,7 +148,7 @@ double true_error(const AccuracySetting& setting)
 // a simulated second, of the motion that the study plays
 double true_steps(const AccuracySetting& setting)
 {
-  const auto solver = make_solver(std::make_shared<const Model>(bar(setting)), { Backend::cpu, 1 });
+  const auto solver = make_solver(std::make_shared<const Model>(bar(setting)), { "cpu", 1 });
   solver->advance(0.1, { { 0.5F }, {} });
   solver->advance(0.1, { { 0.5F }, {} });
   return static_cast<double>(solver->profile().steps) / 0.2;
@@ -217,7 +216,7 @@ TEST_F(Accuracy, motions_of_another_backend_serve_and_are_told)
   plan.knobs = { "hourglass" };
   plan.edges = { 4e-3, 2e-3, 1e-3 };
   const AccuracyFindings here = study();
-  plan.standard.backend = Backend::reference;
+  plan.standard.backend = "reference";
   moved = 0;
   const AccuracyFindings there = study();
   ASSERT_TRUE(there.complete);

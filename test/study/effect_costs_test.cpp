@@ -12,7 +12,7 @@ TEST(EffectCosts, AreThoseOfTheModelsEffects)
 {
   const auto model =
       std::make_shared<const Model>(test::scene_of(test::viscosity | test::contraction | test::other_law));
-  const EffectCosts costs = measure_effects(model, { Backend::cpu, 1, 0 }, 0.01);
+  const EffectCosts costs = measure_effects(model, { "cpu", 1, 0 }, 0.01);
   ASSERT_EQ(costs.effects.size(), effect_traits.size());
   EXPECT_GT(costs.step, 0);
   EXPECT_GT(costs.plain_step, 0);
@@ -45,7 +45,7 @@ TEST(EffectCosts, APlainModelHasElasticityAlone)
 TEST(EffectCosts, OneMuscleIsTimedAgainstAll)
 {
   const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
-  const ActivationCost cost = measure_activation(model, { Backend::cpu, 1, 0 }, 0.01);
+  const ActivationCost cost = measure_activation(model, { "cpu", 1, 0 }, 0.01);
   EXPECT_GT(cost.one, 0);
   EXPECT_GT(cost.all, 0);
 }

@@ -19,7 +19,7 @@ namespace frontalis
 ///   (Farkas, Anthropometry of the Head and Face, 2nd ed. 1994);
 /// - soft tissue over the frontal bone 3.5-5.5 mm, at the glabella and brow 5-8 mm (facial soft-tissue depth tables,
 ///   Stephan & Simpson 2008);
-/// - frontalis 30-45 mm wide a side, corrugator 25-40 mm long, procerus 20-30 mm long (dissection series).
+/// - frontalis 30-45 mm wide per side, corrugator 25-40 mm long, procerus 20-30 mm long (dissection series).
 struct ForeheadDimensions
 {
   double height = 70e-3;               ///< from the brow to the hairline, in the midline
@@ -33,7 +33,7 @@ struct ForeheadDimensions
   double ridge = 3e-3;                 ///< height of the brow ridge over the bone around it
   double glabella = 2e-3;              ///< the same for the glabella
   double temple_flattening = 3e-3;     ///< how far the temples lie behind the ellipse
-  double margin = 8e-3;                ///< by which the part `skull` reaches beyond the skin's edges
+  double margin = 8e-3;                ///< how far the part `skull` reaches beyond the skin's edges
   double muscle_thickness = 2e-3;      ///< of frontalis, corrugators and procerus
   double galea_thickness = 1e-3;       ///< of the tendon sheet
 };

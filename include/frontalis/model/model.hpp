@@ -15,7 +15,7 @@ namespace frontalis
 
 /// Everything that the solver needs, constant while it runs. Plain arrays in SI units, in a local frame whose origin
 /// lies within the model (float keeps its precision) and whose x axis is the one with the longest rows of voxels: an
-/// even permutation of the scene's axes, so that no handedness changes.
+/// even permutation of the scene's axes, which keeps the handedness.
 struct Model
 {
   // grid: node (i,j,k) rests at (i,j,k) * spacing from the local origin
@@ -31,8 +31,8 @@ struct Model
   std::vector<std::int32_t> mixture_begin;
   std::vector<std::int16_t> mixture_material;
   std::vector<float> mixture_proportion;
-  /// Empty, or two directions a voxel (local axes, length 1) that its directed materials take instead of their own:
-  /// holzapfel's families; guccione's fibre is the first. Zero: the material's own.
+  /// Empty, or two directions per voxel (local axes, length 1) that its materials with fibres take instead of their
+  /// own; those with one direction take the first. Zero: the material's own.
   std::vector<std::array<float, 6>> material_directions;
 
   // muscles of voxel e: entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1
@@ -74,7 +74,7 @@ struct Model
   double damping = 0;  ///< mass-proportional damping coefficient [1/s]
   double time_scaling = 1;
   double frame_rate = 30;  ///< [1/s] of wall time
-  /// Most that a muscle's activation changes a second of simulated time [1/s]; 0: as fast as it is asked to.
+  /// Fastest change of a muscle's activation in simulated time [1/s]; 0: no limit.
   double activation_slew = 0;
   double time_step_share = 0.9;
   MassScalingSettings mass_scaling;
@@ -106,8 +106,8 @@ struct Model
   {
     std::string name;
     double error = 0;     ///< of the skin, RMS [m]; 0: not measured
-    double cost = 0;      ///< wall seconds a simulated second; 0: not measured
-    std::string machine;  ///< that it cost so much on
+    double cost = 0;      ///< wall seconds per simulated second; 0: not measured
+    std::string machine;  ///< on which it was measured
   };
   std::vector<AccuracyProfile> profiles;
   std::string profile;  ///< name of the one that the model was baked with

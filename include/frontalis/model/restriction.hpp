@@ -21,7 +21,7 @@ struct RigidNode
 {
   std::int32_t node = 0;
   std::int32_t bone = -1;        ///< index into Model::bones; -1: still
-  std::int32_t constraint = -1;  ///< index into Model::constraints: why it is held; -1: not said
+  std::int32_t constraint = -1;  ///< index into Model::constraints: that restricts it; -1: unknown
 };
 
 struct SlidingNode
@@ -29,7 +29,7 @@ struct SlidingNode
   std::int32_t node = 0;
   std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
   double distance = 0;           ///< kept from the surface [m], positive on the side of its outward normals
-  std::int32_t constraint = -1;  ///< index into Model::constraints: why it is held; -1: not said
+  std::int32_t constraint = -1;  ///< index into Model::constraints: that restricts it; -1: unknown
 };
 
 struct PrescribedNode

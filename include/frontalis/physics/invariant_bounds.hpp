@@ -1,12 +1,28 @@
 #pragma once
 
 #include "frontalis/physics/isochoric.hpp"
-#include "frontalis/physics/voxel_element.hpp"
 
-namespace frontalis
+namespace frontalis::physics
 {
-namespace physics
+
+/// The right Cauchy-Green tensor C = F^T F.
+template <class T>
+FRONTALIS_LAW Matrix3<T> right_cauchy_green(const Matrix3<T>& F)
 {
+  Matrix3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      C.a[i][j] = F.a[0][i] * F.a[0][j] + F.a[1][i] * F.a[1][j] + F.a[2][i] * F.a[2][j];
+  return C;
+}
+
+/// Second invariant of C, (I1^2 - tr C^2) / 2.
+template <class T>
+FRONTALIS_LAW T second_invariant(const Matrix3<T>& C)
+{
+  return C.a[0][0] * C.a[1][1] + C.a[1][1] * C.a[2][2] + C.a[2][2] * C.a[0][0] - C.a[0][1] * C.a[0][1] -
+         C.a[1][2] * C.a[1][2] - C.a[2][0] * C.a[2][0];
+}
 
 /// Derivatives of an isochoric invariant g w by F, for the time step.
 template <class T>
@@ -45,5 +61,4 @@ FRONTALIS_LAW InvariantDerivatives<T> first_invariant_derivatives(const Kinemati
   return d;
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics

@@ -1,11 +1,9 @@
 #pragma once
 
 #include "frontalis/physics/mutation.hpp"
-#include "frontalis/physics/number.hpp"
+#include "frontalis/physics/voxel_element.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Below this J the isochoric laws are continued; above it they hold exactly.
@@ -40,5 +38,13 @@ FRONTALIS_LAW T isochoric_bend(const IsochoricScale<T>& g, T J)
   return N::select(J > N::of(continuation_jacobian), N::of(2.5) * g.slope * g.slope / g.value, N::of(0));
 }
 
-}  // namespace physics
-}  // namespace frontalis
+/// Adds on_gradient F + on_cofactor cof F to a stress P.
+template <class T>
+FRONTALIS_LAW void add_isotropic(const Kinematics<T>& k, const T& on_gradient, const T& on_cofactor, Matrix3<T>& P)
+{
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      P.a[i][j] = P.a[i][j] + on_gradient * k.F.a[i][j] + on_cofactor * k.cofactor.a[i][j];
+}
+
+}  // namespace frontalis::physics

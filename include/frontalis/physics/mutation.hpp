@@ -3,9 +3,9 @@
 namespace frontalis
 {
 
-/// What keeps a motion stable, taken away on purpose to see that tests notice. Only the tests' library
-/// frontalis_mutated_solver knows these as variables, set by FRONTALIS_MUTATION in the environment; elsewhere they are
-/// constants, and what depends on them is not compiled.
+/// Parts of the solver that are taken away on purpose, to see that tests notice. Only in the tests' library
+/// frontalis_mutated_solver are these variables, set by FRONTALIS_MUTATION in the environment; elsewhere they are
+/// constants, and code that depends on them is not compiled.
 namespace mutation
 {
 
@@ -13,10 +13,16 @@ namespace mutation
 extern const bool blind_guard;         ///< "guard": finds nothing
 extern const bool time_step_of_rest;   ///< "time_step": does not follow what stiffens
 extern const bool laws_not_continued;  ///< "material": isochoric laws end where a voxel is crushed
+extern const bool no_friction;         ///< "friction": no friction force
+extern const bool lost_corner;         ///< "patches": in patches nodes lack the force of one voxel
+extern const bool no_gpu_gravity;      ///< "gpu_gravity": gravity does not act on the GPU
 #else
 constexpr bool blind_guard = false;
 constexpr bool time_step_of_rest = false;
 constexpr bool laws_not_continued = false;
+constexpr bool no_friction = false;
+constexpr bool lost_corner = false;
+constexpr bool no_gpu_gravity = false;
 #endif
 
 }  // namespace mutation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/number.hpp"
 
 namespace frontalis
@@ -46,6 +47,8 @@ template <class T>
 FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const T& tangential_speed)
 {
   using N = Number<T>;
+  if (mutation::no_friction)
+    return N::of(0);
   const T allowed = coefficient * N::max(normal_speed, -normal_speed);
   return N::select(tangential_speed > allowed, allowed / N::max(tangential_speed, allowed), N::of(1));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 
 namespace frontalis
 {
@@ -42,7 +42,7 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 /// neo-Hookean; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
 /// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
 ///
-/// Second derivatives of the neo-Hookean energy (physics/neo_hookean.hpp) are bounded term by term, those of the
+/// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, those of the
 /// volumetric and of the isochoric part separately. The growth of these bounds since rest is added to the bound at
 /// rest. The nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J,
 /// those by J with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest

@@ -7,10 +7,10 @@
 namespace frontalis
 {
 
-/// How much of each skin vertex is covered by the hair of a painted eyebrow, 0..1: a band of 8 mm along the line
-/// through the landmarks whose names begin with "brow" and end with the same "_left" or "_right", drawn somewhat longer
-/// at both ends. Models with fewer than two such landmarks on a side have no brow there. It only makes pictures
-/// legible; the tissue knows no hair.
+/// The share of each skin vertex that the hair of a painted eyebrow covers, 0..1. The brow of a side is a band, 8 mm
+/// wide at its inner end, along the line through the landmarks whose names begin with "brow" and end with "_left" or
+/// "_right", and about 1 cm longer at both ends. A side with fewer than two such landmarks has no brow. Brows show in
+/// pictures how the skin moves; they have no effect on the tissue.
 std::vector<float> brow_cover(const Model& model);
 
 }  // namespace frontalis

@@ -16,36 +16,38 @@
 namespace frontalis
 {
 
-/// Rest positions of the skin's vertices in the face frame [m].
+/// Positions of the skin's vertices at rest, in the face frame [m].
 std::vector<std::array<float, 3>> rest_in_face(const Model& model);
 
-/// True where every vertex, normal and landmark of the skin is finite and their numbers are the model's.
+/// Whether the skin has as many vertices, normals and landmarks as the model, all of them finite.
 bool is_publishable(const SkinState& skin, const Model& model);
 
-/// Triangles of the skin with its rest positions, in the face frame [m].
+/// The triangles of the skin, with the vertices at rest in the face frame [m].
 shape_msgs::Mesh to_mesh(const Model& model);
 
-/// Triangle list in the face frame, shaded; fills points and colours only, three of each a triangle.
+/// The shaded skin as a list of triangles in the face frame, with three points and colours per triangle. Fills all but
+/// the header.
 void to_marker(const Model& model, const SkinShading& shading, const SkinState& skin, visualization_msgs::Marker& out);
 
-/// Distance of each vertex from `rest` [m].
+/// The distance of each vertex from its position in `rest` [m].
 std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest);
 
-/// Points in vertex order with fields x y z normal_x normal_y normal_z intensity, all float32. Fills all but the
-/// header.
+/// The vertices as points with the fields x, y, z, normal_x, normal_y, normal_z and intensity, all of type float32.
+/// Fills all but the header.
 void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out);
 
-/// One pose a landmark, in the model's order, with the face frame's axes. Fills all but the header.
+/// One pose per landmark, in the order of the model, with the axes of the face frame. Fills all but the header.
 void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out);
 
-/// One transform a landmark, from `face_frame` to <face_frame>/<landmark>.
+/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>.
 void to_transforms(const Model& model, const SkinState& skin, const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
 
-/// Rotation and translation of a transform. Throws Error where its quaternion does not have length 1, to within 1e-3.
+/// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more
+/// than 1e-3.
 RigidTransform to_motion(const geometry_msgs::Transform& transform);
 
-/// Fills all but the header, `paused` and `backend`.
+/// The state of a frame. Fills all but the header, `paused` and `backend`.
 void to_state(const Model& model, const Frame& frame, SimulationState& out);
 
 }  // namespace frontalis

@@ -9,18 +9,19 @@
 namespace frontalis
 {
 
-/// The model's demo as a function of simulated time, repeated for ever: each phase ramps linearly from the expression
-/// before to its own, then holds it. The first round starts relaxed. A ramp longer than its phase is cut to the phase.
+/// The model's demo as a function of simulated time, repeated in rounds without end. Each phase ramps linearly from the
+/// expression of the phase before to its own and then holds it. The first round starts relaxed. A ramp that is longer
+/// than its phase is shortened to the phase.
 class DemoPlayer
 {
 public:
   explicit DemoPlayer(const Model& model);
 
-  /// True where the model has no demo.
+  /// Whether the model has no demo.
   bool empty() const { return phases_.empty(); }
-  /// Length of one round [s].
+  /// Duration of one round [s].
   double period() const { return period_; }
-  /// Activation of every muscle, 0..1, at a simulated time [s]; times below 0 count as 0.
+  /// The activation of every muscle, 0..1, at a simulated time [s]. Times below 0 count as 0.
   std::map<std::string, double> activation(double time) const;
 
 private:

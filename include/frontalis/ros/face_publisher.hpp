@@ -17,29 +17,30 @@
 namespace frontalis
 {
 
-/// What goes out: ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~state and the transforms. A message is
-/// built only while somebody subscribes to it, and its memory is used again once nobody holds it. One caller at a time.
+/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks and ~state, and the transforms. A
+/// message is built only while its topic has subscribers, and its memory is reused once no subscriber holds it. Only
+/// one thread at a time may call these functions, except for shows_field().
 class FacePublisher
 {
 public:
   /// Advertises the topics; nothing is published yet.
   explicit FacePublisher(ros::NodeHandle private_handle);
 
-  /// Takes the model; publishes the topology (latched) and, where `parent_frame` is not empty, an identity transform
-  /// from it to the face.
+  /// Sets the model and publishes its topology (latched). If `parent_frame` is not empty, it also publishes an identity
+  /// transform from that frame to the face frame.
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
-  /// Whether anybody wants to see the field of the skin; for any thread.
+  /// Whether ~skin_field has subscribers. Any thread may call this at any time.
   bool shows_field() const { return field_.getNumSubscribers() > 0; }
 
-  /// Publishes a frame. Returns false and publishes nothing where the skin is not finite. Needs start().
+  /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
 
-  /// Publishes a state that has failed with this message; for a face that has no model.
+  /// Publishes a failed ~state with this message, for a face that has no model.
   void publish_fault(const std::string& message, const ros::Time& stamp);
 
-  /// What start() was given.
+  /// The model that start() was given; null before.
   const Model* model() const { return model_.get(); }
 
 private:

@@ -9,30 +9,32 @@
 namespace frontalis
 {
 
-/// What to bake, and by which program.
+/// What to bake, and the program that bakes it.
 struct BakeRequest
 {
   std::string program;         ///< path of the program `frontalis`
-  std::string scene;           ///< scene file
-  std::string mesh_directory;  ///< empty: as the scene says
-  std::string accuracy;        ///< profile; empty: the scene's default
-  std::string cache;           ///< folder that keeps models by their scenes' content; empty: none is kept
+  std::string scene;           ///< path of the scene file
+  std::string mesh_directory;  ///< folder of the mesh files; empty: the folder that the scene names
+  std::string accuracy;        ///< accuracy profile; empty: the scene's default profile
+  std::string cache;           ///< folder that keeps baked models by the content of their scenes; empty: no cache
 };
 
 /// Called with each line that the program prints.
 using BakeLog = std::function<void(const std::string& line)>;
 
-/// The program `frontalis`: `wanted` where it is not empty, else the first executable file of that name in the folder
-/// of the running executable, in the folder `frontalis` beside this library, and on PATH. Throws Error with the places
-/// that were tried.
+/// The path of the program `frontalis`: `wanted` if it is not empty, else the first executable file of that name in the
+/// folder of the running executable, in the folder `frontalis` beside this library, and in the folders of PATH. Throws
+/// an Error that lists the places where it looked.
 std::string find_program(const std::string& wanted);
 
-/// The folder `frontalis` in ROS_HOME, which is ~/.ros where it is not set; empty where there is neither.
+/// The default cache: the folder `frontalis` in ROS_HOME, or in ~/.ros if ROS_HOME is not set; empty if HOME is not set
+/// either.
 std::string default_cache();
 
-/// Bakes a scene by running the program in a process of its own, into a temporary folder that is removed again, and
-/// reads the model. A crash there does not reach the caller. The process is ended early once `cancelled` becomes true.
-/// Throws Error with what the program wrote to standard error, or how it ended.
+/// Bakes a scene by a process of its own, so that a crash there does not reach the caller, and reads the model. The
+/// process writes into a temporary folder, which is removed. It is killed within 0.1 s after `cancelled` becomes true,
+/// and when the calling thread or its process ends. Throws an Error with what the program wrote to standard error, or
+/// how it ended.
 Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled);
 
 }  // namespace frontalis

@@ -9,25 +9,24 @@
 namespace frontalis
 {
 
-/// Private parameters of the node (doc/ros.md), checked.
+/// The private parameters of the node (doc/ros.md), checked.
 struct FaceParameters
 {
-  std::string scene;                         ///< scene file to bake; exactly one of scene and model is given
+  std::string scene;                         ///< scene file to bake; either this or the model is given
   std::string model;                         ///< baked model file
-  std::string mesh_directory;                ///< ~mesh_dir; empty: as the scene says
-  std::string accuracy;                      ///< profile of the scene; empty: the scene's default
-  std::string cache;                         ///< folder of models baked before; empty: none is kept
-  std::string program;                       ///< the program `frontalis`; empty: looked for (see find_program)
+  std::string mesh_directory;                ///< ~mesh_dir; empty: the folder that the scene names
+  std::string accuracy;                      ///< accuracy profile of the scene; empty: its default
+  std::string cache;                         ///< folder that keeps baked models; empty: no cache
+  std::string program;                       ///< path of `frontalis`; empty: see find_program
   RunnerSettings runner;                     ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
-  SkinField skin_field = SkinField::strain;  ///< that ~skin_field shows
-  std::string face_id;                       ///< frame is face_<id>; empty: the model's frame
-  std::string parent_frame = "map";          ///< of the static transform to the face; empty: none is published
-  bool demo = false;                         ///< play the model's demo
-  double real_time_factor_warning = 0.5;     ///< below this the diagnostics warn; pace real_time only
+  SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
+  std::string face_id;                       ///< the face frame is face_<id>; empty: the model's
+  std::string parent_frame = "map";          ///< of the face frame; empty: no static transform
+  bool demo = false;                         ///< whether to play the model's demo
+  double real_time_factor_warning = 0.5;     ///< diagnostics warn below this, at pace real_time
 };
 
-/// Reads the parameters of the private handle. Throws Error that names every bad one, what was found and what is
-/// allowed.
+/// Reads the parameters. Throws an Error that names every bad parameter, the value found and the allowed values.
 FaceParameters read_parameters(const ros::NodeHandle& private_handle);
 
 }  // namespace frontalis

@@ -10,18 +10,17 @@
 namespace frontalis
 {
 
-/// Colours of a lit skin, one a vertex. rviz drops a marker's lighting once it has colours, and its own normals are
-/// flat, so the light is baked in here: wrapped diffuse light of a warm key light from above and a cool fill light from
-/// the side, a soft highlight, and less light in hollows, which lets furrows be seen.
+/// Computes the colours of a lit skin, one per vertex. rviz does not light a marker that has colours, and its own
+/// normals are those of flat triangles, so that the light must be in the colours. A warm main light comes from above, a
+/// cool one from the side, with a soft highlight. Hollows get less light, so that furrows can be seen.
 class SkinShading
 {
 public:
-  /// Keeps the neighbours of each vertex. `hair` is the proportion of each vertex that hair covers, 0..1 (see
-  /// brow_cover); empty: none.
+  /// `hair` is the share of each vertex that hair covers, 0..1 (see brow_cover); empty: no hair.
   explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
 
-  /// Fills `out` with red, green, blue in 0..1 (display values), one a vertex. Vertices and unit normals in the face
-  /// frame [m].
+  /// Fills `out` with one red, green and blue value per vertex, 0..1, as displays take them (gamma 2.2). The skin is in
+  /// the face frame.
   void colours(const SkinState& skin, std::vector<std::array<float, 3>>& out) const;
 
 private:

@@ -5,10 +5,10 @@
 namespace frontalis
 {
 
-/// Takes vertices, normals and landmarks from the local to the face frame [m].
+/// Transforms vertices [m], normals and landmarks [m] from the model's local frame to the face frame.
 void to_face_frame(const Model& model, SkinState& skin);
 
-/// Whether every coordinate is finite.
+/// Whether all coordinates of vertices, normals and landmarks are finite.
 bool is_finite(const SkinState& skin);
 
 }  // namespace frontalis

@@ -9,16 +9,17 @@
 namespace frontalis
 {
 
-/// Sets activations by muscle name, 0..1; muscles not named keep theirs. Throws Error naming each unknown muscle, those
-/// that exist, and each bad value (not finite, out of range); nothing is changed then.
+/// Sets activations (0..1) by the names of muscles; other muscles keep their activations. If a name is unknown or a
+/// value is not within 0..1, nothing is changed and an Error names all of them and the existing muscles.
 void set_activations(const Model& model, const std::map<std::string, double>& named, std::vector<float>& activation);
 
-/// One activation a muscle of a named expression; muscles that it does not name are at 0, all with `relax`. Throws
-/// Error naming those that exist.
+/// The activation of each muscle in a named expression; muscles that the expression does not name are at 0. The
+/// expression `relax` exists in every model and names none. Throws an Error that lists the existing expressions if
+/// there is none of this name.
 std::vector<float> expression_activation(const Model& model, const std::string& name);
 
-/// Sets the motion of a bone from its rest pose, given in the face frame. Throws Error where there is no such bone,
-/// naming those that exist, or where the motion is not finite and rigid; nothing is changed then.
+/// Sets the motion of a bone from its rest pose, given in the face frame. If there is no such bone, or the motion is
+/// not finite and rigid, nothing is changed and an Error says so and lists the existing bones.
 void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
                      std::vector<RigidTransform>& bones);
 

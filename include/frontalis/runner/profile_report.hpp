@@ -7,11 +7,15 @@
 namespace frontalis
 {
 
-/// What the model's accuracy profile was measured to be, in one sentence; empty where it was not measured.
+/// The measured error and cost of the model's accuracy profile, in one sentence; empty if they were not measured.
 std::string measured_profile(const Model& model);
 
-/// How fast it runs here: a real-time factor, and where that is below 0.95, which of the scene's profiles would run in
-/// real time on this machine, their measured costs taken in proportion to the present one's.
+/// A face with this real-time factor or a higher one counts as running in real time.
+constexpr double sufficient_real_time_factor = 0.95;
+
+/// The real-time factor, in one sentence. If it is not sufficient, the sentence also names the most accurate of the
+/// scene's profiles that would run in real time on this machine. The cost of a profile here is estimated from its
+/// measured cost, scaled by how much slower or faster than measured the model's own profile runs.
 std::string speed_report(const Model& model, double real_time_factor);
 
 }  // namespace frontalis

@@ -13,46 +13,48 @@
 namespace frontalis
 {
 
-/// One published skin: everything in the face frame [m].
+/// The state of a face that is published once per frame. Positions are in the face frame [m].
 struct Frame
 {
-  double time = 0;              ///< simulated seconds since reset, on the clock on which activations are given
-  double wall_time = 0;         ///< seconds spent since the runner started
-  double real_time_factor = 0;  ///< simulated over wall seconds, over the last second of running
-  double time_step = 0;         ///< [s]
-  std::int64_t steps = 0;       ///< since reset
-  std::uint64_t sequence = 0;
+  double time = 0;              ///< simulated time since the latest reset [s], on the clock of the activations
+  double wall_time = 0;         ///< wall time since the runner started [s]
+  double real_time_factor = 0;  ///< simulated over wall time, over about the last second
+  double time_step = 0;         ///< of the solver [s]
+  std::int64_t steps = 0;       ///< solver steps since the latest reset
+  std::uint64_t sequence = 0;   ///< number of the frame
   SkinState skin;
-  std::vector<float> field;  ///< as RunnerSettings::wanted_field had it; else empty
-  std::vector<float> activation;
-  Monitor monitor;      ///< renewed about once a second
-  GuardCounts guard;    ///< since the runner started
-  bool failed = false;  ///< the motion could not be trusted; the skin is the last good one
-  std::string failure;  ///< why, in one sentence
+  std::vector<float> field;       ///< what RunnerSettings::wanted_field asked for, per skin vertex; empty if nothing
+  std::vector<float> activation;  ///< present activation of each muscle, 0..1
+  Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
+  GuardCounts guard;              ///< since the runner started
+  bool failed = false;            ///< true: the motion was stopped as wrong, and the skin is the last good one
+  std::string failure;            ///< the reason, in one sentence
 };
 
 enum class Pace
 {
-  real_time,  ///< never faster than the clock
-  fastest,    ///< as fast as it can
-  lock_step   ///< only on step()
+  real_time,  ///< not faster than the wall clock
+  fastest,    ///< as fast as the machine can
+  lock_step   ///< the face moves only in step()
 };
 
 struct RunnerSettings
 {
   SolverSettings solver;
   Pace pace = Pace::real_time;
-  double frame_rate = 0;                                 ///< frames a wall second, 0.1 to 1000; 0: the model's
-  std::optional<GuardSettings> guard = GuardSettings{};  ///< none: the motion is not watched
-  /// Asked once a frame, in the runner's thread; where it is not set or has none, no field is computed.
+  double frame_rate = 0;  ///< frames per second of wall time, 0.1 to 1000; 0: the model's
+  std::optional<GuardSettings> guard = GuardSettings{};  ///< none: the motion is not checked
+  /// Called once per frame in the runner's thread: which field of the skin to compute. If the function is not set or
+  /// returns nothing, no field is computed.
   std::function<std::optional<SkinField>()> wanted_field{};
 };
 
-/// A live face: owns the solver and a thread that steps it, takes controls from any thread, hands out frames.
+/// A face that moves by itself: it owns the solver and a thread that steps it and hands out frames. All functions may
+/// be called from any thread.
 class Runner
 {
 public:
-  /// Called in the runner's thread, once a frame; must not call back into the runner but to read.
+  /// Called once per frame in the runner's thread. It may call the runner's const functions only.
   using OnFrame = std::function<void(const Frame&)>;
 
   Runner(std::shared_ptr<const Model> model, const RunnerSettings& settings, OnFrame on_frame);
@@ -60,31 +62,34 @@ public:
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// Activations by muscle name, 0..1; muscles not named keep theirs. Throws Error naming each unknown muscle or bad
-  /// value (not finite, out of range); nothing is changed then.
+  /// Sets activations (0..1) by the names of muscles; other muscles keep theirs. If a name is unknown or a value is not
+  /// within 0..1, nothing is changed and an Error names all of them.
   void set_activation(const std::map<std::string, double>& activation);
-  /// A named preset of the model; muscles that it does not name go to 0. Throws Error listing those that exist.
+  /// Sets the activations of a named expression of the model; muscles that it does not name go to 0. Throws an Error
+  /// that lists the existing expressions if there is none of this name.
   void set_expression(const std::string& name);
 
-  /// Motion of a bone from its rest pose, in the face frame; reached within a frame, as activations are. Throws Error
-  /// where there is no such bone or the motion is not finite and rigid; nothing is changed then.
+  /// Sets the motion of a bone from its rest pose, in the face frame. The bone moves there within about a frame, as
+  /// activations do. If there is no such bone, or the motion is not finite and rigid, nothing is changed and an Error
+  /// is thrown.
   void set_bone(const std::string& name, const RigidTransform& motion);
 
-  /// Switches an effect when the frame under way is done, and returns then. Throws Error as Solver::switch_effect.
+  /// Switches an effect off or on between two frames and returns once that is done. Throws the Errors of
+  /// Solver::switch_effect.
   void switch_effect(Effect effect, bool on);
-  /// Effects that run.
+  /// The effects that are switched on.
   EffectSet effects() const;
 
   void pause(bool paused);
   bool paused() const;
-  /// Back to rest, zero activation and bones in place; clears a failure, ends a step under way. Returns when it is
-  /// done; throws Error where the solver fails in it.
+  /// Puts the tissue and the bones back to rest and sets all activations and the time to 0. Clears a failure and ends a
+  /// step under way. Returns once that is done; throws an Error if the solver fails to reset.
   void reset();
-  /// Ends a step under way: its caller gets an Error.
+  /// Ends a step under way, whose caller gets an Error.
   void cancel_step();
-  /// Advances by exactly `seconds` (on the activations' clock), activations going linearly to what was set last, and
-  /// returns the frame there; pauses the runner's own stepping first. Throws Error, also where another step is under
-  /// way.
+  /// Pauses the face, advances it by exactly `seconds` of simulated time and returns the frame reached. Activations and
+  /// bones move linearly to what was set last. Throws an Error if the motion fails, if the step is ended early, or if
+  /// another step is under way.
   Frame step(double seconds);
 
   const Model& model() const;

@@ -51,7 +51,7 @@ struct Surface
   std::string name;
   std::string file;            ///< path, resolved against the mesh directory or the scene's; empty for a shape
   std::optional<Shape> shape;  ///< set where file is empty
-  double unit = 1;             ///< metres a mesh unit (files only)
+  double unit = 1;             ///< metres per unit of the mesh (files only)
   int line = 0;                ///< line in the scene file, for messages of the bake
 };
 
@@ -69,9 +69,9 @@ struct Volume
   double depth_min = 0;
   double depth_max = 0;
   Region crop;
-  std::string material;  ///< empty: the volume brings no material of its own (it only bounds something)
-  int priority = 0;      ///< at a point in several volumes the highest priority wins; equals share the point
-  bool tissue = false;   ///< voxels are made where tissue volumes are; other volumes only change what fills them
+  std::string material;  ///< empty: the volume fills nothing and only bounds something
+  int priority = 0;     ///< at a point in several volumes the highest priority wins; volumes of equal priority share it
+  bool tissue = false;  ///< voxels are made where tissue volumes are; other volumes only change what fills them
   int line = 0;
 };
 

@@ -16,7 +16,7 @@ struct SceneOptions
       voxel_quantity;  ///< the same as a user writes it: "1.5" (the scene's length unit) or "1.5 mm"; comes first
 };
 
-/// Reads and checks a scene file (doc/scene.md). Throws Error whose text holds every fault of the file, one a line:
+/// Reads and checks a scene file (doc/scene.md). Throws Error whose text holds every fault of the file, one per line:
 /// FILE:LINE: KEY: what was found; what is allowed.
 Scene read_scene(const std::string& path, const SceneOptions& options = {});
 

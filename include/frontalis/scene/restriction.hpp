@@ -19,9 +19,9 @@ struct SceneConstraint
   std::string name;
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
-  double within = -1;  ///< tissue nodes no farther out of the surface than this are restricted [m]; < 0: 0.75 voxel
+  double within = -1;  ///< nodes at most this far outside the surface are restricted [m]; < 0: 0.75 voxel edges
   Region crop;
-  std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone's pose; empty: still
+  std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone; empty: they stand still
   double friction = 0;  ///< sliding: Coulomb's coefficient
   int line = 0;
 };
@@ -31,8 +31,8 @@ struct SceneLoad
 {
   enum class Kind
   {
-    traction,     ///< value: force an area of the rest surface [Pa], dead
-    pressure,     ///< value[0]: pressure [Pa] against the current outward normal (follower)
+    traction,     ///< value: force per area of the surface at rest [Pa], of constant direction
+    pressure,     ///< value[0]: pressure [Pa] against the outward normal of the deformed surface
     displacement  ///< value: displacement [m] of the nodes near the surface; components not in `fixed` stay free
   };
   std::string name;

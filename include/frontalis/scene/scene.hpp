@@ -46,15 +46,15 @@ struct MassScaling
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::string> materials;
-  double time_step = 0;  ///< that is taken then [s]; 0: until those materials no longer rule it
+  double time_step = 0;  ///< that they must allow [s]; 0: as much as the other voxels allow
 };
 
 /// What `frontalis accuracy` found for a setting; doc/accuracy.md.
 struct MeasuredAccuracy
 {
   double error = 0;     ///< of the skin, RMS [m]; 0: not measured
-  double cost = 0;      ///< wall seconds a simulated second; 0: not measured
-  std::string machine;  ///< that it cost so much on
+  double cost = 0;      ///< wall seconds per simulated second; 0: not measured
+  std::string machine;  ///< on which it was measured
 };
 
 /// One named setting of accuracy against time.
@@ -62,11 +62,11 @@ struct AccuracyProfile
 {
   std::string name;
   Vector3 voxel{ 1e-3, 1e-3, 1e-3 };  ///< voxel edges [m]
-  int samples = 4;                    ///< samples a voxel edge in boundary voxels
+  int samples = 4;                    ///< sample points per voxel edge in boundary voxels
   double fill_min = 0.2;              ///< a voxel with less tissue than this proportion is dropped
   double time_step_share = 0.9;       ///< share of the critical time step that is used
   MassScaling mass_scaling;
-  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness a voxel
+  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness per voxel
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< compensated, double: of the CPU backend
   std::string time_step = "element";      ///< critical time step: bounded at nodes, or of the assembled model
@@ -78,8 +78,8 @@ struct SceneTime
 {
   double damping = 0;      ///< mass-proportional damping coefficient [1/s]
   double scaling = 1;      ///< time scaling: the motion is played this many times faster in simulated time
-  double frame_rate = 30;  ///< published skins a wall second [1/s]
-  /// Most that a muscle's activation changes a second of the clock on which activations are given [1/s]; 0: no limit.
+  double frame_rate = 30;  ///< skins published per wall second [1/s]
+  /// Fastest change of a muscle's activation, on the clock on which activations are given [1/s]; 0: no limit.
   double activation_slew = 0;
 };
 
@@ -95,7 +95,7 @@ struct DemoPhase
 struct Scene
 {
   std::string file;
-  double unit = 1e-3;  ///< metres a plain number of the file: lengths and places in messages are in it
+  double unit = 1e-3;  ///< metres per plain number of the file; messages give lengths and places in it
   std::vector<Surface> surfaces;
   std::vector<Volume> volumes;
   std::vector<SceneMaterial> materials;
@@ -113,7 +113,8 @@ struct Scene
   std::vector<AccuracyProfile> profiles;
   std::map<std::string, std::map<std::string, double>> expressions;  ///< preset -> muscle -> activation 0..1
   std::vector<DemoPhase> demo;
-  std::string content;  ///< everything that decides the bake, canonical text: file contents hashed in, for caching
+  std::string content;  ///< everything that decides the bake, as canonical text with the hashes of its files: the key
+                        ///< of cached models
 };
 
 }  // namespace frontalis

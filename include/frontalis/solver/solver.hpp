@@ -17,32 +17,26 @@ namespace frontalis
 
 /// Of motions: raised whenever the same model and controls give another one than before (other steps, other laws) or
 /// Solver::pack() other bytes. What was kept of another generation is not taken for this one's.
-constexpr int motion_generation = 9;
+constexpr int motion_generation = 10;
 
-enum class Backend
-{
-  automatic,  ///< the GPU where there is one, else the CPU
-  reference,  ///< double, plain loops: slow on purpose, the oracle of every test
-  cpu,        ///< float, SIMD, all cores
-  cuda
-};
+/// A name of backend_names(): "auto" (the GPU where there is one, else the CPU), "reference" (double precision, plain
+/// loops: slow on purpose, the oracle of every test), "cpu" (SIMD, all cores), "cuda".
+using Backend = std::string;
 
-/// "auto", "reference", "cpu" or "cuda"; throws Error naming those that exist.
+/// What SolverSettings::backend can ask for in this build, "auto" first.
+std::vector<Backend> backend_names();
+/// The name itself; throws Error where it is none of backend_names().
 Backend backend_from_name(const std::string& name);
-SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
-std::string name_of(Backend backend);
-/// Those that can run on this machine; cuda only where this build has it and a device is there.
+/// The backends that can run on this machine, in the order in which "auto" prefers them.
 std::vector<Backend> available_backends();
+SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
 
 struct SolverSettings
 {
-  Backend backend = Backend::automatic;
+  Backend backend = "auto";
   int threads = 0;       ///< CPU threads; 0: one a core
   double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
   bool ledger = false;   ///< keep account of energies (Solver::ledger); costs a part of a step
-  /// Backend cpu: what is at rest is not computed, so that no node errs by more than about so much [m]; 0: all is.
-  /// Other backends compute all and say so in their description.
-  double sleep = 0;
 };
 
 /// What constraint_steps the model from outside.

@@ -20,7 +20,7 @@ struct AccuracySetting
   AccuracyProfile profile;
   double poisson = 0;       ///< of every material; 0: the scene's
   double time_scaling = 1;  ///< times the scene's
-  Backend backend = Backend::cpu;
+  Backend backend = "cpu";
 };
 
 /// From rest to an activation over a ramp, then held; times are on the activations' clock [s].

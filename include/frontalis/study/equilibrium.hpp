@@ -10,7 +10,7 @@ namespace frontalis
 
 struct EquilibriumSettings
 {
-  Backend backend = Backend::cpu;
+  Backend backend = "cpu";
   double period = 0;         ///< [s] of the slowest motion, about
   double ramp = 1;           ///< periods over which loads and activations grow, critically damped
   double tolerance = 1e-4;   ///< as Solver::settle takes it

@@ -41,7 +41,7 @@ struct Skipped
 
 struct StabilitySettings
 {
-  Backend backend = Backend::cpu;
+  Backend backend = "cpu";
   bool long_runs = false;  ///< in full length, where a case has a shorter form
   /// Model of a scene of this name (those in config, real_head among them); throws Skipped where there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;

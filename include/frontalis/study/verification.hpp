@@ -43,7 +43,7 @@ struct Finding
 
 struct VerificationSettings
 {
-  Backend backend = Backend::cpu;  ///< of the motions; figures of single elements come from the reference
+  Backend backend = "cpu";  ///< of the motions; figures of single elements come from the reference
 };
 
 struct VerificationCase

@@ -7,21 +7,21 @@
 namespace frontalis
 {
 
-WayTable::WayTable(const MuscleGrid& grid, const CornerField& field, bool turns)
+DistanceTable::DistanceTable(const MuscleGrid& grid, const CornerField& field, bool periodic)
 {
   std::vector<std::pair<double, double>> cells;  // value, steepness
-  double low = turns ? 0 : 1e300, high = turns ? 1 : -1e300;
+  double low = periodic ? 0 : 1e300, high = periodic ? 1 : -1e300;
   for (const auto& corners : field)
   {
     const double value = std::accumulate(corners.begin(), corners.end(), 0.0) / 8;
-    cells.emplace_back(turns ? value - std::floor(value) : value, gradient(grid, corners).norm());
+    cells.emplace_back(periodic ? value - std::floor(value) : value, gradient(grid, corners).norm());
     low = std::min(low, cells.back().first);
     high = std::max(high, cells.back().first);
   }
   std::sort(cells.begin(), cells.end());
   const std::size_t bins = std::min<std::size_t>(64, std::max<std::size_t>(1, cells.size() / 20));
   values_.push_back(low);
-  ways_.push_back(0);
+  distances_.push_back(0);
   for (std::size_t b = 0; b < bins; ++b)
   {
     const std::size_t begin = b * cells.size() / bins, end = (b + 1) * cells.size() / bins;
@@ -29,18 +29,18 @@ WayTable::WayTable(const MuscleGrid& grid, const CornerField& field, bool turns)
     for (std::size_t c = begin; c < end; ++c)
       steepness += cells[c].second / static_cast<double>(end - begin);
     const double value = b + 1 < bins ? cells[end].first : high;
-    ways_.push_back(ways_.back() + (steepness > 0 ? (value - values_.back()) / steepness : 0));
+    distances_.push_back(distances_.back() + (steepness > 0 ? (value - values_.back()) / steepness : 0));
     values_.push_back(value);
   }
 }
 
-double WayTable::operator()(double value) const
+double DistanceTable::operator()(double value) const
 {
   const auto above = std::upper_bound(values_.begin() + 1, values_.end() - 1, value);
-  const auto k = static_cast<std::size_t>(above - values_.begin());
+  const auto k = above - values_.begin();
   const double step = values_[k] - values_[k - 1];
   const double t = step > 0 ? std::min(1.0, std::max(0.0, (value - values_[k - 1]) / step)) : 0;
-  return ways_[k - 1] + t * (ways_[k] - ways_[k - 1]);
+  return distances_[k - 1] + t * (distances_[k] - distances_[k - 1]);
 }
 
 Stretch::Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>>& samples, std::size_t stretched,
@@ -52,7 +52,7 @@ Stretch::Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>
     if (grid.samples[s].cell >= 0)
       values[bin(samples[s][1 - stretched])].emplace_back(samples[s][stretched], grid.samples[s].area);
 
-  // all but the outermost area of each bin
+  // the limits leave out the outermost part of each bin's area
   constexpr double outermost = 0.005;
   std::array<double, bins> given{};
   for (std::size_t b = 0; b < bins; ++b)
@@ -85,7 +85,7 @@ Stretch::Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>
       given[to] = given[from];
     }
   }
-  for (int turn = 0; turn < 4; ++turn)
+  for (int repetition = 0; repetition < 4; ++repetition)
     smooth(given);
 }
 

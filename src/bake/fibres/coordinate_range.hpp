@@ -8,26 +8,27 @@
 namespace frontalis
 {
 
-/// From a field's value to the mean way [m] on which the field reaches it from its least one.
-class WayTable
+/// Maps a value of a field to the mean distance [m] of the places that have it from those with the field's least value.
+class DistanceTable
 {
 public:
-  /// `turns`: the field is one of turns around a ring, and counts modulo 1.
-  WayTable(const MuscleGrid& grid, const CornerField& field, bool turns);
-  double length() const { return ways_.back(); }
+  /// `periodic`: the field counts revolutions around a ring, of which the fraction is used.
+  DistanceTable(const MuscleGrid& grid, const CornerField& field, bool periodic);
+  double length() const { return distances_.back(); }
   double operator()(double value) const;
 
 private:
-  std::vector<double> values_, ways_;
+  std::vector<double> values_, distances_;
 };
 
-/// Stretches one of two coordinates (0 or 1) so that it runs from 0 to 1 at every value of the other: by the limits of
-/// the muscle's surface, smoothed. Lines on which the other is constant stay what they are.
+/// Stretches one of two coordinates such that it runs from 0 to 1 at every value of the other: between its limits on
+/// the muscle's surface, smoothed. Lines along which the other coordinate is constant keep their shape.
 class Stretch
 {
 public:
-  /// `closed`: the other coordinate is one around a ring. Within `ends` of its 0 and 1 the limits are taken from
-  /// further in. Samples as those of the grid.
+  /// `samples`: both coordinates at the grid's samples. `stretched`: the index of the coordinate to stretch. `closed`:
+  /// the other coordinate runs around a ring. Where the other is nearer than `ends` to 0 or 1, the limits found at
+  /// `ends` are used.
   Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>>& samples, std::size_t stretched, bool closed,
           double ends);
   void apply(std::array<double, 2>& coordinates) const;
@@ -38,7 +39,7 @@ private:
   static std::size_t bin(double value);
   std::size_t before(std::size_t b) const { return b > 0 ? b - 1 : (closed_ ? bins - 1 : 0); }
   std::size_t after(std::size_t b) const { return b + 1 < bins ? b + 1 : (closed_ ? 0 : b); }
-  /// Averages neighbouring bins; `given`: 0 where a bin has no limits yet.
+  /// Averages neighbouring bins. `given` is 0 for a bin that has no limits yet.
   void smooth(std::array<double, bins>& given);
 
   std::size_t stretched_;

@@ -3,7 +3,7 @@
 #include "frontalis/error.hpp"
 #include "bake/fibres/coordinate_range.hpp"
 #include "bake/fibres/grid_field.hpp"
-#include "bake/mesh/surface_direction.hpp"
+#include "bake/fibres/surface_direction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,6 @@ namespace frontalis
 {
 namespace
 {
-
-constexpr double pi = 3.14159265358979323846;
 
 CornerField corners_of(const MuscleGrid& grid, const Eigen::VectorXd& nodal)
 {
@@ -29,25 +27,25 @@ CornerField corners_of(const MuscleGrid& grid, const Eigen::VectorXd& nodal)
   return field;
 }
 
-/// Turns around the hole, 0 to 1 from anywhere: the azimuth plus what makes it harmonic.
+/// Harmonic field around the hole, in revolutions: the azimuth and its harmonic correction.
 CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField& field)
 {
-  const Vector3 aside = std::abs(hole.axis[0]) < 0.6 ? Vector3{ 1, 0, 0 } : Vector3{ 0, 1, 0 };
-  const Vector3 x = normalised(cross(hole.axis, aside)), y = cross(hole.axis, x);
-  std::vector<double> turns;
+  const Vector3d aside = std::abs(hole.axis[0]) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
+  const Vector3d x = hole.axis.cross(aside).normalized(), y = hole.axis.cross(x);
+  std::vector<double> revolutions;
   for (std::size_t n = 0; n < grid.nodes.size(); ++n)
   {
-    const Vector3 d = grid.node_position(n) - hole.centre;
-    turns.push_back(std::atan2(dot(d, y), dot(d, x)) / (2 * pi));
+    const Vector3d d = grid.node_position(n) - hole.centre;
+    revolutions.push_back(std::atan2(d.dot(y), d.dot(x)) / (2 * pi));
   }
   CornerField azimuth;
   for (const auto& nodes : grid.cell_nodes)
   {
     std::array<double, 8> values{};
-    const double first = turns[static_cast<std::size_t>(nodes[0])];
+    const double first = revolutions[nodes[0]];
     for (std::size_t b = 0; b < 8; ++b)
     {
-      const double difference = turns[static_cast<std::size_t>(nodes[b])] - first;
+      const double difference = revolutions[nodes[b]] - first;
       values[b] = first + difference - std::round(difference);
     }
     azimuth.push_back(values);
@@ -59,8 +57,8 @@ CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField
   return azimuth;
 }
 
-/// Nodes nearest to an end, as the ground of a field between ends.
-std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3&)>& distance)
+/// Nodes at an end of the muscle: those about as near to it as the nearest one.
+std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3d&)>& distance)
 {
   std::vector<double> distances;
   for (std::size_t n = 0; n < grid.nodes.size(); ++n)
@@ -97,18 +95,18 @@ double at(const std::array<double, 8>& corners, const std::array<double, 8>& wei
   return value;
 }
 
-/// Starting fields that every slow mode has something of.
+/// Starting fields for subspace iteration, which together are orthogonal to none of the slow modes.
 Eigen::MatrixXd starting_fields(const MuscleGrid& grid)
 {
-  Eigen::MatrixXd fields(static_cast<Eigen::Index>(grid.nodes.size()), 6);
-  Vector3 mean{ 0, 0, 0 };
+  Eigen::MatrixXd fields(grid.nodes.size(), 6);
+  Vector3d mean{ 0, 0, 0 };
   for (std::size_t n = 0; n < grid.nodes.size(); ++n)
-    mean = mean + (1.0 / static_cast<double>(grid.nodes.size())) * grid.node_position(n);
+    mean += (1.0 / static_cast<double>(grid.nodes.size())) * grid.node_position(n);
   for (std::size_t n = 0; n < grid.nodes.size(); ++n)
   {
-    const Vector3 p = grid.node_position(n) - mean;
-    fields.row(static_cast<Eigen::Index>(n)) << p[0], p[1], p[2], norm(p), p[0] * p[1] / (norm(p) + grid.edge),
-        p[1] * p[2] / (norm(p) + grid.edge);
+    const Vector3d p = grid.node_position(n) - mean;
+    fields.row(n) << p[0], p[1], p[2], p.norm(), p[0] * p[1] / (p.norm() + grid.edge),
+        p[1] * p[2] / (p.norm() + grid.edge);
   }
   return fields;
 }
@@ -117,21 +115,17 @@ Eigen::MatrixXd starting_fields(const MuscleGrid& grid)
 
 FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& guide)
 {
-  Box box;
-  for (std::size_t n = 0; n < grid.nodes.size(); ++n)
-    box.include(grid.node_position(n));
-  const double diagonal = norm(box.upper - box.lower);
-  const double reach = std::max(2 * grid.edge, 0.04 * diagonal);
-  const auto shown = shown_directions(grid, reach);
+  const double reach = std::max(2 * grid.edge, 0.04 * grid.box().diagonal().norm());
+  const auto shown = surface_directions(grid, reach);
 
   FibreCoordinates result;
   result.distinctness = std::numeric_limits<double>::infinity();
   CornerField along;
-  std::vector<ShownDirection> trusted = shown;
-  std::vector<Eigen::Vector3d> gradients(grid.cells.size());
+  std::vector<SurfaceDirection> trusted = shown;
+  std::vector<Vector3d> gradients(grid.cells.size());
   for (int turn = 0; turn < 2; ++turn)
   {
-    const GridField field(grid, slow_along(trusted));
+    const GridField field(grid, conductivities(trusted));
     if (guide.ring)
       along = around(grid, *guide.ring, field);
     else if (guide.origin)
@@ -148,15 +142,15 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     trusted = blend(grid, reach, shown, gradients);
   }
 
-  // across: next to constant along the fibres
-  std::vector<Eigen::Vector3d> fibres;
+  // the field across is nearly constant along the fibres
+  std::vector<Vector3d> fibres;
   fibres.reserve(trusted.size());
-  for (const ShownDirection& fibre : trusted)
+  for (const SurfaceDirection& fibre : trusted)
     fibres.push_back(fibre.direction);
   const GridField field(grid, fibres, 1e-4);
   const CornerField across = corners_of(grid, field.slowest_modes(starting_fields(grid)).fields.col(0));
 
-  const WayTable length(grid, along, guide.ring.has_value()), width(grid, across, false);
+  const DistanceTable length(grid, along, guide.ring.has_value()), width(grid, across, false);
   result.length = length.length();
   result.width = width.length();
   const auto coordinates = [&](std::size_t cell, const std::array<double, 8>& weights)
@@ -171,11 +165,9 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     result.cells.push_back(coordinates(c, middle));
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const MuscleGrid::Sample& sample : grid.samples)
-    result.samples.push_back(sample.cell < 0
-                                 ? std::array<double, 2>{ none, none }
-                                 : coordinates(static_cast<std::size_t>(sample.cell),
-                                               grid.weights(static_cast<std::size_t>(sample.cell), sample.point)));
-  // fibres end where the muscle does, and keep to its sides
+    result.samples.push_back(sample.cell < 0 ? std::array<double, 2>{ none, none }
+                                             : coordinates(sample.cell, grid.weights(sample.cell, sample.point)));
+  // stretched so that fibres end where the muscle ends and follow its sides
   const auto stretch = [&](std::size_t stretched, double ends)
   {
     const Stretch table(grid, result.samples, stretched, stretched == 1 && guide.ring, ends);
@@ -186,7 +178,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
   };
   if (!guide.ring)
   {
-    // an end that is cut obliquely takes about half a width
+    // the part of the length that an obliquely cut end takes: about half a width
     stretch(1, std::min(0.45, 1.5 * result.width / result.length));
     stretch(0, 0);
   }

@@ -3,6 +3,9 @@
 #include "frontalis/error.hpp"
 #include "bake/parallel.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace frontalis
 {
 namespace
@@ -10,37 +13,34 @@ namespace
 
 constexpr std::size_t grain = 1024;
 
-/// x turned by the shortest rotation from `from` to `to` (lengths 1); `axis`, across `from`, is for opposite ones.
-Vector3 turned(const Vector3& x, const Vector3& from, const Vector3& to, const Vector3& axis)
+/// The shortest rotation from `from` to `to` (unit vectors); about `axis`, across `from`, where they are opposite.
+Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, const Vector3d& axis)
 {
-  const double cosine = dot(from, to);
-  if (cosine < -1 + 1e-9)
-    return 2 * dot(axis, x) * axis - x;
-  const Vector3 v = cross(from, to);
-  return x + cross(v, x) + (1 / (1 + cosine)) * cross(v, cross(v, x));
+  if (from.dot(to) < -1 + 1e-9)
+    return Eigen::Quaterniond(Eigen::AngleAxisd(pi, axis));
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
 }
 
-/// The material that rules voxel e among those whose families follow a surface; -1: none.
-int ruling_material(const Scene& scene, const Model& model, std::size_t e)
+/// Of the materials in voxel e whose families follow a surface, the one with the largest proportion; -1: there is none.
+int main_material(const Scene& scene, const Model& model, std::size_t e)
 {
-  int ruling = -1;
+  int main = -1;
   float largest = 0;
-  for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
-       m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
+  for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
   {
     const std::int16_t material = model.mixture_material[m];
-    if (scene.materials[static_cast<std::size_t>(material)].along.empty() || model.mixture_proportion[m] <= largest)
+    if (scene.materials[material].along.empty() || model.mixture_proportion[m] <= largest)
       continue;
     largest = model.mixture_proportion[m];
-    ruling = material;
+    main = material;
   }
-  return ruling;
+  return main;
 }
 
 }  // namespace
 
-void turn_families(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                   const LocalFrame& frame, Model& model, BakeStages& stages)
+void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor)
 {
   const std::size_t voxels = model.voxels.size();
   std::vector<const PreparedSurface*> along;
@@ -48,52 +48,48 @@ void turn_families(const Scene& scene, const std::vector<std::unique_ptr<Prepare
     along.push_back(material.along.empty()
                         ? nullptr
                         : &named_surface(surfaces, material.along, scene.file + ": material '" + material.name + "'"));
-  std::vector<int> ruling(voxels);
-  std::vector<Vector3> normal(voxels, { 0, 0, 0 });
-  parallel_ranges(
-      voxels, grain,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t e = begin; e < end; ++e)
-        {
-          ruling[e] = ruling_material(scene, model, e);
-          if (ruling[e] < 0)
-            continue;
-          Vector3 p = frame.origin;
-          for (std::size_t a = 0; a < 3; ++a)
-            p[frame.scene_axis(a)] += (model.voxels[e][a] + 0.5) * model.spacing[a];
-          const PreparedSurface& surface = *along[static_cast<std::size_t>(ruling[e])];
-          normal[e] = surface.pseudonormal(surface.tree().closest(p));
-        }
-      },
-      &stages);
+  std::vector<int> main(voxels);
+  std::vector<Vector3d> normal(voxels, Vector3d::Zero());
+  parallel_for(monitor, voxels, grain,
+               [&](std::size_t e)
+               {
+                 main[e] = main_material(scene, model, e);
+                 if (main[e] < 0)
+                   return;
+                 const PreparedSurface& surface = *along[main[e]];
+                 normal[e] = surface.pseudonormal(surface.tree().closest(frame.voxel_centre(model, e)));
+               });
 
-  std::vector<Vector3> across(scene.materials.size());
+  // of each material: a normal of the plane of its families, and whether most voxels agree with it
+  std::vector<Vector3d> across(scene.materials.size(), Vector3d::Zero());
   std::vector<double> agreement(across.size(), 0);
   for (std::size_t m = 0; m < across.size(); ++m)
+  {
+    const auto& families = scene.materials[m].families;
     if (along[m] != nullptr)
-      across[m] = normalised(cross(scene.materials[m].families[0], scene.materials[m].families[1]));
-  bool any = false;
+      across[m] = to_vector(families[0]).cross(to_vector(families[1])).normalized();
+  }
   for (std::size_t e = 0; e < voxels; ++e)
-    if (ruling[e] >= 0)
-    {
-      agreement[static_cast<std::size_t>(ruling[e])] += dot(across[static_cast<std::size_t>(ruling[e])], normal[e]);
-      any = true;
-    }
-  if (!any)
+  {
+    if (main[e] >= 0)
+      agreement[main[e]] += across[main[e]].dot(normal[e]);
+  }
+  if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});
   for (std::size_t e = 0; e < voxels; ++e)
   {
-    if (ruling[e] < 0)
+    const int m = main[e];
+    if (m < 0)
       continue;
-    const auto m = static_cast<std::size_t>(ruling[e]);
-    const auto& families = scene.materials[m].families;
-    const Vector3 from = agreement[m] < 0 ? -1 * across[m] : across[m];
+    const Vector3d first = to_vector(scene.materials[m].families[0]);
+    const Vector3d from = std::copysign(1.0, agreement[m]) * across[m];
+    const Eigen::Quaterniond rotation = shortest_rotation(from, normal[e], first);
     for (std::size_t family = 0; family < 2; ++family)
     {
-      const Vector3 direction = frame.turn(normalised(turned(families[family], from, normal[e], families[0])));
-      for (std::size_t a = 0; a < 3; ++a)
+      const Vector3d turned = rotation * to_vector(scene.materials[m].families[family]);
+      const Vector3d direction = frame.turn(turned.normalized().eval());
+      for (int a = 0; a < 3; ++a)
         model.material_directions[e][3 * family + a] = static_cast<float>(direction[a]);
     }
   }

@@ -12,10 +12,8 @@ namespace frontalis
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
-
-/// Least squares for the control points of a tensor-product surface, with a little bending stiffness that carries it
-/// over places without data.
+/// Fits the control points of a tensor-product surface by least squares, with a little bending stiffness, which
+/// determines it where there are no data.
 class SurfaceFit
 {
 public:
@@ -26,7 +24,7 @@ public:
   {
   }
 
-  void add(const std::array<double, 2>& parameter, const Vector3& target, double weight)
+  void add(const std::array<double, 2>& parameter, const Vector3d& target, double weight)
   {
     std::array<Eigen::Index, 16> index{};
     std::array<double, 16> value{};
@@ -35,8 +33,7 @@ public:
     {
       for (std::size_t j = 0; j < count; ++j)
         matrix_(index[i], index[j]) += weight * value[i] * value[j];
-      for (std::size_t c = 0; c < 3; ++c)
-        load_(index[i], static_cast<Eigen::Index>(c)) += weight * value[i] * target[c];
+      load_.row(index[i]) += weight * value[i] * target.transpose();
     }
   }
 
@@ -62,21 +59,21 @@ public:
       throw Error("no surface can be fitted around it");
     points_.clear();
     for (Eigen::Index i = 0; i < solution.rows(); ++i)
-      points_.push_back({ solution(i, 0), solution(i, 1), solution(i, 2) });
+      points_.emplace_back(solution.row(i));
     matrix_.setZero();
     load_.setZero();
   }
 
-  const std::vector<Vector3>& points() const { return points_; }
+  const std::vector<Vector3d>& points() const { return points_; }
 
-  Vector3 at(const std::array<double, 2>& parameter) const
+  Vector3d at(const std::array<double, 2>& parameter) const
   {
     std::array<Eigen::Index, 16> index{};
     std::array<double, 16> value{};
     const std::size_t count = basis(parameter, index, value);
-    Vector3 sum{ 0, 0, 0 };
+    Vector3d sum{ 0, 0, 0 };
     for (std::size_t i = 0; i < count; ++i)
-      sum = sum + value[i] * points_[static_cast<std::size_t>(index[i])];
+      sum += value[i] * points_[index[i]];
     return sum;
   }
 
@@ -90,8 +87,8 @@ private:
   {
     const SplineAxis::Basis a = axes_[0].at(parameter[0]), b = axes_[1].at(parameter[1]);
     std::size_t count = 0;
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(axes_[0].degree()); ++i)
-      for (std::size_t j = 0; j <= static_cast<std::size_t>(axes_[1].degree()); ++j, ++count)
+    for (int i = 0; i <= axes_[0].degree(); ++i)
+      for (int j = 0; j <= axes_[1].degree(); ++j, ++count)
       {
         index[count] = place(0, a.point[i], b.point[j]);
         value[count] = a.value[i] * b.value[j];
@@ -101,10 +98,10 @@ private:
 
   std::array<SplineAxis, 2> axes_;
   Eigen::MatrixXd matrix_, load_;
-  std::vector<Vector3> points_;
+  std::vector<Vector3d> points_;
 };
 
-/// The sheet through the middle of the muscle, over (u, v).
+/// The sheet through the middle of the muscle, over (u, v): a fit to the centres of the cells.
 SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordinates, const SplineAxis& along)
 {
   SurfaceFit sheet(along, SplineAxis(3, 6, false));
@@ -116,16 +113,16 @@ SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordina
 
 struct SheetFrame
 {
-  Vector3 tangent, normal;  ///< along u, and across the sheet; length 1
+  Vector3d tangent, normal;  ///< along u, and across the sheet; length 1
 };
 
 SheetFrame sheet_frame(const SurfaceFit& sheet, double u, double v)
 {
-  // differences, one-sided at the sheet's edges
+  // finite differences, one-sided at the sheet's edges
   constexpr double step = 0.02;
   const double v0 = std::max(0.0, v - step), v1 = std::min(1.0, v + step);
-  const Vector3 tangent = normalised(sheet.at({ u + step, v }) - sheet.at({ u - step, v }));
-  return { tangent, normalised(cross(tangent, sheet.at({ u, v1 }) - sheet.at({ u, v0 }))) };
+  const Vector3d tangent = (sheet.at({ u + step, v }) - sheet.at({ u - step, v })).normalized();
+  return { tangent, (tangent.cross(sheet.at({ u, v1 }) - sheet.at({ u, v0 }))).normalized() };
 }
 
 }  // namespace
@@ -136,12 +133,13 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   const SplineAxis around(3, 12, true);
   const SurfaceFit sheet = middle_sheet(grid, coordinates, along);
 
-  // each sample's place on the closed section: the sheet's one side from 0 to 1/2, its other side back from 1/2 to 1
+  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, back from 1/2 to 1 on the
+  // other.
   struct Datum
   {
     std::array<double, 2> parameter;
     const MuscleGrid::Sample* sample;
-    Vector3 middle;
+    Vector3d middle;
   };
   std::vector<Datum> data;
   const std::size_t stride = grid.samples.size() / 8000 + 1;
@@ -152,40 +150,40 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       continue;
     const auto [u, v] = coordinates.samples[s];
     const SheetFrame frame = sheet_frame(sheet, u, v);
-    // the ends are no part of the surface around the fibres
-    if (std::abs(dot(frame.tangent, sample.normal)) > 0.7)
+    // surfaces across the fibres are ends of the muscle: leave them out
+    if (std::abs(frame.tangent.dot(sample.normal)) > 0.7)
       continue;
-    const Vector3 middle = sheet.at({ u, v });
-    const double side = dot(sample.point - middle, frame.normal);
+    const Vector3d middle = sheet.at({ u, v });
+    const double side = (sample.point - middle).dot(frame.normal);
     const double angle = std::acos(1 - 2 * v) / (2 * pi);
     data.push_back({ { u, side >= 0 ? angle : 1 - angle }, &sample, middle });
   }
   SurfaceFit surface(along, around);
-  for (int turn = 0; turn < 3; ++turn)
+  for (int iteration = 0; iteration < 3; ++iteration)
   {
     for (const Datum& datum : data)
     {
       const MuscleGrid::Sample& sample = *datum.sample;
       double weight = sample.area;
-      if (turn > 0)
+      if (iteration > 0)
       {
-        const Vector3 fitted = surface.at(datum.parameter);
-        weight *= dot(sample.point - fitted, fitted - datum.middle) >= 0 ? 1 : 0.2;
+        const Vector3d fitted = surface.at(datum.parameter);
+        weight *= (sample.point - fitted).dot(fitted - datum.middle) >= 0 ? 1 : 0.2;
       }
       surface.add(datum.parameter, sample.point, weight);
     }
     surface.solve(0.01);
   }
 
-  // control points of the sheet that it shrinks to: means of those that face each other across it
-  std::vector<Vector3> points;
+  // control points of the inner sheet: means of those that face each other across it
+  std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
   {
     for (int j = 0; j < n; ++j)
     {
-      const Vector3& outer = surface.points()[static_cast<std::size_t>(i * n + j)];
-      const Vector3& opposite = surface.points()[static_cast<std::size_t>(i * n + (n - j) % n)];
+      const Vector3d& outer = surface.points()[i * n + j];
+      const Vector3d& opposite = surface.points()[i * n + (n - j) % n];
       points.push_back(0.5 * (outer + opposite));
       points.push_back(outer);
     }
@@ -202,7 +200,7 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
   for (std::int32_t i = 0; i < rows; ++i)
     for (std::int32_t j = 0; j < around; ++j)
       mesh.vertices.push_back(
-          volume.at({ static_cast<double>(i) / along, static_cast<double>(j) / around, 1 }).position);
+          to_array(volume.at({ static_cast<double>(i) / along, static_cast<double>(j) / around, 1 }).position));
   const auto vertex = [&](std::int32_t i, std::int32_t j) { return (i % rows) * around + j % around; };
   for (std::int32_t i = 0; i < along; ++i)
     for (std::int32_t j = 0; j < around; ++j)
@@ -238,7 +236,7 @@ NurbsFit measure_fit(const NurbsVolume& volume, const MuscleGrid& grid, const Tr
   std::size_t within = 0, all = 0;
   for (std::size_t c = 0; c < grid.cells.size(); ++c)
   {
-    const Vector3 p = grid.cell_centre(c);
+    const Vector3d p = grid.cell_centre(c);
     if (muscle.winding_number(p) <= 0.5)
       continue;
     ++all;

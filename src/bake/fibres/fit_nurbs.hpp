@@ -7,21 +7,21 @@
 namespace frontalis
 {
 
-/// NURBS volume of a muscle: a cubic surface around its mesh, closed across and, in a ring, along, fitted by least
-/// squares in which what sticks out counts most; the volume is spanned between the surface (w = 1) and what remains of
-/// it when it is shrunk inwards to the sheet midway between its two sides (w = 0).
+/// NURBS volume of a muscle. Its outer surface (w = 1) is cubic, closed across the fibres and, in a ring, along them,
+/// and fitted to the muscle's mesh by least squares in which samples outside it have the larger weight. From there the
+/// volume reaches inwards to the sheet midway between the two sides of the muscle (w = 0).
 NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinates, bool ring);
 
-/// Triangles of the volume's surface w = 1, closed by caps unless it is a ring.
+/// Closed mesh of the volume's outer surface, with caps at its ends unless it is a ring.
 TriangleMesh outer_surface(const NurbsVolume& volume);
 
-/// How well the outer surface fits a muscle.
 struct NurbsFit
 {
   double volume = 0;    ///< within the outer surface [m3]
-  double enclosed = 0;  ///< proportion of the muscle, by the centres of the grid's cells
-  double distance = 0;  ///< root mean square distance of the mesh from it [m]
+  double enclosed = 0;  ///< proportion of the muscle within it, by the centres of the grid's cells
+  double distance = 0;  ///< root mean square distance of the muscle's mesh from it [m]
 };
+/// How well the volume's outer surface fits the muscle.
 NurbsFit measure_fit(const NurbsVolume& volume, const MuscleGrid& grid, const TriangleTree& muscle);
 
 }  // namespace frontalis

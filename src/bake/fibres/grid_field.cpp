@@ -41,12 +41,12 @@ std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
 
 }  // namespace
 
-Eigen::Vector3d gradient(const MuscleGrid& grid, const std::array<double, 8>& corners)
+Vector3d gradient(const MuscleGrid& grid, const std::array<double, 8>& corners)
 {
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
-  for (std::size_t b = 0; b < 8; ++b)
-    for (std::size_t a = 0; a < 3; ++a)
-      g(static_cast<Eigen::Index>(a)) += ((b >> a & 1) != 0 ? 0.25 : -0.25) * corners[b] / grid.edge;
+  Vector3d g = Vector3d::Zero();
+  for (int b = 0; b < 8; ++b)
+    for (int a = 0; a < 3; ++a)
+      g[a] += ((b >> a & 1) != 0 ? 0.25 : -0.25) * corners[b] / grid.edge;
   return g;
 }
 
@@ -58,17 +58,17 @@ GridField::GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>&
     Stiffness stiffness = Stiffness::Zero();
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
-        stiffness += tensor(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) * grid.edge * unit[a][b];
+        stiffness += tensor(a, b) * grid.edge * unit[a][b];
     cells_.push_back(stiffness);
   }
   assemble();
 }
 
-GridField::GridField(const MuscleGrid& grid, const std::vector<Eigen::Vector3d>& directions, double rest) : grid_(grid)
+GridField::GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest) : grid_(grid)
 {
   const auto unit = unit_stiffness();
   const Stiffness isotropic = rest * grid.edge * (unit[0][0] + unit[1][1] + unit[2][2]);
-  for (const Eigen::Vector3d& direction : directions)
+  for (const Vector3d& direction : directions)
   {
     Eigen::Matrix<double, 8, 1> slope;
     for (int b = 0; b < 8; ++b)
@@ -81,7 +81,7 @@ GridField::GridField(const MuscleGrid& grid, const std::vector<Eigen::Vector3d>&
 
 void GridField::assemble()
 {
-  const auto count = static_cast<Eigen::Index>(grid_.nodes.size());
+  const auto count = grid_.nodes.size();
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(64 * cells_.size());
   mass_ = Eigen::VectorXd::Zero(count);
@@ -92,7 +92,7 @@ void GridField::assemble()
     {
       mass_(nodes[i]) += grid_.edge * grid_.edge * grid_.edge / 8;
       for (std::size_t j = 0; j < 8; ++j)
-        entries.emplace_back(nodes[i], nodes[j], cells_[c](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+        entries.emplace_back(nodes[i], nodes[j], cells_[c](i, j));
     }
   }
   matrix_.resize(count, count);
@@ -101,7 +101,7 @@ void GridField::assemble()
 
 Eigen::SparseMatrix<double> GridField::shifted() const
 {
-  // far below every mode but the constant one
+  // far below the eigenvalue of every mode but the constant one
   const double extent = std::cbrt(mass_.sum());
   Eigen::SparseMatrix<double> matrix = matrix_;
   matrix.diagonal() += 1e-7 / (extent * extent) * mass_;
@@ -120,7 +120,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
   {
     Eigen::MatrixXd& x = modes.fields;
     x.rowwise() -= (mass_.transpose() * x).eval() / mass_.sum();
-    // orthonormal, then the modes within what they span
+    // Rayleigh-Ritz: the best modes within what the columns span
     const Eigen::MatrixXd gram = x.transpose() * (mass_.asDiagonal() * x);
     const Eigen::MatrixXd energy = x.transpose() * (matrix_ * x);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(energy, gram);
@@ -130,7 +130,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
       break;
     before = modes.values(0);
     x = solver.solve(mass_.asDiagonal() * x).eval();
-    // columns of like size keep the Gram matrix regular
+    // columns of equal length keep the Gram matrix regular
     for (Eigen::Index c = 0; c < x.cols(); ++c)
       x.col(c).normalize();
   }
@@ -162,7 +162,7 @@ Eigen::VectorXd GridField::balance(const CornerField& field) const
     const Eigen::Matrix<double, 8, 1> force =
         cells_[c] * Eigen::Map<const Eigen::Matrix<double, 8, 1>>(field[c].data());
     for (std::size_t b = 0; b < 8; ++b)
-      load(grid_.cell_nodes[c][b]) -= force(static_cast<Eigen::Index>(b));
+      load(grid_.cell_nodes[c][b]) -= force(b);
   }
   const Cholesky solver(shifted());
   if (solver.info() != Eigen::Success)

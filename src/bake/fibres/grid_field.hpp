@@ -11,38 +11,40 @@
 namespace frontalis
 {
 
-/// A field by its values at each cell's corners, which may jump by whole turns from cell to cell.
+/// A field by its values at the corners of each cell. It may jump by whole numbers from cell to cell.
 using CornerField = std::vector<std::array<double, 8>>;
 
-/// At the middle of a cell [1/m].
-Eigen::Vector3d gradient(const MuscleGrid& grid, const std::array<double, 8>& corners);
+/// Gradient at the middle of a cell [1/m].
+Vector3d gradient(const MuscleGrid& grid, const std::array<double, 8>& corners);
 
-/// Scalar fields on a muscle's grid, by trilinear elements, that cost grad(f) . D grad(f) with a tensor D a cell.
+/// Scalar fields f on a muscle's grid, by trilinear elements, whose energy is the integral of grad(f) . D grad(f) with
+/// one tensor D per cell.
 class GridField
 {
 public:
   struct Modes
   {
     Eigen::VectorXd values;  ///< ascending [1/m2]
-    Eigen::MatrixXd fields;  ///< nodal, a column a mode; orthogonal to constants
+    Eigen::MatrixXd fields;  ///< nodal values, one column per mode; orthogonal to constants
   };
 
   GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>& tensors);
-  /// D = d d^T + `rest` for unit directions d; the former with one-point quadrature, which does not lock.
-  GridField(const MuscleGrid& grid, const std::vector<Eigen::Vector3d>& directions, double rest);
+  /// D = d d^T + `rest` for unit directions d, the first part by one-point quadrature, which does not lock.
+  GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest);
 
-  /// Fields that cost least for their mean square, without the constant one: subspace iteration from `start`, as many
-  /// as it has columns; the first ones are accurate.
+  /// The fields of least energy for their mean square, except the constant one, by subspace iteration from `start`: as
+  /// many as it has columns, of which the first ones are accurate.
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
-  /// The cheapest field with given values at some nodes.
+  /// The field of least energy with given values at some nodes.
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// What makes a field the cheapest when it is added.
+  /// What must be added to a field for its energy to be least.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:
   using Stiffness = Eigen::Matrix<double, 8, 8>;
 
   void assemble();
+  /// The matrix with a little of the mass matrix added, so that it is regular.
   Eigen::SparseMatrix<double> shifted() const;
 
   const MuscleGrid& grid_;

@@ -2,64 +2,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace frontalis
 {
 namespace
 {
 
-/// Dense array over the box of the grid, one cell wider on each side than the mesh.
+using Eigen::Vector3i;
+
+/// A number for each cell of a box of cells, -1 at first.
 class CellBox
 {
 public:
-  explicit CellBox(const std::array<std::int32_t, 3>& size)
-      : size_(size),
-        values_(
-            static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]),
-            -1)
+  explicit CellBox(const Vector3i& size) : size_(size), values_(std::size_t{ 1 } * size[0] * size[1] * size[2], -1) {}
+  bool holds(const Vector3i& c) const { return c.minCoeff() >= 0 && (size_ - c).minCoeff() > 0; }
+  std::int32_t& at(const Vector3i& c)
   {
+    return values_[c[0] + std::size_t{ 1 } * size_[0] * (c[1] + std::size_t{ 1 } * size_[1] * c[2])];
   }
-  bool holds(const std::array<std::int32_t, 3>& c) const
-  {
-    return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < size_[0] && c[1] < size_[1] && c[2] < size_[2];
-  }
-  std::int32_t& at(const std::array<std::int32_t, 3>& c) { return values_[index(c)]; }
-  std::size_t index(const std::array<std::int32_t, 3>& c) const
-  {
-    return static_cast<std::size_t>(c[0]) +
-           static_cast<std::size_t>(size_[0]) *
-               (static_cast<std::size_t>(c[1]) + static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(c[2]));
-  }
-  const std::array<std::int32_t, 3>& size() const { return size_; }
+  const Vector3i& size() const { return size_; }
 
 private:
-  std::array<std::int32_t, 3> size_;
+  Vector3i size_;
   std::vector<std::int32_t> values_;
 };
 
-constexpr std::array<std::array<std::int32_t, 3>, 6> faces{
-  { { -1, 0, 0 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 1, 0 }, { 0, 0, -1 }, { 0, 0, 1 } }
-};
-
-std::array<std::int32_t, 3> sum(const std::array<std::int32_t, 3>& a, const std::array<std::int32_t, 3>& b)
+/// The number of each cell of the grid at its place.
+CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
 {
-  return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
+  CellBox numbers(size);
+  for (std::size_t c = 0; c < grid.cells.size(); ++c)
+    numbers.at(grid.cells[c]) = static_cast<std::int32_t>(c);
+  return numbers;
 }
 
-/// Samples so dense that no cell-to-cell way through the surface misses them.
+/// The neighbour of a cell across its face 0 to 5.
+Vector3i neighbour(const Vector3i& cell, int face)
+{
+  return cell + (face % 2 == 0 ? -1 : 1) * Vector3i::Unit(face / 2);
+}
+
+/// Samples of the surface, so dense that the cells that have one are a closed hull.
 void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
 {
   for (const Triangle& t : mesh.triangles)
   {
-    const Vector3 &a = mesh.vertices[static_cast<std::size_t>(t[0])],
-                  &b = mesh.vertices[static_cast<std::size_t>(t[1])],
-                  &c = mesh.vertices[static_cast<std::size_t>(t[2])];
-    const Vector3 product = cross(b - a, c - a);
-    const double longest = std::max({ norm(b - a), norm(c - b), norm(a - c) });
+    const auto [a, b, c] = corners(mesh, t);
+    const Vector3d product = (b - a).cross(c - a);
+    const double longest = std::max({ (b - a).norm(), (c - b).norm(), (a - c).norm() });
     const int n = std::max(1, static_cast<int>(std::ceil(2 * longest / grid.edge)));
     MuscleGrid::Sample sample;
-    sample.normal = normalised(product);
-    sample.area = 0.5 * norm(product) / (n * n);
+    sample.normal = product.normalized();
+    sample.area = 0.5 * product.norm() / (n * n);
     for (int i = 0; i < n; ++i)
     {
       for (int j = 0; i + j < n; ++j)
@@ -75,51 +70,56 @@ void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
   }
 }
 
-/// 0 where a cell is outside: reached from the box's border without passing a cell of the surface (1).
+// Marks in a CellBox; cells that are enclosed keep the -1.
+constexpr std::int32_t outside = 0, on_surface = 1, visited = -2;
+
+/// Marks the cells that can be reached from the box's border without passing a cell of the surface.
 void flood_outside(CellBox& box)
 {
-  std::vector<std::array<std::int32_t, 3>> front{ { 0, 0, 0 } };
-  box.at(front.front()) = 0;
+  std::vector<Vector3i> front{ Vector3i::Zero() };
+  box.at(front.front()) = outside;
   while (!front.empty())
   {
-    const auto place = front.back();
+    const Vector3i place = front.back();
     front.pop_back();
-    for (const auto& step : faces)
+    for (int face = 0; face < 6; ++face)
     {
-      const auto next = sum(place, step);
-      if (box.holds(next) && box.at(next) == -1)
-      {
-        box.at(next) = 0;
-        front.push_back(next);
-      }
+      const Vector3i next = neighbour(place, face);
+      if (!box.holds(next) || box.at(next) != -1)
+        continue;
+      box.at(next) = outside;
+      front.push_back(next);
     }
   }
 }
 
-/// Cells (value not 0) of the largest part connected through faces, edges or corners. Values become -2.
-std::vector<std::array<std::int32_t, 3>> largest_part(CellBox& box, double& kept)
+/// The largest part of the cells that are not outside, connected through faces, edges or corners. `kept` receives its
+/// proportion of all.
+std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
-  std::vector<std::array<std::int32_t, 3>> best;
+  std::vector<Vector3i> best;
   std::size_t all = 0;
-  std::array<std::int32_t, 3> c{};
-  for (c[2] = 0; c[2] < box.size()[2]; ++c[2])
-    for (c[1] = 0; c[1] < box.size()[1]; ++c[1])
-      for (c[0] = 0; c[0] < box.size()[0]; ++c[0])
+  const auto take = [&box](const Vector3i& c)
+  {
+    const bool taken = box.at(c) != outside && box.at(c) != visited;
+    if (taken)
+      box.at(c) = visited;
+    return taken;
+  };
+  for (int k = 0; k < box.size()[2]; ++k)
+    for (int j = 0; j < box.size()[1]; ++j)
+      for (int i = 0; i < box.size()[0]; ++i)
       {
-        if (box.at(c) == 0 || box.at(c) == -2)
+        if (!take({ i, j, k }))
           continue;
-        std::vector<std::array<std::int32_t, 3>> part{ c };
-        box.at(c) = -2;
+        std::vector<Vector3i> part{ { i, j, k } };
         for (std::size_t front = 0; front < part.size(); ++front)
         {
           for (int s = 0; s < 27; ++s)
           {
-            const auto next = sum(part[front], { s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1 });
-            if (box.holds(next) && box.at(next) != 0 && box.at(next) != -2)
-            {
-              box.at(next) = -2;
+            const Vector3i next = part[front] + Vector3i(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
+            if (box.holds(next) && take(next))
               part.push_back(next);
-            }
           }
         }
         all += part.size();
@@ -128,51 +128,47 @@ std::vector<std::array<std::int32_t, 3>> largest_part(CellBox& box, double& kept
       }
   kept = static_cast<double>(best.size()) / static_cast<double>(all);
   std::sort(best.begin(), best.end(),
-            [](const auto& a, const auto& b)
-            { return a[2] != b[2] ? a[2] < b[2] : (a[1] != b[1] ? a[1] < b[1] : a[0] < b[0]); });
+            [](const Vector3i& a, const Vector3i& b)
+            { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); });
   return best;
 }
 
-void number_nodes(MuscleGrid& grid, const std::array<std::int32_t, 3>& size)
+void number_nodes(MuscleGrid& grid, const Vector3i& size)
 {
-  CellBox numbers({ size[0] + 1, size[1] + 1, size[2] + 1 });
-  for (const auto& cell : grid.cells)
+  CellBox numbers(size + Vector3i::Ones());
+  for (const Vector3i& cell : grid.cells)
   {
-    std::array<std::int32_t, 8> corners{};
-    for (std::int32_t b = 0; b < 8; ++b)
+    std::array<std::int32_t, 8> nodes{};
+    for (int b = 0; b < 8; ++b)
     {
-      const auto place = sum(cell, { b & 1, b >> 1 & 1, b >> 2 });
+      const Vector3i place = cell + Vector3i(b & 1, b >> 1 & 1, b >> 2);
       std::int32_t& number = numbers.at(place);
       if (number < 0)
       {
         number = static_cast<std::int32_t>(grid.nodes.size());
         grid.nodes.push_back(place);
       }
-      corners[static_cast<std::size_t>(b)] = number;
+      nodes[b] = number;
     }
-    grid.cell_nodes.push_back(corners);
+    grid.cell_nodes.push_back(nodes);
   }
 }
 
 }  // namespace
 
-Vector3 MuscleGrid::cell_centre(std::size_t cell) const
+Box MuscleGrid::box() const
 {
-  const auto& c = cells[cell];
-  return lower + edge * Vector3{ c[0] + 0.5, c[1] + 0.5, c[2] + 0.5 };
+  Box box;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    box.extend(node_position(n));
+  return box;
 }
 
-Vector3 MuscleGrid::node_position(std::size_t node) const
-{
-  const auto& n = nodes[node];
-  return lower + edge * Vector3{ 1.0 * n[0], 1.0 * n[1], 1.0 * n[2] };
-}
-
-std::array<double, 8> MuscleGrid::weights(std::size_t cell, const Vector3& p) const
+std::array<double, 8> MuscleGrid::weights(std::size_t cell, const Vector3d& p) const
 {
   std::array<double, 8> result{};
   result.fill(1);
-  for (std::size_t a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a)
   {
     const double t = (p[a] - lower[a]) / edge - cells[cell][a];
     for (std::size_t b = 0; b < 8; ++b)
@@ -184,78 +180,58 @@ std::array<double, 8> MuscleGrid::weights(std::size_t cell, const Vector3& p) co
 MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coarser)
 {
   MuscleGrid grid;
-  double area = 0;
-  for (const Triangle& t : mesh.triangles)
-  {
-    const Vector3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    area += 0.5 * norm(cross(mesh.vertices[static_cast<std::size_t>(t[1])] - a,
-                             mesh.vertices[static_cast<std::size_t>(t[2])] - a));
-  }
   const Box bounds = bounding_box(mesh);
-  const double diagonal = norm(bounds.upper - bounds.lower);
-  // as many cells by volume, or by area where the muscle is thinner than they are
-  const double size =
-      std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * area / (1.5 * wanted)));
-  grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, size));
+  const double diagonal = bounds.diagonal().norm();
+  // the wanted number of cells by the muscle's volume, or by its area where it is thinner than a cell
+  const double wanted_edge =
+      std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * surface_area(mesh) / (1.5 * wanted)));
+  grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, wanted_edge));
 
-  std::array<std::int32_t, 3> box_size{};
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    // surfaces along the axes pass through the middle of cells
-    grid.lower[a] = bounds.lower[a] - 1.5 * grid.edge;
-    box_size[a] = static_cast<std::int32_t>(std::ceil((bounds.upper[a] - grid.lower[a]) / grid.edge)) + 2;
-  }
+  // the margin of one and a half cells puts surfaces along the axes into the middle of cells
+  grid.lower = bounds.min() - Vector3d::Constant(1.5 * grid.edge);
+  const Vector3i size =
+      ((bounds.max() - grid.lower) / grid.edge).array().ceil().cast<int>().matrix() + Vector3i::Constant(2);
   sample_surface(mesh, grid);
-  const auto place = [&grid](const Vector3& p)
-  {
-    std::array<std::int32_t, 3> cell{};
-    for (std::size_t a = 0; a < 3; ++a)
-      cell[a] = static_cast<std::int32_t>((p[a] - grid.lower[a]) / grid.edge);
-    return cell;
-  };
-  CellBox box(box_size);
+  const auto place = [&grid](const Vector3d& p) -> Vector3i { return ((p - grid.lower) / grid.edge).cast<int>(); };
+  CellBox box(size);
   for (const MuscleGrid::Sample& sample : grid.samples)
-    box.at(place(sample.point)) = 1;
+    box.at(place(sample.point)) = on_surface;
   flood_outside(box);
   grid.cells = largest_part(box, grid.kept);
-  CellBox numbers(box_size);
-  for (std::size_t c = 0; c < grid.cells.size(); ++c)
-    numbers.at(grid.cells[c]) = static_cast<std::int32_t>(c);
+  CellBox numbers = cell_numbers(grid, size);
   for (MuscleGrid::Sample& sample : grid.samples)
     sample.cell = numbers.at(place(sample.point));
-  number_nodes(grid, box_size);
+  number_nodes(grid, size);
   return grid;
 }
 
-void spread(const MuscleGrid& grid, double reach, std::vector<SymmetricTensor>& tensors)
+void smooth(const MuscleGrid& grid, double reach, std::vector<Eigen::Matrix3d>& tensors)
 {
-  std::array<std::int32_t, 3> size{};
-  for (const auto& cell : grid.cells)
-    for (std::size_t a = 0; a < 3; ++a)
-      size[a] = std::max(size[a], cell[a] + 1);
-  CellBox numbers(size);
+  Vector3i size = Vector3i::Zero();
+  for (const Vector3i& cell : grid.cells)
+    size = size.cwiseMax(cell + Vector3i::Ones());
+  CellBox numbers = cell_numbers(grid, size);
+  std::vector<std::vector<std::int32_t>> neighbours(grid.cells.size());
   for (std::size_t c = 0; c < grid.cells.size(); ++c)
-    numbers.at(grid.cells[c]) = static_cast<std::int32_t>(c);
-  std::vector<std::array<std::int32_t, 6>> neighbours(grid.cells.size());
-  for (std::size_t c = 0; c < grid.cells.size(); ++c)
-    for (std::size_t f = 0; f < 6; ++f)
+  {
+    for (int face = 0; face < 6; ++face)
     {
-      const auto next = sum(grid.cells[c], faces[f]);
-      neighbours[c][f] = numbers.holds(next) ? numbers.at(next) : -1;
+      const Vector3i next = neighbour(grid.cells[c], face);
+      if (numbers.holds(next) && numbers.at(next) >= 0)
+        neighbours[c].push_back(numbers.at(next));
     }
-  // averaging over neighbours adds a variance of 2/7 edge^2 an axis each turn
-  const double turns = 3.5 * (reach / grid.edge) * (reach / grid.edge);
-  std::vector<SymmetricTensor> next(tensors.size());
-  for (int turn = 0; turn < std::min(200.0, turns); ++turn)
+  }
+  // each average over a cell and its six neighbours adds a variance of 2/7 edge^2 along each axis
+  const double averages = std::min(200.0, 3.5 * (reach / grid.edge) * (reach / grid.edge));
+  std::vector<Eigen::Matrix3d> next(tensors.size());
+  for (int average = 0; average < averages; ++average)
   {
     for (std::size_t c = 0; c < tensors.size(); ++c)
     {
       next[c] = tensors[c];
       for (const std::int32_t n : neighbours[c])
-        for (std::size_t k = 0; n >= 0 && k < 6; ++k)
-          next[c][k] += tensors[static_cast<std::size_t>(n)][k];
-      for (double& value : next[c])
-        value /= 7;
+        next[c] += tensors[n];
+      next[c] /= 7;
     }
     std::swap(tensors, next);
   }

@@ -15,9 +15,9 @@ namespace frontalis
 class SplineAxis
 {
 public:
-  static constexpr int most = 4;  ///< basis functions that are not zero at a parameter: cubic at most
+  static constexpr int most = 4;  ///< basis functions that are not zero at a parameter, for degree 3
 
-  /// Degree 1..3; at least degree + 1 control points.
+  /// Degree 1 to 3; at least degree + 1 control points.
   SplineAxis(int degree, int points, bool closed);
 
   struct Basis
@@ -30,7 +30,7 @@ public:
   int degree() const { return degree_; }
   int points() const { return points_; }
   bool closed() const { return closed_; }
-  /// The parameter within [0, 1]: wrapped where the axis is closed, else clamped.
+  /// The parameter in [0, 1]: wrapped around if the axis is closed, otherwise clamped.
   double within(double parameter) const;
 
 private:
@@ -39,32 +39,33 @@ private:
   Eigen::SplineTraits<Eigen::Spline<double, 3, Eigen::Dynamic>>::KnotVectorType knots_;
 };
 
-/// Volume (u, v, w) -> position over [0, 1]^3: a rational tensor product, whose fibres run along u.
+/// Rational tensor-product volume that maps (u, v, w) in [0, 1]^3 to positions. Fibres run along u.
 class NurbsVolume
 {
 public:
   struct Point
   {
-    Vector3 position;
-    std::array<Vector3, 3> derivative;
+    Vector3d position;
+    std::array<Vector3d, 3> derivative;
   };
 
-  /// Control points in the order of u, then v, then w (w fastest); weights as many, or none for all equal.
-  NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vector<Vector3>& points,
+  /// Control points with the index along w fastest and that along u slowest. Weights: one per point, or none for equal
+  /// ones.
+  NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vector<Vector3d>& points,
               const std::vector<double>& weights = {});
 
   const std::array<SplineAxis, 3>& axes() const { return axes_; }
-  Point at(const Vector3& parameter) const;
-  /// Parameter of the closest point of the volume, for a point inside it the one that is mapped there: by
-  /// Levenberg-Marquardt from the nearest of a table of samples.
-  Vector3 closest(const Vector3& p) const;
+  Point at(const Vector3d& parameter) const;
+  /// Parameters of the volume's point closest to p, found by Levenberg-Marquardt iteration from the nearest of a table
+  /// of samples.
+  Vector3d closest(const Vector3d& p) const;
   /// Unit tangent of the fibre through the closest point to p.
-  Vector3 fibre(const Vector3& p) const;
+  Vector3d fibre(const Vector3d& p) const;
 
 private:
   std::array<SplineAxis, 3> axes_;
-  std::vector<std::array<double, 4>> points_;  ///< weight times position, weight
-  std::vector<Vector3> sample_parameters_, samples_;
+  std::vector<Eigen::Vector4d> points_;  ///< weight times position, weight
+  std::vector<Vector3d> sample_parameters_, samples_;
 };
 
 }  // namespace frontalis

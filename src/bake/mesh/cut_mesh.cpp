@@ -9,24 +9,24 @@ namespace frontalis
 namespace
 {
 
-// keeps what lies at coordinates of `sign` times at most `sign` times `limit` along an axis
+/// Keeps the part on one side of a plane: below `limit` along the axis for sign +1, above it for -1.
 TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
 {
-  const auto height = [&](std::int32_t v) { return sign * (limit - mesh.vertices[static_cast<std::size_t>(v)][axis]); };
+  const auto height = [&](std::int32_t v) { return sign * (limit - mesh.vertices[v][axis]); };
   std::map<std::array<std::int32_t, 2>, std::int32_t> crossings;
   const auto crossing = [&](std::int32_t a, std::int32_t b)
   {
     const auto found = crossings.insert({ { std::min(a, b), std::max(a, b) }, 0 });
     if (found.second)
     {
-      // from the lower vertex number on, so that both triangles of an edge agree to the bit
+      // from the lower vertex number to the higher, so that both triangles of an edge get the same point to the bit
       const auto [p, q] = std::minmax(a, b);
       const double along = height(p) / (height(p) - height(q));
-      const Vector3 from = mesh.vertices[static_cast<std::size_t>(p)], to = mesh.vertices[static_cast<std::size_t>(q)];
-      Vector3 point = from + along * (to - from);
+      const Vector3d from = vertex(mesh, p), to = vertex(mesh, q);
+      Vector3d point = from + along * (to - from);
       point[axis] = limit;
       found.first->second = static_cast<std::int32_t>(mesh.vertices.size());
-      mesh.vertices.push_back(point);
+      mesh.vertices.push_back(to_array(point));
     }
     return found.first->second;
   };

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// The part of a mesh inside a region: triangles that reach across its sides are cut there, neighbours sharing the new
-/// vertices. Vertices that stay keep their order, new ones follow.
+/// The part of a mesh inside a region. Triangles that reach across a side of it are cut there, and neighbours share the
+/// new vertices, which follow the kept ones.
 TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region);
 
 }  // namespace frontalis

@@ -6,6 +6,8 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 namespace frontalis
@@ -52,12 +54,12 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
-  const std::string no_triangles = ": has no triangles; a surface is wanted, not points or lines";
+  const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
   if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
     throw Error("mesh file " + file + no_triangles);
   if (scene == nullptr)
     throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
-                "); a file with triangles or quads is wanted, OBJ, STL or PLY say");
+                "); it must hold triangles or quads, for example as OBJ, STL or PLY");
   TriangleMesh mesh;
   if (scene->mRootNode != nullptr)
     append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
@@ -65,9 +67,9 @@ TriangleMesh import_mesh(const std::string& file, double unit)
     throw Error("mesh file " + file + no_triangles);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
   {
-    if (!is_finite(mesh.vertices[v]))
-      throw Error("mesh file " + file + ": vertex " + std::to_string(v) +
-                  " is not a number or infinite; every coordinate must be finite");
+    if (!to_vector(mesh.vertices[v]).allFinite())
+      throw Error(
+          fmt::format("mesh file {}: vertex {} is not a number or infinite; every coordinate must be finite", file, v));
   }
   return mesh;
 }

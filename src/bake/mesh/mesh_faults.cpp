@@ -25,11 +25,11 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using HalfEdgeMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Face = HalfEdgeMesh::Face_index;
 
-constexpr double sliver_height = 0.02;
+constexpr double sliver_height = 0.02;  // of the longest edge
 
-Vector3 vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
+Vector3d vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
 
-void add(MeshFaults::Kind& kind, const Vector3& place)
+void add(MeshFaults::Kind& kind, const Vector3d& place)
 {
   if (kind.count++ == 0)
     kind.place = place;
@@ -48,12 +48,10 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, std::vector<std::pair<std:
   points.reserve(mesh.vertices.size());
   for (const Vector3& v : mesh.vertices)
     points.emplace_back(v[0], v[1], v[2]);
-  std::vector<std::array<std::size_t, 3>> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles)
-    triangles.push_back(
-        { static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2]) });
-  // where bodies touch, each gets vertices of its own
+  std::vector<std::array<std::size_t, 3>> triangles(mesh.triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), triangles[t].begin());
+  // gives bodies that touch vertices of their own, as the half-edge structure needs
   EdgeCollector collector;
   collector.edges = &shared;
   processing::orient_polygon_soup(points, triangles, CGAL::parameters::visitor(collector));
@@ -62,9 +60,9 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, std::vector<std::pair<std:
   return out;
 }
 
-std::array<Vector3, 3> corners(const HalfEdgeMesh& mesh, Face face)
+std::array<Vector3d, 3> corners_of(const HalfEdgeMesh& mesh, Face face)
 {
-  std::array<Vector3, 3> places{};
+  std::array<Vector3d, 3> places;
   std::size_t c = 0;
   for (const auto v : CGAL::vertices_around_face(mesh.halfedge(face), mesh))
     places[c++] = vector_of(mesh.point(v));
@@ -74,27 +72,29 @@ std::array<Vector3, 3> corners(const HalfEdgeMesh& mesh, Face face)
 void find_edge_faults(const TriangleMesh& mesh, std::vector<std::pair<std::size_t, std::size_t>> shared,
                       MeshFaults& faults)
 {
-  // each edge is told once a triangle
+  // CGAL names an edge once per triangle
   for (auto& edge : shared)
     edge = { std::min(edge.first, edge.second), std::max(edge.first, edge.second) };
   std::sort(shared.begin(), shared.end());
   shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
   std::set<std::pair<std::size_t, std::size_t>> unbalanced;
   for (const auto& edge : unbalanced_edges(mesh))
-    unbalanced.emplace(std::min(edge[0], edge[1]), std::max(edge[0], edge[1]));
+    unbalanced.insert(std::minmax(edge[0], edge[1]));
   for (const auto& edge : shared)
-    add(unbalanced.count(edge) != 0 ? faults.fins : faults.touching,
-        0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]));
+  {
+    const auto a = static_cast<std::int32_t>(edge.first), b = static_cast<std::int32_t>(edge.second);
+    add(unbalanced.count(edge) != 0 ? faults.fins : faults.touching, 0.5 * (vertex(mesh, a) + vertex(mesh, b)));
+  }
 }
 
 void find_thin_triangles(const HalfEdgeMesh& mesh, MeshFaults& faults)
 {
   for (const Face face : mesh.faces())
   {
-    const auto [a, b, c] = corners(mesh, face);
-    const double longest = std::max({ norm(b - a), norm(c - b), norm(a - c) });
-    const double height = norm(cross(b - a, c - a)) / longest;
-    const Vector3 middle = (1.0 / 3) * (a + b + c);
+    const auto [a, b, c] = corners_of(mesh, face);
+    const double longest = std::max({ (b - a).norm(), (c - b).norm(), (a - c).norm() });
+    const double height = (b - a).cross(c - a).norm() / longest;
+    const Vector3d middle = (1.0 / 3) * (a + b + c);
     if (CGAL::collinear(Kernel::Point_3(a[0], a[1], a[2]), Kernel::Point_3(b[0], b[1], b[2]),
                         Kernel::Point_3(c[0], c[1], c[2])))
       add(faults.flat, middle);
@@ -119,7 +119,7 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   if (pairs.empty())
     return;
 
-  // groups of crossing triangles, by the pairs and by neighbourhood
+  // groups of crossing triangles, connected where they cross or share an edge: a union-find structure
   std::vector<std::size_t> group(mesh.number_of_faces(), 0);
   std::iota(group.begin(), group.end(), std::size_t{ 0 });
   std::vector<bool> crosses(group.size(), false);
@@ -133,8 +133,8 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   {
     crosses[a] = crosses[b] = true;
     group[leader(a)] = leader(b);
-    faults.crossing_piece[static_cast<std::size_t>(faults.piece[a])] = true;
-    faults.crossing_piece[static_cast<std::size_t>(faults.piece[b])] = true;
+    faults.crossing_piece[faults.piece[a]] = true;
+    faults.crossing_piece[faults.piece[b]] = true;
   }
   for (const Face face : mesh.faces())
   {
@@ -150,17 +150,15 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   {
     if (!crosses[face])
       continue;
-    for (const Vector3& corner : corners(mesh, face))
-      boxes[leader(face)].include(corner);
+    for (const Vector3d& corner : corners_of(mesh, face))
+      boxes[leader(face)].extend(corner);
   }
   for (const auto& [first, box] : boxes)
   {
-    const double extent = norm(box.upper - box.lower);
-    if (extent > faults.crossing_extent)
-    {
-      faults.crossing_extent = extent;
-      faults.crossings.place = box.centre();
-    }
+    if (box.diagonal().norm() <= faults.crossing_extent)
+      continue;
+    faults.crossing_extent = box.diagonal().norm();
+    faults.crossings.place = box.center();
   }
 }
 
@@ -174,14 +172,14 @@ std::vector<MeshFaults::Hole> holes_of(const HalfEdgeMesh& mesh)
     MeshFaults::Hole hole;
     for (const auto edge : CGAL::halfedges_around_face(cycle, mesh))
     {
-      const Vector3 p = vector_of(mesh.point(mesh.source(edge))), q = vector_of(mesh.point(mesh.target(edge)));
-      const double length = norm(q - p);
+      const Vector3d p = vector_of(mesh.point(mesh.source(edge))), q = vector_of(mesh.point(mesh.target(edge)));
+      const double length = (q - p).norm();
       hole.length += length;
-      hole.centre = hole.centre + (0.5 * length) * (p + q);
+      hole.centre += (0.5 * length) * (p + q);
     }
     if (hole.length <= 0)
       continue;
-    hole.centre = (1 / hole.length) * hole.centre;
+    hole.centre /= hole.length;
     holes.push_back(hole);
   }
   std::stable_sort(holes.begin(), holes.end(),
@@ -200,7 +198,7 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh)
   find_thin_triangles(half_edges, faults);
   find_pieces(half_edges, faults);
   find_crossings(half_edges, faults);
-  // touching bodies that were taken apart leave slits, which are no holes
+  // touching bodies that were taken apart have rims there, which are no holes
   if (!unbalanced_edges(mesh).empty())
     faults.holes = holes_of(half_edges);
   return faults;

@@ -16,23 +16,23 @@ namespace
 
 using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
-void remove_needless_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
+void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
-  // triangles of the same corners, by sense: those of one sense cancel those of the other, one of the rest stays
+  // Of triangles with the same corners, those of one orientation cancel those of the other; one of the rest stays.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {
     Triangle corners = mesh.triangles[t];
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    const std::size_t sense = corners[1] < corners[2] ? 0 : 1;
+    const std::size_t orientation = corners[1] < corners[2] ? 0 : 1;
     std::sort(corners.begin(), corners.end());
-    alike[corners][sense].push_back(t);
+    alike[corners][orientation].push_back(t);
   }
   std::vector<bool> keep(mesh.triangles.size(), true);
-  for (const auto& [corners, by_sense] : alike)
+  for (const auto& [corners, by_orientation] : alike)
   {
-    const std::size_t pairs = std::min(by_sense[0].size(), by_sense[1].size());
-    for (const auto& triangles : by_sense)
+    const std::size_t pairs = std::min(by_orientation[0].size(), by_orientation[1].size());
+    for (const auto& triangles : by_orientation)
     {
       for (std::size_t i = 0; i < triangles.size(); ++i)
       {
@@ -52,7 +52,7 @@ std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
   std::array<Point, 3> p;
   for (std::size_t c = 0; c < 3; ++c)
   {
-    const Vector3& v = mesh.vertices[static_cast<std::size_t>(t[c])];
+    const Vector3& v = mesh.vertices[t[c]];
     p[c] = Point(v[0], v[1], v[2]);
   }
   if (!CGAL::collinear(p[0], p[1], p[2]))
@@ -65,8 +65,8 @@ std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
   return 2;
 }
 
-/// A triangle a, b, c without area, b between a and c, goes: the triangle d on the other side of its edge a-c becomes
-/// a, b, d and b, c, d, which are the same set of points.
+/// Removes each triangle a, b, c without area, where b lies between a and c: the triangle a, c, d on the other side of
+/// its edge a-c becomes a, b, d and b, c, d, which cover the same points.
 void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
   std::vector<std::size_t> flat;
@@ -86,14 +86,14 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     enter(t);
   std::vector<bool> keep(mesh.triangles.size(), true);
-  // a neighbour without area hands the edge on, so the list may grow
-  const std::size_t most = 10 * flat.size() + 100;
-  for (std::size_t f = 0; f < flat.size() && f < most; ++f)
+  // a neighbour that has no area itself becomes two such triangles, so that the list grows; the limit ends it for sure
+  const std::size_t limit = 10 * flat.size() + 100;
+  for (std::size_t f = 0; f < flat.size() && f < limit; ++f)
   {
     const Triangle t = mesh.triangles[flat[f]];
     const std::size_t middle = middle_corner(mesh, t);
     const std::int32_t b = t[middle], c = t[(middle + 1) % 3], a = t[(middle + 2) % 3];
-    // the triangle runs c -> a, its neighbour a -> c
+    // the triangle runs along the edge from c to a, its neighbour from a to c
     std::vector<std::size_t>& others = at_edge[{ a, c }];
     others.erase(std::remove_if(others.begin(), others.end(),
                                 [&](std::size_t other) { return !keep[other] || other == flat[f]; }),
@@ -108,13 +108,9 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
     std::int32_t d = -1;
     for (const std::int32_t v : mesh.triangles[other])
       d = v != a && v != c ? v : d;
-    if (d == b)
-    {
-      // back to back: both go
-      keep[other] = false;
-      continue;
-    }
     keep[other] = false;
+    if (d == b)
+      continue;  // the two lie back to back
     for (const Triangle& part : { Triangle{ a, b, d }, Triangle{ b, c, d } })
     {
       mesh.triangles.push_back(part);
@@ -134,35 +130,29 @@ MeshRepairs repair_mesh(TriangleMesh& mesh)
   MeshRepairs repairs;
   repairs.collapsed = join_vertices(mesh);
   repairs.turned = make_orientation_consistent(mesh);
-  remove_needless_triangles(mesh, repairs);
+  remove_repeated_triangles(mesh, repairs);
   remove_flat_triangles(mesh, repairs);
   return repairs;
 }
 
 std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::size_t& nested)
 {
-  // the largest triangle of each piece asks
-  std::vector<std::size_t> largest;
-  std::vector<double> area;
-  const auto corner = [&](std::size_t t, std::size_t c)
-  { return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][c])]; };
-  const auto normal = [&](std::size_t t) { return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)); };
+  // the winding number is taken in front of the largest triangle of each piece
+  struct Largest
+  {
+    Vector3d middle{ 0, 0, 0 }, normal{ 0, 0, 0 };  // the normal is twice as long as the triangle has area
+  };
+  std::vector<Largest> pieces(1 + *std::max_element(piece.begin(), piece.end()));
   for (std::size_t t = 0; t < piece.size(); ++t)
   {
-    const auto p = static_cast<std::size_t>(piece[t]);
-    if (p >= largest.size())
-    {
-      largest.resize(p + 1, 0);
-      area.resize(p + 1, -1);
-    }
-    if (norm(normal(t)) > area[p])
-    {
-      area[p] = norm(normal(t));
-      largest[p] = t;
-    }
+    const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
+    const Vector3d normal = (b - a).cross(c - a);
+    Largest& largest = pieces[piece[t]];
+    if (normal.norm() > largest.normal.norm())
+      largest = { (1.0 / 3) * (a + b + c), normal };
   }
   nested = 0;
-  if (largest.size() < 2)
+  if (pieces.size() < 2)
   {
     const bool inside_out = signed_volume(mesh) < 0;
     if (inside_out)
@@ -170,21 +160,20 @@ std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::in
     return inside_out ? 1 : 0;
   }
   const TriangleTree tree(mesh);
-  std::vector<bool> turn(largest.size(), false);
-  for (std::size_t p = 0; p < largest.size(); ++p)
+  std::vector<bool> turn(pieces.size(), false);
+  for (std::size_t p = 0; p < pieces.size(); ++p)
   {
-    const std::size_t t = largest[p];
-    const Vector3 middle = (1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2));
-    const double beyond = tree.winding_number(middle + 1e-3 * std::sqrt(area[p]) * normalised(normal(t)));
-    turn[p] = beyond < -0.5;
-    nested += beyond > 0.5 ? 1 : 0;
+    const auto& [middle, normal] = pieces[p];
+    const double outside = tree.winding_number(middle + 1e-3 * std::sqrt(normal.norm()) * normal.normalized());
+    turn[p] = outside < -0.5;
+    nested += outside > 0.5 ? 1 : 0;
   }
   for (std::size_t t = 0; t < piece.size(); ++t)
   {
-    if (turn[static_cast<std::size_t>(piece[t])])
+    if (turn[piece[t]])
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   }
-  return static_cast<std::size_t>(std::count(turn.begin(), turn.end(), true));
+  return std::count(turn.begin(), turn.end(), true);
 }
 
 }  // namespace frontalis

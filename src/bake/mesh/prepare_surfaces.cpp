@@ -1,7 +1,8 @@
 #include "frontalis/error.hpp"
 #include "bake/mesh/load_surface.hpp"
+#include "bake/messages.hpp"
 #include "bake/parallel.hpp"
-#include "bake/voxels/spread_points.hpp"
+#include "bake/mesh/spread_points.hpp"
 #include "bake/mesh/surface.hpp"
 
 #include <cmath>
@@ -9,31 +10,28 @@
 namespace frontalis
 {
 
-std::vector<std::unique_ptr<PreparedSurface>> prepare_surfaces(const Scene& scene, BakeStages& stages)
+PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
 {
-  std::vector<std::unique_ptr<PreparedSurface>> prepared(scene.surfaces.size());
+  PreparedSurfaces prepared(scene.surfaces.size());
   std::vector<LoadedSurface> loaded(scene.surfaces.size());
-  parallel_for(
-      scene.surfaces.size(),
-      [&](std::size_t s)
-      {
-        const Surface& surface = scene.surfaces[s];
-        try
-        {
-          loaded[s] = load_surface(surface, scene.unit);
-          prepared[s] = std::make_unique<PreparedSurface>(surface.name, std::move(loaded[s].mesh), surface.line);
-        }
-        catch (const Error& error)
-        {
-          throw Error(scene.file + ":" + std::to_string(surface.line) + ": surface '" + surface.name +
-                      "': " + error.what());
-        }
-      },
-      &stages);
+  parallel_for(monitor, scene.surfaces.size(), 1,
+               [&](std::size_t s)
+               {
+                 const Surface& surface = scene.surfaces[s];
+                 try
+                 {
+                   loaded[s] = load_surface(surface, scene.unit);
+                 }
+                 catch (const Error& error)
+                 {
+                   throw Error(place_in_scene(scene, "surface", surface) + ": " + error.what());
+                 }
+                 prepared[s] = std::make_unique<PreparedSurface>(surface.name, std::move(loaded[s].mesh), surface.line);
+               });
   for (const LoadedSurface& surface : loaded)
   {
     for (const std::string& finding : surface.findings)
-      stages.found(finding);
+      monitor.found(finding);
   }
   return prepared;
 }
@@ -42,54 +40,49 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts)
 {
   Box box;
   for (const PreparedSurface* part : parts)
-    box.include(part->box());
+    box.extend(part->box());
 
   // winding numbers of each part at points spread over the box
   constexpr int points = 400;
   std::vector<std::vector<double>> winding(parts.size(), std::vector<double>(points));
   for (int i = 0; i < points; ++i)
   {
-    const Vector3 p = spread_point(box, i);
+    const Vector3d p = spread_point(box, i);
     for (std::size_t s = 0; s < parts.size(); ++s)
-      winding[s][static_cast<std::size_t>(i)] = parts[s]->tree().winding_number(p);
+      winding[s][i] = parts[s]->tree().winding_number(p);
   }
 
-  // of all ways to turn the parts, the one whose sum is nearest to whole numbers; the first part decides the overall
-  // sense
-  const std::size_t ways = parts.size() > 12 ? 1 : std::size_t{ 1 } << (parts.size() - 1);
+  // The orientation of a part is not known from itself. Of all combinations take the one whose sums of winding numbers
+  // are nearest to whole numbers; the first part is then flipped, with all others, where these sums are negative.
+  constexpr std::size_t most_combined_parts = 12;
+  const std::size_t combinations = parts.size() > most_combined_parts ? 1 : std::size_t{ 1 } << (parts.size() - 1);
+  const auto is_flipped = [](std::size_t combination, std::size_t part)
+  { return part > 0 && (combination >> (part - 1) & 1) != 0; };
   std::size_t best = 0;
   double least = 1e300;
-  double sense = 1;
-  for (std::size_t way = 0; way < ways; ++way)
+  bool negative = false;
+  for (std::size_t combination = 0; combination < combinations; ++combination)
   {
-    double fault = 0, sum = 0;
+    double error = 0, sum = 0;
     for (std::size_t i = 0; i < points; ++i)
     {
-      double w = winding[0][i];
-      for (std::size_t s = 1; s < parts.size(); ++s)
-        w += (way >> (s - 1) & 1) != 0 ? -winding[s][i] : winding[s][i];
-      fault += (w - std::round(w)) * (w - std::round(w));
+      double w = 0;
+      for (std::size_t s = 0; s < parts.size(); ++s)
+        w += is_flipped(combination, s) ? -winding[s][i] : winding[s][i];
+      error += (w - std::round(w)) * (w - std::round(w));
       sum += w;
     }
-    if (fault < least - 1e-9)
+    if (error < least - 1e-9)
     {
-      least = fault;
-      best = way;
-      sense = sum < 0 ? -1 : 1;
+      least = error;
+      best = combination;
+      negative = sum < 0;
     }
   }
 
   TriangleMesh mesh;
   for (std::size_t s = 0; s < parts.size(); ++s)
-  {
-    const bool turned = (s > 0 && (best >> (s - 1) & 1) != 0) != (sense < 0);
-    const auto base = static_cast<std::int32_t>(mesh.vertices.size());
-    const TriangleMesh& part = parts[s]->mesh();
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Triangle& t : part.triangles)
-      mesh.triangles.push_back(turned ? Triangle{ base + t[0], base + t[2], base + t[1] }
-                                      : Triangle{ base + t[0], base + t[1], base + t[2] });
-  }
+    append(mesh, parts[s]->mesh(), is_flipped(best, s) != negative);
   join_vertices(mesh);
   return mesh;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/bake_stages.hpp"
+#include "bake/bake_monitor.hpp"
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <memory>
@@ -10,7 +10,8 @@
 namespace frontalis
 {
 
-/// A surface of the scene, ready for questions: joined, oriented, in scene coordinates [m].
+/// A surface of the scene with what its points, distances and winding numbers are computed from: vertices joined,
+/// triangles oriented, in scene coordinates [m].
 class PreparedSurface
 {
 public:
@@ -23,18 +24,18 @@ public:
   int line() const { return line_; }
   bool closed() const { return rim_.empty(); }
 
-  /// Bound on how much the winding number changes within `radius` of p without crossing the surface: the gradient of an
-  /// open surface's solid angle depends on its rim alone (Biot-Savart). 0 for a closed surface.
-  double winding_variation(const Vector3& p, double radius) const;
+  /// Upper bound on how much the winding number changes within `radius` of p where the surface is not crossed: the
+  /// gradient of an open surface's solid angle depends on its rim alone (Biot-Savart). 0 for a closed surface.
+  double winding_variation(const Vector3d& p, double radius) const;
 
   /// Whether the distance to the rim of the surface is less than `distance`.
-  bool rim_within(const Vector3& p, double distance) const;
+  bool rim_within(const Vector3d& p, double distance) const;
 
-  /// Distance with a sign: positive on the side of the outward normals, by the angle-weighted pseudonormal of the
-  /// closest feature (Baerentzen & Aanaes 2005). `closest` as found by tree().
-  double signed_distance(const Vector3& p, const ClosestPoint& closest) const;
-  /// Unit pseudonormal of the feature that a closest point lies on.
-  const Vector3& pseudonormal(const ClosestPoint& closest) const;
+  /// Distance of p, positive on the side of the outward normals and negative on the other, by the angle-weighted
+  /// pseudonormal of the closest feature (Baerentzen & Aanaes 2005). `closest` is tree()'s answer for p.
+  double signed_distance(const Vector3d& p, const ClosestPoint& closest) const;
+  /// Unit pseudonormal of the face, edge or corner that a closest point lies on.
+  const Vector3d& pseudonormal(const ClosestPoint& closest) const;
 
 private:
   std::string name_;
@@ -42,28 +43,30 @@ private:
   int line_;
   TriangleTree tree_;
   Box box_;
-  Edges rim_;
-  std::vector<Vector3> face_normals_;
-  std::vector<std::array<Vector3, 3>> edge_normals_;
-  std::vector<Vector3> vertex_normals_;
+  Edges rim_;  ///< empty: the surface is closed
+  std::vector<Vector3d> face_normals_;
+  std::vector<std::array<Vector3d, 3>> edge_normals_;
+  std::vector<Vector3d> vertex_normals_;
 };
 
-/// Loads, makes or joins every surface of the scene, orients it and reports what was repaired. Throws Error naming the
-/// file and what is wrong.
-std::vector<std::unique_ptr<PreparedSurface>> prepare_surfaces(const Scene& scene, BakeStages& stages);
+using PreparedSurfaces = std::vector<std::unique_ptr<PreparedSurface>>;
+
+/// Loads or makes every surface of the scene, in the scene's order, and reports what was repaired. Throws Error naming
+/// the surface and what is wrong.
+PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor);
 
 /// The surface of that name; throws Error beginning with `place` where there is none.
-const PreparedSurface& named_surface(const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                                     const std::string& name, const std::string& place);
+const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std::string& name,
+                                     const std::string& place);
 
-/// One mesh of several surfaces that close a volume together, each turned so that the winding numbers of all are as
-/// near to whole numbers as they can be.
+/// One mesh of several surfaces that close a volume together. Each is flipped as it must be for the winding numbers of
+/// all to be as near to whole numbers as they can be.
 TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 
 /// Reads a mesh file of any format that assimp knows; vertices times `unit`. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Triangles of a built-in shape but the forehead: closed, outward.
+/// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on sizes that make none.
 TriangleMesh make_shape(const Shape& shape);
 
 }  // namespace frontalis

@@ -1,6 +1,8 @@
 #include "bake/mesh/surface_mesh.hpp"
 
-#include <cstring>
+#include <boost/functional/hash.hpp>
+
+#include <algorithm>
 #include <tuple>
 #include <unordered_map>
 
@@ -36,40 +38,42 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh)
   return edges;
 }
 
-struct PlaceHash
+/// Calls body(begin, end) for each edge, with the range of its half-edges.
+template <class Body>
+void for_each_edge(const std::vector<HalfEdge>& half_edges, const Body& body)
 {
-  std::size_t operator()(const Vector3& p) const
+  for (auto begin = half_edges.begin(); begin != half_edges.end();)
   {
-    std::uint64_t hash = 1469598103934665603ull;
-    for (const double c : p)
-    {
-      const double value = c == 0 ? 0 : c;  // one zero
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &value, sizeof(bits));
-      hash = (hash ^ bits) * 1099511628211ull;
-      hash ^= hash >> 29;
-    }
-    return static_cast<std::size_t>(hash);
+    const auto end = std::find_if(begin, half_edges.end(),
+                                  [&](const HalfEdge& e) { return e.low != begin->low || e.high != begin->high; });
+    body(begin, end);
+    begin = end;
   }
-};
+}
 
 }  // namespace
 
+void append(TriangleMesh& mesh, const TriangleMesh& part, bool flipped)
+{
+  const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const Triangle& t : part.triangles)
+    mesh.triangles.push_back({ base + t[0], base + t[flipped ? 2 : 1], base + t[flipped ? 1 : 2] });
+}
+
 Edges unbalanced_edges(const TriangleMesh& mesh)
 {
-  const std::vector<HalfEdge> half = sorted_half_edges(mesh);
   Edges edges;
-  for (std::size_t begin = 0, end = 0; begin < half.size(); begin = end)
-  {
-    int balance = 0;
-    for (end = begin; end < half.size() && half[end].low == half[begin].low && half[end].high == half[begin].high;
-         ++end)
-      balance += half[end].forward ? 1 : -1;
-    for (; balance > 0; --balance)
-      edges.push_back({ half[begin].low, half[begin].high });
-    for (; balance < 0; ++balance)
-      edges.push_back({ half[begin].high, half[begin].low });
-  }
+  for_each_edge(sorted_half_edges(mesh),
+                [&](auto begin, auto end)
+                {
+                  const auto forward = std::count_if(begin, end, [](const HalfEdge& e) { return e.forward; });
+                  auto surplus = 2 * forward - (end - begin);
+                  for (; surplus > 0; --surplus)
+                    edges.push_back({ begin->low, begin->high });
+                  for (; surplus < 0; ++surplus)
+                    edges.push_back({ begin->high, begin->low });
+                });
   return edges;
 }
 
@@ -77,26 +81,38 @@ double signed_volume(const TriangleMesh& mesh)
 {
   if (mesh.vertices.empty())
     return 0;
-  const Vector3 origin = bounding_box(mesh).centre();
+  const Vector3d origin = bounding_box(mesh).center();
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
-    sum += dot(mesh.vertices[static_cast<std::size_t>(t[0])] - origin,
-               cross(mesh.vertices[static_cast<std::size_t>(t[1])] - origin,
-                     mesh.vertices[static_cast<std::size_t>(t[2])] - origin));
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    sum += (a - origin).dot((b - origin).cross(c - origin));
+  }
   return sum / 6;
+}
+
+double surface_area(const TriangleMesh& mesh)
+{
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    sum += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return sum;
 }
 
 Box bounding_box(const TriangleMesh& mesh)
 {
   Box box;
   for (const Vector3& v : mesh.vertices)
-    box.include(v);
+    box.extend(to_vector(v));
   return box;
 }
 
 std::size_t join_vertices(TriangleMesh& mesh)
 {
-  std::unordered_map<Vector3, std::int32_t, PlaceHash> first;
+  std::unordered_map<Vector3, std::int32_t, boost::hash<Vector3>> first;
   first.reserve(mesh.vertices.size());
   TriangleMesh joined;
   std::size_t dropped = 0;
@@ -105,7 +121,7 @@ std::size_t join_vertices(TriangleMesh& mesh)
     Triangle corners{};
     for (std::size_t c = 0; c < 3; ++c)
     {
-      const Vector3& place = mesh.vertices[static_cast<std::size_t>(t[c])];
+      const Vector3& place = mesh.vertices[t[c]];
       const auto found = first.emplace(place, static_cast<std::int32_t>(joined.vertices.size()));
       if (found.second)
         joined.vertices.push_back(place);
@@ -122,31 +138,28 @@ std::size_t join_vertices(TriangleMesh& mesh)
 
 std::size_t make_orientation_consistent(TriangleMesh& mesh)
 {
-  // neighbours across edges of exactly two triangles; `same` where they run along the edge the same way, which is wrong
   struct Neighbour
   {
     std::int32_t triangle = -1;
-    bool same = false;
+    bool disagrees = false;  // both triangles run along the edge the same way
   };
   std::vector<std::array<Neighbour, 3>> neighbours(mesh.triangles.size());
-  const std::vector<HalfEdge> half = sorted_half_edges(mesh);
   bool any_wrong = false;
-  const auto slot = [&](std::int32_t triangle) -> Neighbour&
+  const auto add = [&](std::int32_t triangle, const Neighbour& neighbour)
   {
-    auto& slots = neighbours[static_cast<std::size_t>(triangle)];
-    return slots[0].triangle < 0 ? slots[0] : (slots[1].triangle < 0 ? slots[1] : slots[2]);
+    auto& slots = neighbours[triangle];
+    (slots[0].triangle < 0 ? slots[0] : slots[1].triangle < 0 ? slots[1] : slots[2]) = neighbour;
   };
-  for (std::size_t begin = 0, end = 0; begin < half.size(); begin = end)
-  {
-    for (end = begin; end < half.size() && half[end].low == half[begin].low && half[end].high == half[begin].high;)
-      ++end;
-    if (end - begin != 2)
-      continue;
-    const bool same = half[begin].forward == half[begin + 1].forward;
-    any_wrong = any_wrong || same;
-    slot(half[begin].triangle) = { half[begin + 1].triangle, same };
-    slot(half[begin + 1].triangle) = { half[begin].triangle, same };
-  }
+  for_each_edge(sorted_half_edges(mesh),
+                [&](auto begin, auto end)
+                {
+                  if (end - begin != 2)
+                    return;
+                  const HalfEdge &a = begin[0], &b = begin[1];
+                  any_wrong = any_wrong || a.forward == b.forward;
+                  add(a.triangle, { b.triangle, a.forward == b.forward });
+                  add(b.triangle, { a.triangle, a.forward == b.forward });
+                });
   if (!any_wrong)
     return 0;
 
@@ -162,15 +175,15 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
     {
       for (const Neighbour& n : neighbours[component[at]])
       {
-        if (n.triangle < 0 || turn[static_cast<std::size_t>(n.triangle)] >= 0)
+        if (n.triangle < 0 || turn[n.triangle] >= 0)
           continue;
-        turn[static_cast<std::size_t>(n.triangle)] = static_cast<std::int8_t>(turn[component[at]] ^ (n.same ? 1 : 0));
-        component.push_back(static_cast<std::size_t>(n.triangle));
+        turn[n.triangle] = static_cast<std::int8_t>(turn[component[at]] ^ (n.disagrees ? 1 : 0));
+        component.push_back(n.triangle);
       }
     }
     std::size_t ones = 0;
     for (const std::size_t t : component)
-      ones += static_cast<std::size_t>(turn[t]);
+      ones += turn[t];
     const int wanted = 2 * ones > component.size() ? 0 : 1;
     for (const std::size_t t : component)
     {
@@ -198,7 +211,7 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
   {
     if (keep[t])
       for (const std::int32_t v : mesh.triangles[t])
-        number[static_cast<std::size_t>(v)] = 0;
+        number[v] = 0;
   }
   TriangleMesh kept;
   if (vertex_of != nullptr)
@@ -218,7 +231,7 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
       continue;
     Triangle corners{};
     for (std::size_t c = 0; c < 3; ++c)
-      corners[c] = number[static_cast<std::size_t>(mesh.triangles[t][c])];
+      corners[c] = number[mesh.triangles[t][c]];
     kept.triangles.push_back(corners);
   }
   return kept;

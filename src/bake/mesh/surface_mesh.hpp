@@ -1,11 +1,10 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
 #include "bake/vector.hpp"
+#include "frontalis/model/surface.hpp"
 
+#include <array>
 #include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -13,8 +12,17 @@ namespace frontalis
 
 using Triangle = std::array<std::int32_t, 3>;
 
-/// Edges that triangles leave unbalanced (a hole's rim, a seam): directed as the triangles have them, with
-/// multiplicity.
+inline Vector3d vertex(const TriangleMesh& mesh, std::int32_t v) { return to_vector(mesh.vertices[v]); }
+inline std::array<Vector3d, 3> corners(const TriangleMesh& mesh, const Triangle& t)
+{
+  return { vertex(mesh, t[0]), vertex(mesh, t[1]), vertex(mesh, t[2]) };
+}
+
+/// Adds the vertices and triangles of `part`, reversed where `flipped`.
+void append(TriangleMesh& mesh, const TriangleMesh& part, bool flipped = false);
+
+/// Edges that triangles do not run along equally often both ways (a hole's rim, a seam): directed as the surplus
+/// triangles run, and repeated for each of them.
 using Edges = std::vector<std::array<std::int32_t, 2>>;
 
 Edges unbalanced_edges(const TriangleMesh& mesh);
@@ -22,19 +30,23 @@ Edges unbalanced_edges(const TriangleMesh& mesh);
 /// Volume enclosed by a closed mesh [m3], negative where it is inside-out.
 double signed_volume(const TriangleMesh& mesh);
 
+/// Area of all triangles [m2].
+double surface_area(const TriangleMesh& mesh);
+
 Box bounding_box(const TriangleMesh& mesh);
 
 /// Joins vertices at the same place, in order of first use, and drops triangles that have a vertex twice. Returns the
 /// number of triangles dropped.
 std::size_t join_vertices(TriangleMesh& mesh);
 
-/// Turns triangles so that neighbours agree, component by component (the larger part of a component keeps its
-/// orientation). Returns the number of triangles turned.
+/// Flips triangles until neighbours agree, separately in each connected component, the larger part of which keeps its
+/// orientation. Returns the number of triangles flipped.
 std::size_t make_orientation_consistent(TriangleMesh& mesh);
 
 void flip(TriangleMesh& mesh);
 
-/// The triangles that `keep` accepts, without unused vertices, the order kept; `vertex_of` receives old vertex numbers.
+/// The triangles with a true entry in `keep` and the vertices that they use, in the same order. `vertex_of` receives
+/// the old number of each vertex.
 TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& keep,
                             std::vector<std::int32_t>* vertex_of = nullptr);
 

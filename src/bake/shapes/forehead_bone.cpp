@@ -23,24 +23,24 @@ ForeheadMap::ForeheadMap(const ForeheadDimensions& dimensions)
       // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
       depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
 {
-  // the skin's normals lean: the place of the sellion on the skin is found by iteration
+  // the skin lies along the normal from the bone, so that its height 0 is not the bone's: iterate
   double z = 0;
   for (int i = 0; i < 20; ++i)
     z -= at(0, z, 0)[2];
   shift_ = -at(0, z, 0)[0];
 }
 
-Vector3 ForeheadMap::bone(double s, double z) const
+Vector3d ForeheadMap::bone(double s, double z) const
 {
   const ForeheadDimensions& d = dimensions_;
   const double angle = s / d.half_breadth;
-  const double lean = std::tan(5 * 3.14159265358979323846 / 180);
+  const double lean = std::tan(5 * pi / 180);
   const double above = z - d.brow_height;
   // the profile leans and curves backwards above the brow; below it, it is straight
   const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
 
-  // relief along the horizontal normal: brow ridge (strongest over the medial half of the orbit), glabella, nasal root,
-  // temples
+  // relief along the horizontal normal: the brow ridge, strongest above the medial half of the orbit; the glabella; the
+  // nasal root; the temples
   const double arc = std::abs(s);
   const double ridge =
       d.ridge * bell(above, 9e-3) * (0.45 + 0.55 * bell(arc - 22e-3, 18e-3)) * (1 - smooth_step((arc - 45e-3) / 25e-3));
@@ -49,8 +49,8 @@ Vector3 ForeheadMap::bone(double s, double z) const
   const double temple = d.temple_flattening * smooth_step((arc - 40e-3) / 35e-3);
   const double relief = ridge + glabella - root - temple;
 
-  const Vector3 normal = normalised({ std::cos(angle) / depth_axis_, std::sin(angle) / d.half_breadth, 0 });
-  return Vector3{ depth_axis_ * std::cos(angle) - setback + shift_, d.half_breadth * std::sin(angle), z } +
+  const Vector3d normal = Vector3d{ std::cos(angle) / depth_axis_, std::sin(angle) / d.half_breadth, 0 }.normalized();
+  return Vector3d{ depth_axis_ * std::cos(angle) - setback + shift_, d.half_breadth * std::sin(angle), z } +
          relief * normal;
 }
 
@@ -61,12 +61,12 @@ double ForeheadMap::thickness(double z) const
          (dimensions_.brow_thickness - dimensions_.hairline_thickness) * bell(over, 28e-3);
 }
 
-Vector3 ForeheadMap::at(double s, double z, double depth) const
+Vector3d ForeheadMap::at(double s, double z, double depth) const
 {
   constexpr double step = 1e-5;
-  const Vector3 across = bone(s + step, z) - bone(s - step, z);
-  const Vector3 up = bone(s, z + step) - bone(s, z - step);
-  return bone(s, z) + ((1 - depth) * thickness(z)) * normalised(cross(across, up));
+  const Vector3d across = bone(s + step, z) - bone(s - step, z);
+  const Vector3d up = bone(s, z + step) - bone(s, z - step);
+  return bone(s, z) + ((1 - depth) * thickness(z)) * across.cross(up).normalized();
 }
 
 double ForeheadMap::lower_edge(double s) const

@@ -6,25 +6,26 @@
 namespace frontalis
 {
 
-/// The generated forehead as a map from (s, z, depth) to space: s is the lateral arc from the midline, positive to the
-/// left [m], z the height over the sellion [m], depth a proportion of the soft tissue: 0 at the skin, 1 at the bone.
+/// The generated forehead as a map from (s, z, depth) to space. s is the arc length from the midline, positive to the
+/// subject's left [m], z the height above the sellion [m], depth a proportion of the soft tissue: 0 at the skin, 1 at
+/// the bone.
 class ForeheadMap
 {
 public:
   explicit ForeheadMap(const ForeheadDimensions& dimensions);
 
   const ForeheadDimensions& dimensions() const { return dimensions_; }
-  Vector3 at(double s, double z, double depth) const;
+  Vector3d at(double s, double z, double depth) const;
+  /// Of the soft tissue [m].
   double thickness(double z) const;
 
-  /// Lower edge: the orbital rim, dipping to the nasal root in the midline. Upper edge: the hairline, lower at the
-  /// temples.
+  /// Heights of the edges: the orbital rim, lower at the nasal root, and the hairline, lower at the temples [m].
   double lower_edge(double s) const;
   double upper_edge(double s) const;
   double half_width() const { return 0.5 * dimensions_.width; }
 
 private:
-  Vector3 bone(double s, double z) const;
+  Vector3d bone(double s, double z) const;
 
   ForeheadDimensions dimensions_;
   double depth_axis_;  ///< semi-axis of the horizontal section along x [m]

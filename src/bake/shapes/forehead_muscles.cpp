@@ -10,8 +10,8 @@ namespace frontalis
 namespace
 {
 
-/// Where a muscle's mid-surface runs: arc and height of its point (a, b), both 0..1, and its depth there as a
-/// proportion of the soft tissue. a runs along the subject's left, b upwards or along the fibres.
+/// Middle surface of a flat muscle: arc length and height of its point (a, b), both from 0 to 1, and its depth as a
+/// proportion of the soft tissue. a runs to the subject's left, b upwards or along the fibres.
 struct Sheet
 {
   std::function<std::array<double, 2>(double, double)> place;
@@ -26,7 +26,7 @@ TriangleMesh thicken(const ForeheadMap& map, const Sheet& sheet, double edge)
   { return 2 * std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * length / edge))); };
   const std::int32_t n = count(sheet.length_a), m = count(sheet.length_b),
                      l = std::max(1, static_cast<std::int32_t>(std::ceil(sheet.thickness / edge)));
-  const auto at = [&](std::int32_t i, std::int32_t j, std::int32_t k)
+  const auto at = [&](std::int32_t i, std::int32_t j, std::int32_t k) -> Vector3d
   {
     const double a = static_cast<double>(i) / n, b = static_cast<double>(j) / m;
     const auto [s, z] = sheet.place(a, b);
@@ -76,7 +76,7 @@ Sheet corrugator(const ForeheadMap& map, double side)
 {
   const ForeheadDimensions& d = map.dimensions();
   Sheet sheet;
-  const double angle = 20 * 3.14159265358979323846 / 180;
+  const double angle = 20 * pi / 180;
   const double length = 35e-3;
   sheet.place = [&d, side, angle, length](double a, double b)
   {
@@ -124,7 +124,7 @@ Sheet galea(const ForeheadMap& map)
     const double gap = std::max(0.0, 1 - arc / 12e-3);
     const double outer = std::max(0.0, (arc - 12e-3) / frontalis_width);
     const double low = top - 0.4 * d.height * gap * gap * (3 - 2 * gap) - 6e-3 * std::min(1.0, outer * outer);
-    // through the upper edge of the tissue, so that the cut does not leave a slit
+    // beyond the upper edge of the tissue, so that no slit is left there
     return std::array<double, 2>{ s, mix(low, map.upper_edge(s) + 1e-3, b) };
   };
   sheet.depth = [](double, double) { return 0.55; };

@@ -5,6 +5,8 @@
 #include "frontalis/error.hpp"
 #include "bake/shapes/sheet_mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,14 +39,6 @@ const std::vector<std::pair<std::string, Field>>& fields()
   return list;
 }
 
-std::string listed(const std::vector<std::string>& names)
-{
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 ForeheadDimensions dimensions_of(const Shape& shape)
 {
   ForeheadDimensions dimensions;
@@ -53,10 +47,10 @@ ForeheadDimensions dimensions_of(const Shape& shape)
     const auto field =
         std::find_if(fields().begin(), fields().end(), [&n = name](const auto& f) { return f.first == n; });
     if (field == fields().end())
-      throw Error("forehead: there is no dimension '" + name + "'; there are " + listed(forehead_dimension_names()));
+      throw Error(fmt::format("forehead: there is no dimension '{}'; there are {}", name,
+                              fmt::join(forehead_dimension_names(), ", ")));
     if (!(value > 0) || !(value < 1))
-      throw Error("forehead: dimension '" + name + "' is " + std::to_string(value) +
-                  " m; lengths above 0 and below 1 m are meant");
+      throw Error(fmt::format("forehead: dimension '{}' is {:g} m; it must be above 0 and below 1 m", name, value));
     dimensions.*field->second = value;
   }
   if (dimensions.width > 2.6 * dimensions.half_breadth)
@@ -66,14 +60,14 @@ ForeheadDimensions dimensions_of(const Shape& shape)
   return dimensions;
 }
 
-/// Rows of the skin's grid and of the bone's below it; the two are alike, so that a rim joins them.
-struct Grid
+/// Points of the skin and, below them, of the bone: both have the same rows and columns, so that a rim can join them.
+struct SkinGrid
 {
   const ForeheadMap& map;
   std::int32_t across, up, through;
   double beyond;  ///< by which it reaches beyond the edges [m]
 
-  Grid(const ForeheadMap& forehead, double edge, double margin) : map(forehead), beyond(margin)
+  SkinGrid(const ForeheadMap& forehead, double edge, double margin) : map(forehead), beyond(margin)
   {
     const ForeheadDimensions& d = map.dimensions();
     // an even number of columns, so that one runs along the midline
@@ -82,7 +76,7 @@ struct Grid
     through = std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * (d.brow_thickness + d.hairline_thickness) / edge)));
   }
 
-  Vector3 at(std::int32_t i, std::int32_t j, double depth) const
+  Vector3d at(std::int32_t i, std::int32_t j, double depth) const
   {
     const double s = (map.half_width() + beyond) * (2.0 * i / across - 1);
     const double low = map.lower_edge(s) - beyond, high = map.upper_edge(s) + beyond;
@@ -90,13 +84,13 @@ struct Grid
   }
 };
 
-void add_face(TriangleMesh& mesh, const Grid& grid, double depth, bool outward)
+void add_face(TriangleMesh& mesh, const SkinGrid& grid, double depth, bool outward)
 {
   add_sheet(mesh, grid.across, grid.up,
             [&](std::int32_t i, std::int32_t j) { return grid.at(outward ? i : grid.across - i, j, depth); });
 }
 
-void add_rim(TriangleMesh& mesh, const Grid& grid, bool upper, bool lower, bool lateral)
+void add_rim(TriangleMesh& mesh, const SkinGrid& grid, bool upper, bool lower, bool lateral)
 {
   const double step = 1.0 / grid.through;
   const auto depth = [&](std::int32_t k) { return k == grid.through ? 1 : k * step; };
@@ -129,14 +123,14 @@ TriangleMesh make_forehead(const Shape& shape)
   const ForeheadDimensions dimensions = dimensions_of(shape);
   const ForeheadMap map(dimensions);
   const double edge = shape.edge > 0 ? shape.edge : 1.75e-3;
-  const Grid grid(map, edge, 0);
+  const SkinGrid grid(map, edge, 0);
   const std::string& part = shape.part;
 
   TriangleMesh mesh;
   if (part == "skin")
     add_face(mesh, grid, 0, true);
   else if (part == "skull")
-    add_face(mesh, Grid(map, edge, dimensions.margin), 1, true);
+    add_face(mesh, SkinGrid(map, edge, dimensions.margin), 1, true);
   else if (part == "tissue")
   {
     add_face(mesh, grid, 0, true);
@@ -149,7 +143,7 @@ TriangleMesh make_forehead(const Shape& shape)
   else if (std::find(forehead_parts().begin(), forehead_parts().end(), part) != forehead_parts().end())
     mesh = make_forehead_muscle(map, part, edge);
   else
-    throw Error("forehead: there is no part '" + part + "'; there are " + listed(forehead_parts()));
+    throw Error(fmt::format("forehead: there is no part '{}'; there are {}", part, fmt::join(forehead_parts(), ", ")));
   return mesh;
 }
 

@@ -2,7 +2,7 @@
 
 #include "bake/mesh/cut_mesh.hpp"
 #include "frontalis/error.hpp"
-#include "bake/length_text.hpp"
+#include "bake/messages.hpp"
 #include "bake/parallel.hpp"
 
 #include <cmath>
@@ -13,35 +13,30 @@ namespace
 {
 
 constexpr std::size_t grain = 1024;
-constexpr double farthest_landmark = 20e-3;
+constexpr double farthest_landmark = 20e-3;  // from the skin [m]
 
 struct BoundMesh
 {
   TriangleMesh mesh;
   Binding binding;
-  std::size_t triangles = 0;   ///< inside the crop
-  std::size_t too_far = 0;     ///< of those, with a vertex too far from every voxel
-  Vector3 unbound{ 0, 0, 0 };  ///< such a vertex, scene coordinates
+  std::size_t triangles = 0;    ///< inside the crop
+  std::size_t too_far = 0;      ///< of these, with a vertex too far from every voxel
+  Vector3d unbound{ 0, 0, 0 };  ///< such a vertex, scene coordinates [m]
 };
 
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
-                    BakeStages& stages)
+                    BakeMonitor& monitor)
 {
   const TriangleMesh surface = cut_mesh(whole, crop);
   const std::size_t count = surface.vertices.size();
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
-  parallel_ranges(
-      count, grain,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t v = begin; v < end; ++v)
-        {
-          if (!binder.bind(frame.to_local(surface.vertices[v]), voxel[v], coordinates[v]))
-            voxel[v] = -1;
-        }
-      },
-      &stages);
+  parallel_for(monitor, count, grain,
+               [&](std::size_t v)
+               {
+                 if (!binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]))
+                   voxel[v] = -1;
+               });
 
   BoundMesh bound;
   std::vector<bool> keep(surface.triangles.size());
@@ -50,9 +45,9 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
     bool near = true;
     for (const std::int32_t v : surface.triangles[t])
     {
-      if (voxel[static_cast<std::size_t>(v)] >= 0)
+      if (voxel[v] >= 0)
         continue;
-      bound.unbound = surface.vertices[static_cast<std::size_t>(v)];
+      bound.unbound = vertex(surface, v);
       near = false;
     }
     keep[t] = near;
@@ -63,8 +58,8 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   bound.mesh = frame.to_local(keep_triangles(surface, keep, &vertex_of));
   for (const std::int32_t v : vertex_of)
   {
-    bound.binding.voxel.push_back(voxel[static_cast<std::size_t>(v)]);
-    bound.binding.coordinates.push_back(coordinates[static_cast<std::size_t>(v)]);
+    bound.binding.voxel.push_back(voxel[v]);
+    bound.binding.coordinates.push_back(coordinates[v]);
   }
   return bound;
 }
@@ -74,20 +69,21 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
   const TriangleTree tree(model.skin);
   for (const SceneLandmark& landmark : scene.landmarks)
   {
-    const std::string place = scene.file + ":" + std::to_string(landmark.line) + ": landmark '" + landmark.name + "'";
-    const ClosestPoint closest = tree.closest(frame.to_local(landmark.position));
+    const std::string place = place_in_scene(scene, "landmark", landmark);
+    const ClosestPoint closest = tree.closest(frame.to_local(to_vector(landmark.position)));
     if (closest.triangle < 0)
       throw Error(place + ": there is no published skin that it could lie on");
     if (closest.distance > farthest_landmark)
-      throw Error(place + ": lies " + length_text(closest.distance, scene.unit) + " from the published skin; at most " +
-                  length_text(farthest_landmark, scene.unit) +
-                  " are allowed: check its coordinates and the skin's crop");
+      throw Error(
+          fmt::format("{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the "
+                      "skin's crop",
+                      place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit)));
     std::int32_t voxel = -1;
     std::array<float, 3> coordinates{};
     if (!binder.bind(closest.point, voxel, coordinates))
       throw Error(place + ": no voxel is near enough to carry it; raise the skin's 'extrapolation'");
     model.landmarks.push_back(landmark.name);
-    model.landmark_positions.push_back(closest.point);
+    model.landmark_positions.push_back(to_array(closest.point));
     model.landmark_binding.voxel.push_back(voxel);
     model.landmark_binding.coordinates.push_back(coordinates);
   }
@@ -100,38 +96,35 @@ PointBinder::PointBinder(const Model& model, double extrapolation)
 {
 }
 
-bool PointBinder::bind(const Vector3& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
+bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
 {
-  std::array<std::int32_t, 3> cell{};
-  for (std::size_t a = 0; a < 3; ++a)
+  VoxelPlace cell{};
+  for (int a = 0; a < 3; ++a)
     cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
   voxel = index_.find(cell);
   if (voxel < 0)
   {
-    // rings of cells around it, until no nearer voxel can come
-    const double edge = std::min({ model_.spacing[0], model_.spacing[1], model_.spacing[2] });
-    const auto rings = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
+    // cubic shells of cells around it, until no further shell can hold a nearer voxel
+    const Vector3d spacing = to_vector(model_.spacing);
+    const double edge = spacing.minCoeff();
+    const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
     double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
-    for (std::int32_t ring = 1; ring <= rings && (ring - 1) * edge * (ring - 1) * edge <= best; ++ring)
+    for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
     {
-      for (std::int32_t k = -ring; k <= ring; ++k)
+      for (std::int32_t k = -shell; k <= shell; ++k)
       {
-        for (std::int32_t j = -ring; j <= ring; ++j)
+        for (std::int32_t j = -shell; j <= shell; ++j)
         {
-          const bool whole = std::abs(k) == ring || std::abs(j) == ring;
-          for (std::int32_t i = -ring; i <= ring; i += whole ? 1 : 2 * ring)
+          const bool face = std::abs(k) == shell || std::abs(j) == shell;
+          for (std::int32_t i = -shell; i <= shell; i += face ? 1 : 2 * shell)
           {
-            const std::array<std::int32_t, 3> place{ { cell[0] + i, cell[1] + j, cell[2] + k } };
+            const VoxelPlace place{ { cell[0] + i, cell[1] + j, cell[2] + k } };
             const std::int32_t candidate = index_.find(place);
             if (candidate < 0)
               continue;
-            Box box;
-            for (std::size_t a = 0; a < 3; ++a)
-            {
-              box.lower[a] = place[a] * model_.spacing[a];
-              box.upper[a] = (place[a] + 1) * model_.spacing[a];
-            }
-            const double squared = box.squared_distance(local);
+            const Vector3d lower(place[0], place[1], place[2]), upper = lower + Vector3d::Ones();
+            const double squared =
+                Box(lower.cwiseProduct(spacing), upper.cwiseProduct(spacing)).squaredExteriorDistance(local);
             if (squared < best || (squared == best && (voxel < 0 || candidate < voxel)))
             {
               best = squared;
@@ -144,14 +137,13 @@ bool PointBinder::bind(const Vector3& local, std::int32_t& voxel, std::array<flo
   }
   if (voxel < 0)
     return false;
-  for (std::size_t a = 0; a < 3; ++a)
-    coordinates[a] =
-        static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[static_cast<std::size_t>(voxel)][a]);
+  for (int a = 0; a < 3; ++a)
+    coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
   return true;
 }
 
-void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                   const LocalFrame& frame, Model& model, BakeStages& stages)
+void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor)
 {
   const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
   const double extrapolation = scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
@@ -160,18 +152,19 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
   if (!scene.skin.surface.empty())
   {
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
-    BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, stages);
+    BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, monitor);
     if (bound.mesh.triangles.empty())
-      throw Error(scene.file + ": skin: no triangle of surface '" + scene.skin.surface +
-                  "' lies in the crop and within " + length_text(extrapolation, scene.unit) +
-                  " of the tissue; check its crop and the tissue volumes");
+      throw Error(
+          fmt::format("{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check "
+                      "its crop and the tissue volumes",
+                      scene.file, scene.skin.surface, length_text(extrapolation, scene.unit)));
     if (bound.too_far > 0)
-      throw Error(scene.file + ": skin: " + std::to_string(bound.too_far) + " of " + std::to_string(bound.triangles) +
-                  " triangles of surface '" + scene.skin.surface +
-                  "' in the crop have a vertex that no voxel can carry, the one at " +
-                  place_text(bound.unbound, scene.unit) + " say: it is farther than " +
-                  length_text(extrapolation, scene.unit) +
-                  " from the tissue; crop the skin to the tissue, or raise its 'extrapolation'");
+      throw Error(
+          fmt::format("{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can "
+                      "carry, for example at {}: it is farther than {} from the tissue; crop the skin to the "
+                      "tissue, or raise its 'extrapolation'",
+                      scene.file, bound.too_far, bound.triangles, scene.skin.surface,
+                      place_text(bound.unbound, scene.unit), length_text(extrapolation, scene.unit)));
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }
@@ -190,15 +183,15 @@ void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<Prepare
     }
     else
     {
-      const std::string place = scene.file + ":" + std::to_string(load.line) + ": load '" + load.name + "'";
+      const std::string place = place_in_scene(scene, "load", load);
       BoundMesh bound =
-          bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, stages);
+          bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, monitor);
       if (bound.mesh.triangles.empty())
-        throw Error(place + ": no triangle of surface '" + load.surface + "' lies in its crop and within " +
-                    length_text(extrapolation, scene.unit) + " of the tissue");
+        throw Error(fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
+                                load.surface, length_text(extrapolation, scene.unit)));
       if (bound.too_far > 0)
-        stages.found("load '" + load.name + "': " + std::to_string(bound.too_far) +
-                     " triangles left out, too far from the tissue");
+        monitor.found(
+            fmt::format("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far));
       out.kind = load.kind == SceneLoad::Kind::pressure ? Load::Kind::pressure : Load::Kind::traction;
       if (out.kind == Load::Kind::pressure)
         out.value = load.value;

@@ -10,14 +10,14 @@
 namespace frontalis
 {
 
-/// Finds the voxel that a point follows: the one that contains it, else the nearest within the extrapolation distance.
+/// Finds the voxel that a point follows: the one that contains it, or the nearest within the extrapolation distance.
 class PointBinder
 {
 public:
   PointBinder(const Model& model, double extrapolation);
 
-  /// False where no voxel is near enough. Coordinates in the voxel are 0..1 inside, along x, y, z.
-  bool bind(const Vector3& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const;
+  /// False where no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
+  bool bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const;
 
 private:
   const Model& model_;
@@ -25,9 +25,10 @@ private:
   double extrapolation_;
 };
 
-/// Fills skin, landmarks and loads on surfaces of the model, all bound. Throws Error where nothing of the skin or of a
-/// load can be bound, and for a landmark far from the skin.
-void bind_surfaces(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                   const LocalFrame& frame, Model& model, BakeStages& stages);
+/// Fills the skin, the landmarks and the loads of the model and binds their points to voxels. Throws Error where
+/// nothing of a load can be bound, for a vertex of the skin that no voxel can carry, and for a landmark far from the
+/// skin.
+void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor);
 
 }  // namespace frontalis

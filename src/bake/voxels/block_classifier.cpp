@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace frontalis
 {
 namespace
 {
 
-constexpr double deep = std::numeric_limits<double>::infinity();
+constexpr double beyond_all_thresholds = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -20,15 +21,14 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       grid_(grid),
       fill_min_(fill_min),
       voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
-      reach_(0.5 * norm(grid.spacing)),
-      crossings_(volumes.solids().size()),
-      gathered_(volumes.solids().size()),
-      nearby_(volumes.depths().size()),
-      solid_here_(volumes.solids().size()),
-      depth_here_(volumes.depths().size())
+      reach_(0.5 * grid.spacing.norm()),
+      nearby_body_(volumes.bodies()),
+      nearby_depth_(volumes.depth_fields().size()),
+      body_here_(volumes.bodies()),
+      depth_here_(volumes.depth_fields().size())
 {
   // R3 sequence: steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
-  const Vector3 step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
+  const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
   for (int s = 0; s < samples * samples * samples; ++s)
     offsets_.push_back(
         { std::fmod(0.5 + s * step[0], 1.0), std::fmod(0.5 + s * step[1], 1.0), std::fmod(0.5 + s * step[2], 1.0) });
@@ -44,35 +44,27 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       materials = std::max(materials, band.material + 1);
   }
   voxels_.band_size = band_share_;
-  material_share_.assign(static_cast<std::size_t>(materials), 0);
-  muscle_share_.assign(static_cast<std::size_t>(muscles), 0);
+  material_share_.assign(materials, 0);
+  muscle_share_.assign(muscles, 0);
 }
 
-void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end)
+void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end)
 {
   BlockState state;
-  state.solid.assign(volumes_.solids().size(), Answer::unknown);
-  state.depth.resize(volumes_.depths().size());
-  state.volume.assign(volumes_.entries().size(), Answer::unknown);
-  state.sight.assign(volumes_.entries().size(), Answer::unknown);
+  state.inside_body.assign(volumes_.bodies(), Answer::unknown);
+  state.depth.resize(volumes_.depth_fields().size());
+  state.inside_volume.assign(volumes_.entries().size(), Answer::unknown);
+  state.in_sight.assign(volumes_.entries().size(), Answer::unknown);
   visit(begin, end, state);
 }
 
-void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end,
-                            BlockState state)
+void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state)
 {
-  Box box;
-  bool single = true;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    box.lower[a] = grid_.lower[a] + begin[a] * grid_.spacing[a];
-    box.upper[a] = grid_.lower[a] + end[a] * grid_.spacing[a];
-    single = single && end[a] - begin[a] == 1;
-  }
-  const bool known = settle(box, state);
+  const Box box(grid_.corner(begin), grid_.corner(end));
+  const bool known = decide(box, state);
   bool tissue = false;
-  for (std::size_t v = 0; v < state.volume.size(); ++v)
-    tissue = tissue || (volumes_.entries()[v].volume->tissue && state.volume[v] != Answer::no);
+  for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
+    tissue = tissue || (volumes_.entries()[v].volume->tissue && state.inside_volume[v] != Answer::no);
   if (!tissue)
     return;
 
@@ -80,44 +72,40 @@ void BlockClassifier::visit(const std::array<std::int32_t, 3>& begin, const std:
   {
     clear_shares();
     std::vector<double> depth;
-    for (const auto& interval : state.depth)
-      depth.push_back(interval.depth);
-    count(state.volume, depth, 1);
+    for (const auto& d : state.depth)
+      depth.push_back(d.value);
+    add_share(state.inside_volume, depth, 1);
     double voxels = 0;
     for (std::int32_t k = begin[2]; k < end[2]; ++k)
       for (std::int32_t j = begin[1]; j < end[1]; ++j)
         for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
-          emit({ i, j, k }, 1);
-    for (std::size_t v = 0; v < state.volume.size(); ++v)
-      volume_share_[v] = state.volume[v] == Answer::yes ? 1 : 0;
+          add_voxel({ i, j, k }, 1);
+    for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
+      volume_share_[v] = state.inside_volume[v] == Answer::yes ? 1 : 0;
     add_sizes(voxels);
     return;
   }
-  if (single)
+  if (end == VoxelPlace{ begin[0] + 1, begin[1] + 1, begin[2] + 1 })
   {
     sample(box, state);
-    double fill = 0;
-    for (const double share : material_share_)
-      fill += share;
+    const double fill = std::accumulate(material_share_.begin(), material_share_.end(), 0.0);
     add_sizes(1);
     if (fill > 0 && fill >= fill_min_)
-      emit(begin, fill);
+      add_voxel(begin, fill);
     return;
   }
 
   // halves along each side that is longer than a voxel
-  std::array<std::int32_t, 3> middle{};
-  for (std::size_t a = 0; a < 3; ++a)
-    middle[a] = begin[a] + (end[a] - begin[a] + 1) / 2;
   for (int part = 0; part < 8; ++part)
   {
-    std::array<std::int32_t, 3> from{}, to{};
+    VoxelPlace from{}, to{};
     bool empty = false;
-    for (std::size_t a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a)
     {
+      const std::int32_t middle = begin[a] + (end[a] - begin[a] + 1) / 2;
       const bool upper = (part >> a & 1) != 0;
-      from[a] = upper ? middle[a] : begin[a];
-      to[a] = upper ? end[a] : middle[a];
+      from[a] = upper ? middle : begin[a];
+      to[a] = upper ? end[a] : middle;
       empty = empty || from[a] >= to[a];
     }
     if (!empty)
@@ -144,220 +132,174 @@ void BlockClassifier::add_sizes(double voxels)
   }
 }
 
-bool BlockClassifier::settle(const Box& box, BlockState& state)
+void BlockClassifier::decide_volume(std::size_t volume, const Box& box, BlockState& state)
 {
-  // tissue first: where there is none, nothing else is asked
-  const auto ask = [&](std::size_t v)
+  const Volumes::Entry& entry = volumes_.entries()[volume];
+  Answer& answer = state.inside_volume[volume];
+  if (answer != Answer::unknown)
+    return;
+  answer = volume_answer(volume, box, state);
+  // the cheapest question first; each only while the answer is not known
+  if (answer == Answer::unknown && entry.within && !state.depth[*entry.within].known)
   {
-    if (state.volume[v] != Answer::unknown)
+    decide_depth(*entry.within, box, state);
+    answer = volume_answer(volume, box, state);
+  }
+  const auto ask_body = [&](std::size_t b)
+  {
+    if (answer != Answer::unknown || state.inside_body[b] != Answer::unknown)
       return;
-    const Volumes::Entry& entry = volumes_.entries()[v];
-    state.volume[v] = volume_answer(v, box, state);
-    const auto solid = [&](int s)
-    {
-      if (s >= 0 && state.volume[v] == Answer::unknown && state.solid[static_cast<std::size_t>(s)] == Answer::unknown)
-      {
-        settle_solid(static_cast<std::size_t>(s), box, state);
-        state.volume[v] = volume_answer(v, box, state);
-      }
-    };
-    if (state.volume[v] == Answer::unknown && entry.within >= 0 &&
-        !state.depth[static_cast<std::size_t>(entry.within)].known)
-    {
-      settle_depth(static_cast<std::size_t>(entry.within), box, state);
-      state.volume[v] = volume_answer(v, box, state);
-    }
-    solid(entry.closed_by);
-    for (const int s : entry.inside)
-      solid(s);
-    for (const int s : entry.outside)
-      solid(s);
-    if (entry.asks_sight() && state.volume[v] == Answer::unknown && state.sight[v] == Answer::unknown)
-    {
-      settle_sight(v, box, state);
-      state.volume[v] = volume_answer(v, box, state);
-    }
+    decide_body(b, box, state);
+    answer = volume_answer(volume, box, state);
   };
+  if (entry.closed_by)
+    ask_body(*entry.closed_by);
+  std::for_each(entry.inside.begin(), entry.inside.end(), ask_body);
+  std::for_each(entry.outside.begin(), entry.outside.end(), ask_body);
+  if (entry.needs_sight() && answer == Answer::unknown && state.in_sight[volume] == Answer::unknown)
+  {
+    decide_sight(volume, box, state);
+    answer = volume_answer(volume, box, state);
+  }
+}
+
+bool BlockClassifier::decide(const Box& box, BlockState& state)
+{
+  // tissue first: where there is none, nothing else needs to be known
   bool tissue = false;
-  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
   {
     if (!volumes_.entries()[v].volume->tissue)
       continue;
-    ask(v);
-    tissue = tissue || state.volume[v] != Answer::no;
+    decide_volume(v, box, state);
+    tissue = tissue || state.inside_volume[v] != Answer::no;
   }
   if (!tissue)
     return true;
   bool known = true;
-  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
   {
     if (!volumes_.entries()[v].volume->tissue)
-      ask(v);
-    known = known && state.volume[v] != Answer::unknown;
-  }
-  for (std::size_t v = 0; v < state.volume.size(); ++v)
-  {
-    if (state.volume[v] == Answer::no)
+      decide_volume(v, box, state);
+    known = known && state.inside_volume[v] != Answer::unknown;
+    if (state.inside_volume[v] == Answer::no)
       continue;
     for (const Volumes::Band& band : volumes_.entries()[v].bands)
     {
-      if (!state.depth[static_cast<std::size_t>(band.depth)].known)
-        settle_depth(static_cast<std::size_t>(band.depth), box, state);
+      if (!state.depth[band.depth_field].known)
+        decide_depth(band.depth_field, box, state);
+      known = known && state.depth[band.depth_field].known;
     }
   }
-  return known && layers_known(state);
+  return known;
 }
 
-bool BlockClassifier::layers_known(const BlockState& state) const
+void BlockClassifier::decide_body(std::size_t body, const Box& box, BlockState& state) const
 {
-  for (std::size_t v = 0; v < state.volume.size(); ++v)
+  const PreparedSurface& surface = volumes_.body(body);
+  if (surface.closed() && !surface.box().intersects(box))
   {
-    if (state.volume[v] == Answer::no)
-      continue;
-    for (const Volumes::Band& band : volumes_.entries()[v].bands)
-    {
-      if (!state.depth[static_cast<std::size_t>(band.depth)].known)
-        return false;
-    }
-  }
-  return true;
-}
-
-void BlockClassifier::settle_solid(std::size_t solid, const Box& box, BlockState& state) const
-{
-  const PreparedSurface& surface = *volumes_.solids()[solid].surface;
-  if (surface.closed() && !surface.box().overlaps(box))
-  {
-    state.solid[solid] = Answer::no;
+    state.inside_body[body] = Answer::no;
     return;
   }
   if (surface.tree().overlaps(box))
     return;
-  const Vector3 centre = box.centre();
+  const Vector3d centre = box.center();
   const double winding = surface.tree().winding_number(centre);
-  if (!surface.closed() &&
-      std::abs(winding - 0.5) <= surface.winding_variation(centre, norm(box.upper - centre)) + 0.01)
+  const double radius = (box.max() - centre).norm();
+  if (!surface.closed() && std::abs(winding - 0.5) <= surface.winding_variation(centre, radius) + 0.01)
     return;
-  state.solid[solid] = winding > 0.5 ? Answer::yes : Answer::no;
+  state.inside_body[body] = winding > 0.5 ? Answer::yes : Answer::no;
 }
 
-void BlockClassifier::settle_depth(std::size_t depth, const Box& box, BlockState& state) const
+void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState& state) const
 {
-  const Volumes::Depth& field = volumes_.depths()[depth];
-  const Vector3 centre = box.centre();
-  const double radius = norm(box.upper - centre);
-  const double farthest = std::max(std::abs(field.thresholds.front()), std::abs(field.thresholds.back()));
-  const ClosestPoint closest = field.surface->tree().closest(centre, farthest + radius);
+  const auto& [surface, thresholds] = volumes_.depth_fields()[field];
+  const Vector3d centre = box.center();
+  const double radius = (box.max() - centre).norm();
+  const double farthest = std::max(std::abs(thresholds.front()), std::abs(thresholds.back()));
+  const ClosestPoint closest = surface->tree().closest(centre, farthest + radius);
   if (closest.triangle < 0)
   {
-    state.depth[depth] = { true, deep };
+    state.depth[field] = { true, beyond_all_thresholds };
     return;
   }
-  const double signed_depth = -field.surface->signed_distance(centre, closest);
-  double low = signed_depth - radius, high = signed_depth + radius;
-  // near the rim of an open surface the sign may change without passing through it
-  if (!field.surface->closed() && field.surface->rim_within(centre, closest.distance + 2 * radius))
+  const double depth = -surface->signed_distance(centre, closest);
+  double low = depth - radius, high = depth + radius;
+  // near the rim of an open surface the sign may change at a distance from it
+  if (!surface->closed() && surface->rim_within(centre, closest.distance + 2 * radius))
   {
     high = closest.distance + radius;
     low = -high;
   }
-  for (const double threshold : field.thresholds)
-  {
-    if (threshold >= low && threshold <= high)
-      return;
-  }
-  state.depth[depth] = { true, signed_depth };
+  if (std::none_of(thresholds.begin(), thresholds.end(), [=](double t) { return t >= low && t <= high; }))
+    state.depth[field] = { true, depth };
 }
 
-void BlockClassifier::settle_sight(std::size_t volume, const Box& box, BlockState& state) const
+void BlockClassifier::decide_sight(std::size_t volume, const Box& box, BlockState& state) const
 {
-  // a box without a piece of an `outside` surface lies on one side of them
+  // a block that no hiding surface passes through lies on one side of all of them
   const Volumes::Entry& entry = volumes_.entries()[volume];
-  const auto hiding = entry.outside.begin() + static_cast<std::ptrdiff_t>(entry.hiding);
-  if (std::any_of(entry.outside.begin(), hiding,
-                  [&](int s) { return state.solid[static_cast<std::size_t>(s)] == Answer::unknown; }))
+  if (entry.any_hiding([&](std::size_t b) { return state.inside_body[b] == Answer::unknown; }))
     return;
-  const Vector3 centre = box.centre();
-  const double radius = norm(box.upper - centre);
+  const Vector3d centre = box.center();
+  const double radius = (box.max() - centre).norm();
   const double bound = entry.volume->depth_max + radius;
-  const Volumes::Depth& field = volumes_.depths()[static_cast<std::size_t>(entry.within)];
-  const ClosestPoint closest = field.surface->tree().closest(centre, bound);
+  const ClosestPoint closest = volumes_.depth_fields()[*entry.within].surface->tree().closest(centre, bound);
   if (closest.triangle < 0)
     return;
-  const auto away = [&](int s)
-  {
-    const PreparedSurface& surface = *volumes_.solids()[static_cast<std::size_t>(s)].surface;
-    return surface.tree().closest(centre, closest.distance + 2 * radius).triangle < 0;
-  };
-  if (std::all_of(entry.outside.begin(), hiding, away))
-    state.sight[volume] = Answer::yes;
+  const auto is_near = [&](std::size_t b)
+  { return volumes_.body(b).tree().closest(centre, closest.distance + 2 * radius).triangle >= 0; };
+  if (!entry.any_hiding(is_near))
+    state.in_sight[volume] = Answer::yes;
   else if (radius < 1.001 * reach_)
-    state.sight[volume] = in_sight(entry, centre, bound) ? Answer::yes : Answer::no;
+    state.in_sight[volume] = in_sight(entry, centre, bound) ? Answer::yes : Answer::no;
 }
 
-bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3& p, double bound) const
+bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const
 {
-  const Volumes::Depth& field = volumes_.depths()[static_cast<std::size_t>(entry.within)];
-  const ClosestPoint closest = field.surface->tree().closest(p, bound);
+  const ClosestPoint closest = volumes_.depth_fields()[*entry.within].surface->tree().closest(p, bound);
   return closest.triangle >= 0 &&
-         std::none_of(
-             entry.outside.begin(), entry.outside.begin() + static_cast<std::ptrdiff_t>(entry.hiding),
-             [&](int s)
-             { return volumes_.solids()[static_cast<std::size_t>(s)].surface->tree().crossed_by(p, closest.point); });
+         !entry.any_hiding([&](std::size_t b) { return volumes_.body(b).tree().crossed_by(p, closest.point); });
 }
 
 Answer BlockClassifier::volume_answer(std::size_t volume, const Box& box, const BlockState& state) const
 {
+  // a volume is what all its conditions have in common
   const Volumes::Entry& entry = volumes_.entries()[volume];
-  bool unknown = false;
-  const auto solid = [&](int s) { return state.solid[static_cast<std::size_t>(s)]; };
-  for (std::size_t a = 0; a < 3; ++a)
+  Answer all = Answer::yes;
+  const auto require = [&all](Answer condition)
   {
-    const Region& crop = entry.volume->crop;
-    if (box.upper[a] <= crop.lower[a] || box.lower[a] >= crop.upper[a])
-      return Answer::no;
-    unknown = unknown || box.lower[a] < crop.lower[a] || box.upper[a] > crop.upper[a];
-  }
-  if (entry.closed_by >= 0)
-  {
-    if (solid(entry.closed_by) == Answer::no)
-      return Answer::no;
-    unknown = unknown || solid(entry.closed_by) == Answer::unknown;
-  }
+    if (condition == Answer::no || all == Answer::no)
+      all = Answer::no;
+    else if (condition == Answer::unknown)
+      all = Answer::unknown;
+  };
+  const auto in_body = [&](std::size_t b) { return state.inside_body[b]; };
+  const Box crop = to_box(entry.volume->crop);
+  if ((box.max().array() <= crop.min().array()).any() || (box.min().array() >= crop.max().array()).any())
+    return Answer::no;
+  require(crop.contains(box) ? Answer::yes : Answer::unknown);
+  if (entry.closed_by)
+    require(in_body(*entry.closed_by));
   if (!entry.inside.empty())
   {
-    Answer any = Answer::no;
-    for (const int s : entry.inside)
-    {
-      if (solid(s) == Answer::yes)
-        any = Answer::yes;
-      else if (solid(s) == Answer::unknown && any == Answer::no)
-        any = Answer::unknown;
-    }
-    if (any == Answer::no)
-      return Answer::no;
-    unknown = unknown || any == Answer::unknown;
+    const auto any = [&](Answer wanted) {
+      return std::any_of(entry.inside.begin(), entry.inside.end(), [&](std::size_t b) { return in_body(b) == wanted; });
+    };
+    require(any(Answer::yes) ? Answer::yes : any(Answer::unknown) ? Answer::unknown : Answer::no);
   }
-  for (const int s : entry.outside)
+  for (const std::size_t b : entry.outside)
+    require(in_body(b) == Answer::yes ? Answer::no : in_body(b) == Answer::no ? Answer::yes : Answer::unknown);
+  if (entry.within)
   {
-    if (solid(s) == Answer::yes)
-      return Answer::no;
-    unknown = unknown || solid(s) == Answer::unknown;
+    const auto [known, depth] = state.depth[*entry.within];
+    const bool within = depth >= entry.volume->depth_min && depth <= entry.volume->depth_max;
+    require(!known ? Answer::unknown : within ? Answer::yes : Answer::no);
   }
-  if (entry.within >= 0)
-  {
-    const BlockState::Interval& interval = state.depth[static_cast<std::size_t>(entry.within)];
-    if (interval.known && (interval.depth < entry.volume->depth_min || interval.depth > entry.volume->depth_max))
-      return Answer::no;
-    unknown = unknown || !interval.known;
-  }
-  if (entry.asks_sight())
-  {
-    if (state.sight[volume] == Answer::no)
-      return Answer::no;
-    unknown = unknown || state.sight[volume] == Answer::unknown;
-  }
-  return unknown ? Answer::unknown : Answer::yes;
+  if (entry.needs_sight())
+    require(state.in_sight[volume]);
+  return all;
 }
 
 }  // namespace frontalis

@@ -15,85 +15,91 @@ enum class Answer : std::int8_t
   unknown
 };
 
-/// What is known about all points of a box.
+/// What is known about all points of a block of voxels.
 struct BlockState
 {
-  std::vector<Answer> solid;
-  struct Interval
+  struct Depth
   {
-    bool known = false;  ///< no threshold lies in the box
-    double depth = 0;    ///< a depth that stands for all points, where known [m]
+    bool known = false;  ///< no threshold of the depth field lies in the block
+    double value = 0;    ///< where known: a depth between the same thresholds as all depths in the block [m]
   };
-  std::vector<Interval> depth;
-  std::vector<Answer> volume;
-  std::vector<Answer> sight;  ///< of each volume that asks for it: no `outside` surface on the way to `within`
+  std::vector<Answer> inside_body;    ///< of each body
+  std::vector<Depth> depth;           ///< of each depth field
+  std::vector<Answer> inside_volume;  ///< of each volume
+  std::vector<Answer> in_sight;       ///< of each volume that needs sight: see Volumes::Entry::needs_sight
 };
 
-/// Finds the composition of boxes of voxels: used by one thread.
+/// Finds what the voxels of a block consist of. Where a whole block is alike, it is decided at once; otherwise the
+/// block is halved, down to single voxels, which are sampled. Used by one thread.
 class BlockClassifier
 {
 public:
   BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min);
 
-  /// Visits voxels begin .. end (exclusive).
-  void visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end);
+  /// Adds the voxels from begin to end (exclusive).
+  void visit(const VoxelPlace& begin, const VoxelPlace& end);
 
   Voxels take() { return std::move(voxels_); }
 
 private:
-  struct Crossing
-  {
-    std::vector<std::int32_t> triangles;
-    double winding = 0;    ///< at base_
-    double variation = 0;  ///< of the smooth part within the voxel
-  };
+  void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
 
-  void visit(const std::array<std::int32_t, 3>& begin, const std::array<std::int32_t, 3>& end, BlockState state);
-  bool settle(const Box& box, BlockState& state);
-  void settle_solid(std::size_t solid, const Box& box, BlockState& state) const;
-  void settle_depth(std::size_t depth, const Box& box, BlockState& state) const;
-  void settle_sight(std::size_t volume, const Box& box, BlockState& state) const;
+  // of a block: find what is not known yet; decide() returns whether nothing is left unknown
+  bool decide(const Box& box, BlockState& state);
+  void decide_volume(std::size_t volume, const Box& box, BlockState& state);
+  void decide_body(std::size_t body, const Box& box, BlockState& state) const;
+  void decide_depth(std::size_t field, const Box& box, BlockState& state) const;
+  void decide_sight(std::size_t volume, const Box& box, BlockState& state) const;
   Answer volume_answer(std::size_t volume, const Box& box, const BlockState& state) const;
-  bool layers_known(const BlockState& state) const;
 
+  // of a voxel that is sampled
   void sample(const Box& box, const BlockState& state);
-  bool sample_volume(std::size_t volume, const Vector3& p, const BlockState& state);
-  bool sample_solid(std::size_t solid, const Vector3& p, const BlockState& state);
-  double sample_depth(std::size_t depth, const Vector3& p, const BlockState& state);
-  bool in_sight(const Volumes::Entry& entry, const Vector3& p, double bound) const;
-  void count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
-  void count_bands(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
+  bool sample_volume(std::size_t volume, const Vector3d& p, const BlockState& state);
+  bool sample_body(std::size_t body, const Vector3d& p, const BlockState& state);
+  double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
+  bool in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const;
+
+  // proportions of a voxel, or of each voxel of a block that is alike
   void clear_shares();
+  void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
-  void emit(const std::array<std::int32_t, 3>& place, double fill);
+  void add_voxel(const VoxelPlace& place, double fill);
 
   const Volumes& volumes_;
   const Grid& grid_;
   double fill_min_;
   double voxel_volume_;
-  double reach_ = 0;              ///< half diagonal of a voxel [m]
-  std::vector<Vector3> offsets_;  ///< of samples, in voxels
+  double reach_;                   ///< half the diagonal of a voxel [m]
+  std::vector<Vector3d> offsets_;  ///< of samples from the voxel's corner, in voxels
   Voxels voxels_;
 
-  // of the voxel being sampled
-  Vector3 base_{};
-  std::vector<Crossing> crossings_;
-  std::vector<bool> gathered_;
-  struct Nearby
-  {
-    bool known = false;
-    std::int32_t triangle = -1;  ///< closest to base_
-    double distance = 0;         ///< of base_
-    double depth = 0;            ///< of base_
-    bool steady = false;         ///< no rim so near that the sign could change without the distance
-  };
-  std::vector<Nearby> nearby_;
   std::vector<double> material_share_;
   std::vector<double> muscle_share_;
   std::vector<double> volume_share_;
   std::vector<std::vector<double>> band_share_;
-  // of the sample: answers already found, -1 not yet
-  std::vector<std::int8_t> solid_here_;
+
+  // of the voxel that is sampled: what is found once at its middle, and holds near it
+  struct NearbyBody
+  {
+    bool known = false;
+    std::vector<std::int32_t> triangles;  ///< in the voxel
+    double winding = 0;                   ///< winding number at the middle
+    double variation = 0;                 ///< bound on its change within the voxel where no triangle is crossed
+  };
+  struct NearbyDepth
+  {
+    bool known = false;
+    std::int32_t triangle = -1;  ///< closest to the middle
+    double distance = 0;         ///< of the middle [m]
+    double depth = 0;            ///< of the middle [m]
+    bool steady = false;         ///< no rim is so near that the depth's sign could change where its value does not
+  };
+  Vector3d middle_{ 0, 0, 0 };
+  std::vector<NearbyBody> nearby_body_;
+  std::vector<NearbyDepth> nearby_depth_;
+
+  // of the sample: answers already found; -1 or not a number: none yet
+  std::vector<std::int8_t> body_here_;
   std::vector<double> depth_here_;
 };
 

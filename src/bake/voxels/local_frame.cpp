@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <numeric>
-#include <unordered_map>
+#include <tuple>
 
 namespace frontalis
 {
 namespace
 {
 
-/// Scene axis along which rows of voxels are longest: the fewest rows.
+/// Scene axis along which rows of voxels are longest, because there are the fewest of them.
 int longest_rows(const Grid& grid, const Voxels& voxels)
 {
   const VoxelIndex index(voxels.place, grid.size);
@@ -38,7 +38,7 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
   const std::size_t count = voxels.place.size();
 
   // trim the grid to the voxels
-  std::array<std::int32_t, 3> lower = voxels.place.front(), upper = lower;
+  VoxelPlace lower = voxels.place.front(), upper = lower;
   for (const auto& place : voxels.place)
   {
     for (std::size_t a = 0; a < 3; ++a)
@@ -47,17 +47,16 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
       upper[a] = std::max(upper[a], place[a]);
     }
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    frame.origin[a] = grid.lower[a] + lower[a] * grid.spacing[a];
-  model.spacing = frame.turn(grid.spacing);
-  for (std::size_t a = 0; a < 3; ++a)
+  frame.origin = grid.corner(lower);
+  model.spacing = to_array(frame.turn(grid.spacing));
+  for (int a = 0; a < 3; ++a)
     model.size[a] = upper[frame.scene_axis(a)] - lower[frame.scene_axis(a)] + 1;
 
-  std::vector<std::array<std::int32_t, 3>> places(count);
+  std::vector<VoxelPlace> places(count);
   for (std::size_t e = 0; e < count; ++e)
   {
     places[e] = frame.turn(voxels.place[e]);
-    for (std::size_t a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a)
       places[e][a] -= lower[frame.scene_axis(a)];
   }
   std::vector<std::uint32_t> order(count);
@@ -66,7 +65,7 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
             [&](std::uint32_t u, std::uint32_t v)
             {
               const auto &p = places[u], &q = places[v];
-              return p[2] != q[2] ? p[2] < q[2] : (p[1] != q[1] ? p[1] < q[1] : p[0] < q[0]);
+              return std::tie(p[2], p[1], p[0]) < std::tie(q[2], q[1], q[0]);
             });
 
   model.mixture_begin.push_back(0);

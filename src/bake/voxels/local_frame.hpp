@@ -9,33 +9,54 @@ namespace frontalis
 struct LocalFrame
 {
   int first = 0;
-  Vector3 origin{ 0, 0, 0 };  ///< scene coordinates [m]
+  Vector3d origin{ 0, 0, 0 };  ///< scene coordinates [m]
 
-  std::size_t scene_axis(std::size_t local) const { return (static_cast<std::size_t>(first) + local) % 3; }
-  /// Components of a direction of the scene along the local axes.
+  int scene_axis(int local) const { return (first + local) % 3; }
+  /// Components along the local axes of what has components along the scene's axes.
   template <class T>
   std::array<T, 3> turn(const std::array<T, 3>& scene) const
   {
     return { scene[scene_axis(0)], scene[scene_axis(1)], scene[scene_axis(2)] };
   }
-  Vector3 to_local(const Vector3& scene) const { return turn(scene - origin); }
+  Vector3d turn(const Vector3d& scene) const
+  {
+    return { scene[scene_axis(0)], scene[scene_axis(1)], scene[scene_axis(2)] };
+  }
+  Vector3d to_local(const Vector3d& scene) const { return turn(Vector3d(scene - origin)); }
   TriangleMesh to_local(TriangleMesh mesh) const
   {
     for (Vector3& v : mesh.vertices)
-      v = to_local(v);
+      v = to_array(to_local(to_vector(v)));
     return mesh;
+  }
+  /// Scene coordinates of the point (i, j, k) of the model's grid, in voxel edges from the origin.
+  Vector3d grid_point(const Model& model, double i, double j, double k) const
+  {
+    const Vector3d local = to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k));
+    Vector3d p = origin;
+    for (int a = 0; a < 3; ++a)
+      p[scene_axis(a)] += local[a];
+    return p;
+  }
+  Vector3d voxel_centre(const Model& model, std::size_t e) const
+  {
+    const auto& v = model.voxels[e];
+    return grid_point(model, v[0] + 0.5, v[1] + 0.5, v[2] + 0.5);
   }
 };
 
-/// Orders the voxels, chooses the axis with the longest rows on average as local x and fills the model's grid, mixtures
-/// and muscle weights (directions come from add_fibres).
+/// Chooses the axis along which rows of voxels are longest as local x, sorts the voxels, and fills the model's grid,
+/// mixtures and muscle weights. Fibre directions come from add_fibres.
 LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model);
 
-/// Gives every voxel that a thin layer's surface passes through its share of the layer: thickness times the surface's
-/// area in the voxel, of the tissue there. Area in voxels that were dropped goes to the voxel below.
-void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeStages& stages);
+/// Mixes the material of each layer that is too thin to be sampled into the voxels through which its surface passes.
+/// Area of the surface in voxels that were left out counts for the voxel below. The proportion of the layer is the same
+/// in all these voxels: its volume is right, and no voxel with little tissue becomes stiffer than the others, which
+/// would shorten the time step.
+void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
-/// to_scene, to_face, gravity, materials, muscles, time, presets.
+/// Copies what the bake does not compute from the scene into the model: frames, gravity, materials, muscles, accuracy
+/// and presets.
 void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
 
 }  // namespace frontalis

@@ -1,12 +1,11 @@
-#include "bake/voxels/available_memory.hpp"
+#include "bake/available_memory.hpp"
 #include "frontalis/error.hpp"
-#include "bake/length_text.hpp"
-#include "bake/voxels/spread_points.hpp"
+#include "bake/messages.hpp"
+#include "bake/mesh/spread_points.hpp"
 #include "bake/voxels/volume_probe.hpp"
 #include "bake/voxels/voxelise.hpp"
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 
 namespace frontalis
 {
@@ -14,98 +13,81 @@ namespace
 {
 
 constexpr double least_voxels = 8;
-constexpr double most_voxels = 2.5e8;  // eight numbers a voxel, counted in 32 bits
-// bakes of about a million voxels peak at 230 to 270 bytes a voxel (doc/performance.md); more muscles take more
-constexpr double bytes_a_voxel = 400;
-constexpr double bytes_a_cell = 0.15;
+constexpr double most_voxels = 2.5e8;  // eight node numbers per voxel must have indices of 32 bits
+// Measured peaks of bakes of about a million voxels are 230 to 270 bytes per voxel; more muscles take more.
+constexpr double bytes_per_voxel = 400;
+constexpr double bytes_per_cell = 0.15;
 constexpr int samples = 2000;
 
-/// Voxels that will hold tissue: the proportion of points in the box that do, with the layer of voxels that the
-/// boundary cuts.
+/// Estimated number of voxels with tissue, by the proportion of points in the box that lie in the tissue.
 double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
 {
-  int tissue = 0;
+  int inside = 0;
   for (int i = 0; i < samples; ++i)
   {
-    const Vector3 p = spread_point(box, i);
-    for (const Volumes::Entry& entry : volumes.entries())
-    {
-      if (entry.volume->tissue && standing(volumes, entry, p) == Standing::inside)
-      {
-        ++tissue;
-        break;
-      }
-    }
+    const Vector3d p = spread_point(box, i);
+    const auto holds = [&](const Volumes::Entry& entry)
+    { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; };
+    inside += std::any_of(volumes.entries().begin(), volumes.entries().end(), holds) ? 1 : 0;
   }
-  return std::max(1.0, static_cast<double>(tissue)) / samples * cells;
+  return std::max(1.0, static_cast<double>(inside)) / samples * cells;
 }
 
-/// "; with 'unit: mm' ...": the length unit by which the tissue would have the size of a face or a part of one.
+/// Names the length unit by which the tissue would have the size of a face or a part of one, if there is one.
 std::string unit_advice(double extent, double unit)
 {
   for (const double other : { 1e-3, 1.0, 1e-2, 1e-6, 0.0254 })
   {
     const double size = extent / unit * other;
     if (other != unit && size > 0.02 && size < 0.6)
-      return ": with 'unit: " + unit_text(other) + "' it would span " + length_text(size, 1e-3) +
-             ", as a face does; check the length units of the scene and of its files";
+      return fmt::format(
+          ": with 'unit: {}' it would span {}, as a face does; check the length units of the scene and of its files",
+          unit_text(other), length_text(size, 1e-3));
   }
   return ": check the voxel size, the crop, and the length units of the scene and of its files";
 }
 
-std::string count_text(double count)
+std::string number_text(double count)
 {
-  char text[32];
-  std::snprintf(text, sizeof(text), count < 1e6 ? "%.0f" : "%.3g", count);
-  return text;
+  return count < 1e6 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
 }  // namespace
 
 Grid make_grid(const Scene& scene, const Volumes& volumes)
 {
-  const Vector3& spacing = scene.accuracy.voxel;
+  const Vector3d spacing = to_vector(scene.accuracy.voxel);
+  if (!(spacing.minCoeff() > 0))
+    throw Error(fmt::format("{}: voxel edge {:g} m; it must be above 0", scene.file, spacing.minCoeff()));
   const Box box = volumes.tissue_box();
-  const Vector3 extent = box.upper - box.lower;
-  Vector3 cells{};
-  double count = 1;
-  for (std::size_t a = 0; a < 3; ++a)
+  const Vector3d extent = box.sizes();
+  const Vector3d cells = (extent.cwiseQuotient(spacing).array() - 1e-6).ceil().max(1);
+  const double count = cells.prod();
+  const auto edges_text = [&](const Vector3d& edges)
   {
-    if (!(spacing[a] > 0))
-      throw Error(scene.file + ": voxel edge " + std::to_string(spacing[a]) + " m; it must be above 0");
-    cells[a] = std::max(1.0, std::ceil(extent[a] / spacing[a] - 1e-6));
-    count *= cells[a];
-  }
-  const auto sizes = [&](const Vector3& v)
-  {
-    char text[128];
-    std::snprintf(text, sizeof(text), "%.4g x %.4g x %.4g %s", v[0] / scene.unit, v[1] / scene.unit, v[2] / scene.unit,
-                  unit_text(scene.unit).c_str());
-    return std::string(text);
+    const Vector3d v = edges / scene.unit;
+    return fmt::format("{:.4g} x {:.4g} x {:.4g} {}", v[0], v[1], v[2], unit_text(scene.unit));
   };
-  const std::string spans = scene.file + ": the tissue spans " + sizes(extent) + ", which is ";
-  const double largest = std::max({ extent[0], extent[1], extent[2] });
+  const std::string spans = scene.file + ": the tissue spans " + edges_text(extent) + ", which is ";
+  const std::string advice = unit_advice(extent.maxCoeff(), scene.unit);
   if (count < least_voxels)
-    throw Error(spans + count_text(count) + (count == 1 ? " voxel of " : " voxels of ") + sizes(spacing) +
-                "; at least 8 are wanted" + unit_advice(largest, scene.unit));
+    throw Error(fmt::format("{}{} {} of {}; at least {} are needed{}", spans, number_text(count),
+                            count == 1 ? "voxel" : "voxels", edges_text(spacing), least_voxels, advice));
 
-  // rows of cells are counted in 32 bits; beyond that nothing need be sampled
-  const bool absurd = *std::max_element(cells.begin(), cells.end()) > 1e9 || count > 1e15;
+  // more cells along an axis than 32 bits can count cannot be baked, however few of them are tissue
+  const bool absurd = cells.maxCoeff() > 1e9 || count > 1e15;
   const double voxels = absurd ? count : estimated_voxels(volumes, box, count);
-  const double bytes = bytes_a_voxel * voxels + bytes_a_cell * count;
+  const double bytes = bytes_per_voxel * voxels + bytes_per_cell * count;
   const double available = available_memory();
   if (voxels > most_voxels || bytes > available)
-  {
-    char memory[96];
-    std::snprintf(memory, sizeof(memory), "about %.3g GB, and %.3g GB are free", bytes / 1e9, available / 1e9);
-    throw Error(spans + count_text(voxels) + " voxels of " + sizes(spacing) + " and " + memory + "; at most " +
-                count_text(std::min(most_voxels, available / bytes_a_voxel)) + " voxels can be had" +
-                unit_advice(largest, scene.unit));
-  }
+    throw Error(
+        fmt::format("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels can be had{}",
+                    spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
+                    number_text(std::min(most_voxels, available / bytes_per_voxel)), advice));
   Grid grid;
-  grid.lower = box.lower;
+  grid.lower = box.min();
   grid.spacing = spacing;
-  for (std::size_t a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a)
     grid.size[a] = static_cast<std::int32_t>(cells[a]);
   return grid;
 }

@@ -1,11 +1,14 @@
 #include "bake/voxels/restricted_nodes.hpp"
 
 #include "frontalis/error.hpp"
+#include "bake/messages.hpp"
 #include "bake/parallel.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 namespace frontalis
@@ -15,156 +18,113 @@ namespace
 
 constexpr std::size_t grain = 4096;
 
-/// Distance of a node that a surface catches; not a number where it does not.
-using Caught = std::vector<double>;
+/// Signed distance [m] of each node that a surface restricts; not a number for the others.
+using Distances = std::vector<double>;
 
-class NodeCatcher
+/// Finds the nodes that a surface restricts.
+class NodeFinder
 {
 public:
-  NodeCatcher(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-              const LocalFrame& frame, const Model& model, BakeStages& stages)
-      : scene_(scene), surfaces_(surfaces), frame_(frame), model_(model), stages_(stages)
+  NodeFinder(const LocalFrame& frame, const Model& model, BakeMonitor& monitor)
+      : frame_(frame), model_(model), monitor_(monitor)
   {
     edge_ = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
     positions_.reserve(model.nodes.size());
     for (const auto& node : model.nodes)
-      positions_.push_back(scene_position(node[0], node[1], node[2]));
+      positions_.push_back(frame.grid_point(model, node[0], node[1], node[2]));
   }
 
-  /// Signed distances of the nodes that the surface catches, and how many there are.
-  std::size_t nodes_near(const PreparedSurface& surface, double within, const Region& crop, Caught& caught)
+  /// Distances of nodes from a surface of a constraint or a load. `within` below 0 stands for the default.
+  Distances find(const PreparedSurface& surface, double within, const Region& crop)
   {
-    if (within < 0)
-      within = 0.75 * edge_;
+    const double reach = reach_of(within);
     const double side = tissue_side(surface);
-    const double bound = std::max(within, side == 0 ? 0 : 2 * edge_);
-    caught.assign(positions_.size(), std::nan(""));
-    parallel_ranges(
-        positions_.size(), grain,
-        [&](std::size_t begin, std::size_t end)
-        {
-          for (std::size_t n = begin; n < end; ++n)
-          {
-            const Vector3& p = positions_[n];
-            if (!contains(crop, p) || surface.box().squared_distance(p) > bound * bound)
-              continue;
-            const ClosestPoint closest = surface.tree().closest(p, bound);
-            if (closest.triangle < 0)
-              continue;
-            const double distance = surface.signed_distance(p, closest);
-            const double height = dot(p - closest.point, surface.pseudonormal(closest));
-            // beyond the surface, and not merely beside an open one
-            const bool beyond = side * height < -0.5 * closest.distance;
-            if (closest.distance <= within || beyond)
-              caught[n] = distance;
-          }
-        },
-        &stages_);
-    return static_cast<std::size_t>(
-        std::count_if(caught.begin(), caught.end(), [](double d) { return !std::isnan(d); }));
+    const double bound = std::max(reach, side == 0 ? 0 : 2 * edge_);
+    const Box box = to_box(crop);
+    Distances distances(positions_.size(), std::nan(""));
+    parallel_for(monitor_, positions_.size(), grain,
+                 [&](std::size_t n)
+                 {
+                   const Vector3d& p = positions_[n];
+                   if (!box.contains(p) || surface.box().squaredExteriorDistance(p) > bound * bound)
+                     return;
+                   const ClosestPoint closest = surface.tree().closest(p, bound);
+                   if (closest.triangle < 0)
+                     return;
+                   // on the far side, but not merely beside an open surface
+                   const double height = (p - closest.point).dot(surface.pseudonormal(closest));
+                   if (closest.distance <= reach || side * height < -0.5 * closest.distance)
+                     distances[n] = surface.signed_distance(p, closest);
+                 });
+    return distances;
   }
 
-  const PreparedSurface& surface(const std::string& name, const std::string& place) const
-  {
-    return named_surface(surfaces_, name, place);
-  }
+  double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
 
-  [[noreturn]] void none(const std::string& place, double within) const
-  {
-    char text[64];
-    std::snprintf(text, sizeof(text), "%.3g mm", 1e3 * (within < 0 ? 0.75 * edge_ : within));
-    throw Error(place + ": no tissue node lies within " + text +
-                " of its surface inside its crop; check the surface, the crop and 'within'");
-  }
-
-  /// The part of a surface that the model can touch, all of one that moves, in local coordinates.
+  /// The part of a surface that tissue can touch, in local coordinates; of one that moves, all of it.
   TriangleMesh local_mesh(const PreparedSurface& surface, bool moves) const
   {
     if (moves)
       return frame_.to_local(surface.mesh());
-    constexpr double margin = 30e-3;
+    const Vector3d margin = Vector3d::Constant(30e-3);  // more than tissue moves
     Box box;
-    for (const Vector3& p : positions_)
-      box.include(p);
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      box.lower[a] -= margin;
-      box.upper[a] += margin;
-    }
+    for (const Vector3d& p : positions_)
+      box.extend(p);
+    box = Box(box.min() - margin, box.max() + margin);
     const TriangleMesh& mesh = surface.mesh();
     std::vector<bool> keep(mesh.triangles.size());
     for (std::size_t t = 0; t < keep.size(); ++t)
     {
-      Box triangle;
-      for (const std::int32_t v : mesh.triangles[t])
-        triangle.include(mesh.vertices[static_cast<std::size_t>(v)]);
-      keep[t] = triangle.overlaps(box);
+      const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
+      keep[t] = Box(a).extend(b).extend(c).intersects(box);
     }
     return frame_.to_local(keep_triangles(mesh, keep));
   }
 
-  std::string place(const char* what, const std::string& name, int line) const
-  {
-    return scene_.file + ":" + std::to_string(line) + ": " + what + " '" + name + "'";
-  }
-
 private:
-  Vector3 scene_position(double i, double j, double k) const
-  {
-    const Vector3 local{ i * model_.spacing[0], j * model_.spacing[1], k * model_.spacing[2] };
-    Vector3 p = frame_.origin;
-    for (std::size_t a = 0; a < 3; ++a)
-      p[frame_.scene_axis(a)] += local[a];
-    return p;
-  }
-
   /// +1: the tissue lies on the side of the outward normals, -1: on the other, 0: on both.
   double tissue_side(const PreparedSurface& surface)
   {
     const auto known = side_.find(&surface);
     if (known != side_.end())
       return known->second;
-    const std::size_t voxels = model_.voxels.size();
-    std::vector<double> sums((voxels + grain - 1) / grain, 0), weights(sums.size(), 0);
-    parallel_ranges(voxels, grain,
-                    [&](std::size_t begin, std::size_t end)
-                    {
-                      for (std::size_t e = begin; e < end; ++e)
-                      {
-                        const auto& v = model_.voxels[e];
-                        const Vector3 p = scene_position(v[0] + 0.5, v[1] + 0.5, v[2] + 0.5);
-                        if (surface.box().squared_distance(p) > 4 * edge_ * edge_)
-                          continue;
-                        const ClosestPoint closest = surface.tree().closest(p, 2 * edge_);
-                        if (closest.triangle < 0)
-                          continue;
-                        const auto fill = static_cast<double>(model_.fill[e]);
-                        sums[begin / grain] += surface.signed_distance(p, closest) > 0 ? fill : -fill;
-                        weights[begin / grain] += fill;
-                      }
-                    });
-    double sum = 0, weight = 0;
-    for (std::size_t r = 0; r < sums.size(); ++r)
+    // tissue near the surface, and how much more of it lies on the outer side than on the other
+    using Sums = std::array<double, 2>;
+    const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, Sums sums)
     {
-      sum += sums[r];
-      weight += weights[r];
-    }
-    const double side = std::abs(sum) < 0.4 * weight || weight == 0 ? 0 : (sum > 0 ? 1 : -1);
+      for (std::size_t e = range.begin(); e < range.end(); ++e)
+      {
+        const Vector3d p = frame_.voxel_centre(model_, e);
+        if (surface.box().squaredExteriorDistance(p) > 4 * edge_ * edge_)
+          continue;
+        const ClosestPoint closest = surface.tree().closest(p, 2 * edge_);
+        if (closest.triangle < 0)
+          continue;
+        const auto fill = static_cast<double>(model_.fill[e]);
+        sums[0] += fill;
+        sums[1] += surface.signed_distance(p, closest) > 0 ? fill : -fill;
+      }
+      return sums;
+    };
+    const auto [all, surplus] = tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, model_.voxels.size(), grain), Sums{}, add_range,
+        [](const Sums& a, const Sums& b) {
+          return Sums{ a[0] + b[0], a[1] + b[1] };
+        });
+    const double side = std::abs(surplus) < 0.4 * all || all == 0 ? 0 : (surplus > 0 ? 1 : -1);
     side_[&surface] = side;
     return side;
   }
 
-  const Scene& scene_;
-  const std::vector<std::unique_ptr<PreparedSurface>>& surfaces_;
   const LocalFrame& frame_;
   const Model& model_;
-  BakeStages& stages_;
-  double edge_ = 0;
-  std::vector<Vector3> positions_;
+  BakeMonitor& monitor_;
+  double edge_ = 0;  ///< longest of a voxel [m]
+  std::vector<Vector3d> positions_;
   std::map<const PreparedSurface*, double> side_;
 };
 
-/// Index of the constraint's bone, which becomes one of the model's; -1: none.
+/// Index in the model of the bone that a constraint moves with, added where it is new; -1: none.
 std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 {
   if (constraint.bone.empty())
@@ -178,10 +138,10 @@ std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 
 }  // namespace
 
-void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                    const LocalFrame& frame, Model& model, BakeStages& stages)
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                    BakeMonitor& monitor)
 {
-  NodeCatcher catcher(scene, surfaces, frame, model, stages);
+  NodeFinder finder(frame, model, monitor);
   const std::size_t nodes = model.nodes.size();
   enum class Kind : std::int8_t
   {
@@ -191,35 +151,49 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
     rigid
   };
   std::vector<Kind> kind(nodes, Kind::free);
-  std::vector<std::int32_t> of(nodes, -1);  // bone or surface
+  std::vector<std::int32_t> of(nodes, -1);  // bone of a rigid node, surface of a sliding one
   std::vector<std::int32_t> held_by(nodes, -1);
   std::vector<double> distance(nodes, 0);
-  Caught caught;
-  for (const SceneConstraint& constraint : scene.constraints)
-    model.constraints.push_back(constraint.name);
+  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict
+  const auto for_each_node =
+      [&](const std::string& place, const std::vector<std::string>& names, const auto& part, const auto& restrict)
+  {
+    bool any = false;
+    for (const std::string& name : names)
+    {
+      const PreparedSurface& surface = named_surface(surfaces, name, place);
+      const Distances distances = finder.find(surface, part.within, part.crop);
+      for (std::size_t n = 0; n < nodes; ++n)
+      {
+        if (std::isnan(distances[n]))
+          continue;
+        any = true;
+        restrict(n, distances[n], surface);
+      }
+    }
+    if (!any)
+      throw Error(
+          fmt::format("{}: no tissue node lies within {} of its surface inside its crop; check the surface, the "
+                      "crop and 'within'",
+                      place, length_text(finder.reach_of(part.within), scene.unit)));
+  };
 
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
     const SceneConstraint& constraint = scene.constraints[c];
+    model.constraints.push_back(constraint.name);
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    const std::string place = catcher.place("constraint", constraint.name, constraint.line);
-    std::size_t count = 0;
-    for (const std::string& name : constraint.surfaces)
-    {
-      count += catcher.nodes_near(catcher.surface(name, place), constraint.within, constraint.crop, caught);
-      for (std::size_t n = 0; n < nodes; ++n)
-      {
-        if (std::isnan(caught[n]) || kind[n] == Kind::rigid)
-          continue;
-        kind[n] = Kind::rigid;
-        of[n] = bone;
-        held_by[n] = static_cast<std::int32_t>(c);
-      }
-    }
-    if (count == 0)
-      catcher.none(place, constraint.within);
+    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
+                  [&](std::size_t n, double, const PreparedSurface&)
+                  {
+                    if (kind[n] == Kind::rigid)
+                      return;
+                    kind[n] = Kind::rigid;
+                    of[n] = bone;
+                    held_by[n] = static_cast<std::int32_t>(c);
+                  });
   }
 
   for (std::size_t l = 0; l < scene.loads.size(); ++l)
@@ -227,16 +201,14 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
     const SceneLoad& load = scene.loads[l];
     if (load.kind != SceneLoad::Kind::displacement)
       continue;
-    const std::string place = catcher.place("load", load.name, load.line);
-    if (catcher.nodes_near(catcher.surface(load.surface, place), load.within, load.crop, caught) == 0)
-      catcher.none(place, load.within);
-    for (std::size_t n = 0; n < nodes; ++n)
-    {
-      if (std::isnan(caught[n]) || kind[n] == Kind::rigid)
-        continue;
-      kind[n] = Kind::prescribed;
-      model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
-    }
+    for_each_node(place_in_scene(scene, "load", load), { load.surface }, load,
+                  [&](std::size_t n, double, const PreparedSurface&)
+                  {
+                    if (kind[n] == Kind::rigid)
+                      return;
+                    kind[n] = Kind::prescribed;
+                    model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
+                  });
   }
 
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
@@ -245,36 +217,28 @@ void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<Prepar
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    const std::string place = catcher.place("constraint", constraint.name, constraint.line);
-    std::size_t count = 0;
-    for (const std::string& name : constraint.surfaces)
+    // index of a surface among the model's, which it becomes one of
+    const auto index_of = [&](const PreparedSurface& surface)
     {
-      const PreparedSurface& surface = catcher.surface(name, place);
-      const std::size_t found = catcher.nodes_near(surface, constraint.within, constraint.crop, caught);
-      count += found;
-      if (found == 0)
-        continue;
-      const auto known =
-          std::find_if(model.constraint_surfaces.begin(), model.constraint_surfaces.end(),
-                       [&](const ConstraintSurface& other)
-                       { return other.name == name && other.bone == bone && other.friction == constraint.friction; });
-      const auto index = static_cast<std::int32_t>(known - model.constraint_surfaces.begin());
-      if (known == model.constraint_surfaces.end())
-        model.constraint_surfaces.push_back(
-            { name, catcher.local_mesh(surface, bone >= 0), bone, constraint.friction });
-      for (std::size_t n = 0; n < nodes; ++n)
-      {
-        if (std::isnan(caught[n]) || kind[n] > Kind::sliding ||
-            (kind[n] == Kind::sliding && std::abs(distance[n]) <= std::abs(caught[n])))
-          continue;
-        kind[n] = Kind::sliding;
-        of[n] = index;
-        held_by[n] = static_cast<std::int32_t>(c);
-        distance[n] = caught[n];
-      }
-    }
-    if (count == 0)
-      catcher.none(place, constraint.within);
+      auto& list = model.constraint_surfaces;
+      const auto same = [&](const ConstraintSurface& other)
+      { return other.name == surface.name() && other.bone == bone && other.friction == constraint.friction; };
+      const auto index = static_cast<std::size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
+      if (index == list.size())
+        list.push_back({ surface.name(), finder.local_mesh(surface, bone >= 0), bone, constraint.friction });
+      return static_cast<std::int32_t>(index);
+    };
+    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
+                  [&](std::size_t n, double d, const PreparedSurface& surface)
+                  {
+                    const std::int32_t index = index_of(surface);
+                    if (kind[n] > Kind::sliding || (kind[n] == Kind::sliding && std::abs(distance[n]) <= std::abs(d)))
+                      return;
+                    kind[n] = Kind::sliding;
+                    of[n] = index;
+                    held_by[n] = static_cast<std::int32_t>(c);
+                    distance[n] = d;
+                  });
   }
 
   for (std::size_t n = 0; n < nodes; ++n)

@@ -11,16 +11,16 @@ namespace frontalis
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
 ///
-/// A node is restricted where it lies within `within` of the surface, or beyond it, seen from the tissue, by no more
-/// than two voxels. The tissue's side of a surface is where most tissue within two voxels of it is. Rigid wins over
-/// prescribed, prescribed over sliding; of several rigid constraints the first, of several sliding surfaces the
-/// nearest. Throws Error for a constraint that catches no node.
-void restrict_nodes(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces,
-                    const LocalFrame& frame, Model& model, BakeStages& stages);
+/// A surface restricts a node that lies within `within` of it, or on its far side, seen from the tissue, by at most two
+/// voxels. The tissue lies on the side of a surface where most of the tissue within two voxels of it is. A node that
+/// several constraints want becomes rigid rather than prescribed, and prescribed rather than sliding; the first of
+/// several rigid constraints counts, the nearest of several sliding surfaces. Throws Error for a constraint that
+/// restricts no node.
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                    BakeMonitor& monitor);
 
-/// Removes voxels that do not belong: of the components that hang together by faces the largest is kept, and every
-/// other one that has a restricted node and at least a hundredth of the largest one's voxels. (What hangs on by an edge
-/// or a corner alone is a component of its own.)
-void remove_islands(Model& model, BakeStages& stages);
+/// Removes loose parts. Parts are connected by faces of voxels; an edge or a corner is no connection. The largest part
+/// stays, and every other one that has a restricted node and at least a hundredth of the largest one's voxels.
+void remove_islands(Model& model, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -1,8 +1,8 @@
+#include "bake/messages.hpp"
 #include "bake/voxels/local_frame.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace frontalis
@@ -10,15 +10,17 @@ namespace frontalis
 namespace
 {
 
-using Polygon = std::vector<Vector3>;
+using Polygon = std::vector<Vector3d>;
 
-/// Keeps the part of the polygon where sign * p[axis] <= sign * limit.
-void clip(Polygon& polygon, Polygon& scratch, std::size_t axis, double limit, double sign)
+constexpr double most_of_voxel = 0.9;  // the largest proportion of a voxel that thin layers may take
+
+/// Keeps the part of a polygon on one side of a plane: below `limit` along the axis for sign +1, above it for -1.
+void clip(Polygon& polygon, Polygon& scratch, int axis, double limit, double sign)
 {
   scratch.clear();
   for (std::size_t v = 0; v < polygon.size(); ++v)
   {
-    const Vector3 &p = polygon[v], &q = polygon[(v + 1) % polygon.size()];
+    const Vector3d &p = polygon[v], &q = polygon[(v + 1) % polygon.size()];
     const double dp = sign * (limit - p[axis]), dq = sign * (limit - q[axis]);
     if (dp >= 0)
       scratch.push_back(p);
@@ -30,10 +32,10 @@ void clip(Polygon& polygon, Polygon& scratch, std::size_t axis, double limit, do
 
 double area(const Polygon& polygon)
 {
-  Vector3 sum{ 0, 0, 0 };
+  Vector3d sum{ 0, 0, 0 };
   for (std::size_t v = 2; v < polygon.size(); ++v)
-    sum = sum + cross(polygon[v - 1] - polygon[0], polygon[v] - polygon[0]);
-  return 0.5 * norm(sum);
+    sum += (polygon[v - 1] - polygon[0]).cross(polygon[v] - polygon[0]);
+  return 0.5 * sum.norm();
 }
 
 /// Area of a surface in each voxel of the model.
@@ -43,18 +45,17 @@ public:
   AreaInVoxels(const Model& model, const LocalFrame& frame, const Region& crop)
       : model_(model), index_(model.voxels, model.size), area_(model.voxels.size(), 0)
   {
-    crop_.lower = frame.to_local(crop.lower);
-    crop_.upper = frame.to_local(crop.upper);
+    crop_ = Box(frame.to_local(to_vector(crop.lower)), frame.to_local(to_vector(crop.upper)));
   }
 
-  void add(const Vector3& a, const Vector3& b, const Vector3& c)
+  void add(const Vector3d& a, const Vector3d& b, const Vector3d& c)
   {
-    const Vector3 normal = cross(b - a, c - a);
+    const Vector3d normal = (b - a).cross(c - a);
     Polygon whole{ a, b, c };
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      clip(whole, scratch_, axis, crop_.lower[axis], -1);
-      clip(whole, scratch_, axis, crop_.upper[axis], 1);
+      clip(whole, scratch_, axis, crop_.min()[axis], -1);
+      clip(whole, scratch_, axis, crop_.max()[axis], 1);
     }
     add_along(whole, 0, normal, { 0, 0, 0 });
   }
@@ -62,7 +63,9 @@ public:
   const std::vector<double>& area() const { return area_; }
 
 private:
-  void add_along(const Polygon& polygon, std::size_t axis, const Vector3& normal, std::array<std::int32_t, 3> place)
+  /// Cuts a polygon up by the grid's planes across `axis`, then by those across the axes that follow. `place` has the
+  /// indices along the axes before.
+  void add_along(const Polygon& polygon, int axis, const Vector3d& normal, VoxelPlace place)
   {
     if (polygon.size() < 3)
       return;
@@ -71,14 +74,12 @@ private:
       give(place, normal, frontalis::area(polygon));
       return;
     }
-    double low = 1e300, high = -1e300;
-    for (const Vector3& p : polygon)
-    {
-      low = std::min(low, p[axis]);
-      high = std::max(high, p[axis]);
-    }
+    Box box;
+    for (const Vector3d& p : polygon)
+      box.extend(p);
+    const double low = box.min()[axis], high = box.max()[axis];
     const double edge = model_.spacing[axis];
-    // a face of the surface that lies on a face between two voxels belongs to the one below it
+    // a part of the surface in the plane between two voxels belongs to the one below it
     const double below = high - low < 1e-9 * edge ? (normal[axis] > 0 ? -1e-6 : (normal[axis] < 0 ? 1e-6 : 0)) : 0;
     const auto first = static_cast<std::int32_t>(std::max(-1.0, std::floor(low / edge + below)));
     const auto last = static_cast<std::int32_t>(std::min(model_.size[axis] + 0.0, std::floor(high / edge + below)));
@@ -98,21 +99,18 @@ private:
     }
   }
 
-  void give(std::array<std::int32_t, 3> place, const Vector3& normal, double amount)
+  /// Adds area to a voxel. Where it was left out of the model, the one below it carries the layer, or the next below
+  /// that.
+  void give(VoxelPlace place, const Vector3d& normal, double amount)
   {
-    // where the voxel was dropped, the one below it, two at most, carries the layer
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a)
-    {
-      if (std::abs(normal[a]) > std::abs(normal[axis]))
-        axis = a;
-    }
+    Eigen::Index axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
     for (int step = 0; step < 3; ++step)
     {
       const std::int32_t e = index_.find(place);
       if (e >= 0)
       {
-        area_[static_cast<std::size_t>(e)] += amount;
+        area_[e] += amount;
         return;
       }
       place[axis] += normal[axis] > 0 ? -1 : 1;
@@ -122,13 +120,13 @@ private:
   const Model& model_;
   VoxelIndex index_;
   std::vector<double> area_;
-  Region crop_;
+  Box crop_;
   Polygon scratch_;
 };
 
 }  // namespace
 
-void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeStages& stages)
+void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor)
 {
   if (volumes.thin_layers().empty())
     return;
@@ -140,30 +138,27 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     AreaInVoxels areas(model, frame, layer.crop);
     const TriangleMesh mesh = frame.to_local(layer.surface->mesh());
     for (const Triangle& t : mesh.triangles)
-      areas.add(mesh.vertices[static_cast<std::size_t>(t[0])], mesh.vertices[static_cast<std::size_t>(t[1])],
-                mesh.vertices[static_cast<std::size_t>(t[2])]);
-    // one share for all outer voxels, so that the layer's volume is right and no sliver of a voxel becomes stiffer than
-    // the others and rules the time step
+    {
+      const auto [a, b, c] = corners(mesh, t);
+      areas.add(a, b, c);
+    }
     double wanted = 0, tissue = 0;
     std::size_t voxels = 0;
-    const auto is_outer = [&](std::size_t e) { return areas.area()[e] > 0; };
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
     {
-      if (!is_outer(e))
+      if (areas.area()[e] <= 0)
         continue;
       wanted += areas.area()[e] * layer.thickness;
       tissue += static_cast<double>(model.fill[e]) * voxel_volume;
       ++voxels;
     }
-    const double given = tissue > 0 ? std::min(wanted / tissue, 0.9) : 0;
+    const double given = tissue > 0 ? std::min(wanted / tissue, most_of_voxel) : 0;
     std::vector<float> share(model.voxels.size());
     for (std::size_t e = 0; e < share.size(); ++e)
-      share[e] = is_outer(e) ? static_cast<float>(given) : 0;
-    char text[256];
-    std::snprintf(text, sizeof(text), "layer '%s': too thin to sample; combined into %zu outer voxels, %.4g mm3%s",
-                  layer.name.c_str(), voxels, 1e9 * given * tissue,
-                  given * tissue < 0.99 * wanted ? " (capped: it would fill them)" : "");
-    stages.found(text);
+      share[e] = areas.area()[e] > 0 ? static_cast<float>(given) : 0;
+    monitor.found(fmt::format("layer '{}': too thin to sample; mixed into {} outer voxels, {:.4g} mm3{}", layer.name,
+                              voxels, 1e9 * given * tissue,
+                              given * tissue < 0.99 * wanted ? " (no more, because it would fill them)" : ""));
     shares.push_back(std::move(share));
   }
 
@@ -174,15 +169,14 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     std::fill(mixture.begin(), mixture.end(), 0);
-    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
-         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
-      mixture[static_cast<std::size_t>(model.mixture_material[m])] += static_cast<double>(model.mixture_proportion[m]);
+    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+      mixture[model.mixture_material[m]] += static_cast<double>(model.mixture_proportion[m]);
     for (std::size_t l = 0; l < shares.size(); ++l)
     {
       const auto share = static_cast<double>(shares[l][e]);
       for (double& part : mixture)
         part *= 1 - share;
-      mixture[static_cast<std::size_t>(volumes.thin_layers()[l].material)] += share;
+      mixture[volumes.thin_layers()[l].material] += share;
     }
     for (std::size_t m = 0; m < mixture.size(); ++m)
     {

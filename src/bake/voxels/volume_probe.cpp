@@ -1,12 +1,12 @@
 #include "bake/voxels/volume_probe.hpp"
 
 #include "frontalis/error.hpp"
-#include "bake/length_text.hpp"
+#include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
-#include "bake/voxels/spread_points.hpp"
+#include "bake/mesh/spread_points.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <vector>
 
 namespace frontalis
 {
@@ -14,26 +14,14 @@ namespace
 {
 
 constexpr int samples = 2000;
-constexpr double sure = 0.75;
-constexpr double most_unsure = 0.1;
+constexpr double clear_winding = 0.75;
+constexpr double most_unclear = 0.1;  // of the points inside
 
-/// The part of a volume's crop, and of the tissue's box, where a body lies.
-Box region_of(const Volumes::Entry& entry, const Volumes::Solid& solid, const Box& tissue)
+bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {
-  Box box = solid.surface->box();
-  box.intersect(entry.volume->crop);
-  Region region;
-  region.lower = tissue.lower;
-  region.upper = tissue.upper;
-  box.intersect(region);
-  return box;
-}
-
-bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3& p)
-{
-  if (entry.within < 0)
+  if (!entry.within)
     return true;
-  const PreparedSurface& surface = *volumes.depths()[static_cast<std::size_t>(entry.within)].surface;
+  const PreparedSurface& surface = *volumes.depth_fields()[*entry.within].surface;
   const ClosestPoint closest = surface.tree().closest(p, entry.volume->depth_max * (1 + 1e-9));
   if (closest.triangle < 0)
     return false;
@@ -41,78 +29,76 @@ bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3
   return depth >= entry.volume->depth_min && depth <= entry.volume->depth_max;
 }
 
-void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::Entry& entry, const Volumes::Solid& solid)
+void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& body)
 {
-  const Box box = region_of(entry, solid, volumes.tissue_box());
-  if (solid.surface->closed() || box.empty())
+  const Box box = body.box().intersection(to_box(entry.volume->crop)).intersection(volumes.tissue_box());
+  if (body.closed() || box.isEmpty())
     return;
-  int clear = 0, unsure = 0;
+  int inside = 0, unclear = 0;
   for (int i = 0; i < samples; ++i)
   {
-    const Vector3 p = spread_point(box, i);
-    const double w = solid.surface->tree().winding_number(p);
-    if (w > 0.5 && at_depth(volumes, entry, p))
-      ++(w > sure ? clear : unsure);
+    const Vector3d p = spread_point(box, i);
+    const double w = body.tree().winding_number(p);
+    if (w <= 0.5 || !at_depth(volumes, entry, p))
+      continue;
+    ++inside;
+    unclear += w > clear_winding ? 0 : 1;
   }
-  if (unsure + clear > 0 && unsure <= most_unsure * (unsure + clear))
+  if (inside > 0 && unclear <= most_unclear * inside)
     return;
-  char share[32];
-  std::snprintf(share, sizeof(share), "%.0f %%", clear + unsure > 0 ? 100.0 * unsure / (clear + unsure) : 100.0);
-  const auto holes = find_holes(solid.surface->mesh());
-  throw Error(volumes.place(*entry.volume) + ": surface '" + solid.surface->name() + "' is open there: " + share +
-              " of what it should enclose lies in front of a hole" +
-              (holes.empty() ? std::string("; it has edges at which its triangles do not meet")
-                             : "; the largest of its " + std::to_string(holes.size()) + " holes is " +
-                                   length_text(holes.front().length, scene.unit) + " around, at " +
-                                   place_text(holes.front().centre, scene.unit)) +
-              ": close it, name the surface that closes it in 'closed_by', or crop the volume away from it");
+  const auto holes = find_holes(body.mesh());
+  const std::string where = holes.empty() ? "it has edges at which its triangles do not meet"
+                                          : fmt::format("the largest of its {} holes is {} around, at {}", holes.size(),
+                                                        length_text(holes.front().length, scene.unit),
+                                                        place_text(holes.front().centre, scene.unit));
+  throw Error(
+      fmt::format("{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of a hole; "
+                  "{}: close it, name the surface that closes it in 'closed_by', or crop the volume away from it",
+                  volumes.place(*entry.volume), body.name(), inside > 0 ? 100.0 * unclear / inside : 100.0, where));
+}
+
+/// Whether a body contains the point.
+bool contains(const PreparedSurface& body, const Vector3d& p)
+{
+  if (body.closed() && !body.box().contains(p))
+    return false;
+  return body.tree().winding_number(p) > 0.5;
 }
 
 }  // namespace
 
-bool holds(const Volumes::Solid& solid, const Vector3& p)
+Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {
-  if (solid.surface->closed() && solid.surface->box().squared_distance(p) > 0)
-    return false;
-  return solid.surface->tree().winding_number(p) > 0.5;
-}
-
-Standing standing(const Volumes& volumes, const Volumes::Entry& entry, const Vector3& p)
-{
-  const auto held = [&](int s) { return holds(volumes.solids()[static_cast<std::size_t>(s)], p); };
-  if (!contains(entry.volume->crop, p))
-    return Standing::cropped;
-  if ((entry.closed_by >= 0 && !held(entry.closed_by)) ||
-      (!entry.inside.empty() && std::none_of(entry.inside.begin(), entry.inside.end(), held)))
-    return Standing::beyond;
-  if (std::any_of(entry.outside.begin(), entry.outside.end(), held))
-    return Standing::excluded;
-  if (entry.within < 0)
-    return Standing::inside;
-  const PreparedSurface& surface = *volumes.depths()[static_cast<std::size_t>(entry.within)].surface;
+  const auto in_body = [&](std::size_t b) { return contains(volumes.body(b), p); };
+  if (!to_box(entry.volume->crop).contains(p))
+    return Membership::cropped;
+  if ((entry.closed_by && !in_body(*entry.closed_by)) ||
+      (!entry.inside.empty() && std::none_of(entry.inside.begin(), entry.inside.end(), in_body)))
+    return Membership::beyond;
+  if (std::any_of(entry.outside.begin(), entry.outside.end(), in_body))
+    return Membership::excluded;
+  if (!entry.within)
+    return Membership::inside;
+  const PreparedSurface& surface = *volumes.depth_fields()[*entry.within].surface;
   const ClosestPoint closest = surface.tree().closest(p);
   const double depth = -surface.signed_distance(p, closest);
   if (depth < entry.volume->depth_min || depth > entry.volume->depth_max)
-    return Standing::too_deep;
-  const auto crosses = [&](int s)
-  { return volumes.solids()[static_cast<std::size_t>(s)].surface->tree().crossed_by(p, closest.point); };
-  return std::any_of(entry.outside.begin(), entry.outside.begin() + static_cast<std::ptrdiff_t>(entry.hiding), crosses)
-             ? Standing::hidden
-             : Standing::inside;
+    return Membership::wrong_depth;
+  const bool hidden =
+      entry.any_hiding([&](std::size_t b) { return volumes.body(b).tree().crossed_by(p, closest.point); });
+  return hidden ? Membership::hidden : Membership::inside;
 }
 
 void check_openings(const Scene& scene, const Volumes& volumes)
 {
   for (const Volumes::Entry& entry : volumes.entries())
   {
-    const auto check = [&](int s)
-    { check_opening(scene, volumes, entry, volumes.solids()[static_cast<std::size_t>(s)]); };
-    if (entry.closed_by >= 0)
-      check(entry.closed_by);
-    for (const int s : entry.inside)
-      check(s);
-    for (const int s : entry.outside)
-      check(s);
+    std::vector<std::size_t> bodies = entry.inside;
+    bodies.insert(bodies.end(), entry.outside.begin(), entry.outside.end());
+    if (entry.closed_by)
+      bodies.insert(bodies.begin(), *entry.closed_by);
+    for (const std::size_t b : bodies)
+      check_opening(scene, volumes, entry, volumes.body(b));
   }
 }
 

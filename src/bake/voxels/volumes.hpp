@@ -2,32 +2,28 @@
 
 #include "bake/mesh/surface.hpp"
 
-#include <memory>
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
 
-/// What a scene's volumes are made of, resolved: numbers in place of names.
+/// The volumes of a scene with indices and surfaces in place of the names that the scene refers to them by.
 class Volumes
 {
 public:
-  /// A body that points are inside or outside of: one surface, or several that close it together.
-  struct Solid
-  {
-    const PreparedSurface* surface = nullptr;
-  };
-  /// A surface below which depths count, and the depths at which something changes, ascending [m].
-  struct Depth
+  /// A surface below which depths are measured, and the depths at which something changes, ascending [m].
+  struct DepthField
   {
     const PreparedSurface* surface = nullptr;
     std::vector<double> thresholds;
   };
-  /// Part of a stack of layers that is sampled: material at depths from `from` to `to` below the depth's surface.
+  /// A layer that is thick enough to be sampled: its material lies at depths `from` to `to` [m].
   struct Band
   {
-    int depth = 0;
+    std::size_t depth_field = 0;
     double from = 0, to = 0;
     int material = 0;
     const Layer* layer = nullptr;
@@ -41,47 +37,60 @@ public:
     int material = 0;
     std::string name;
   };
+  /// A volume. Bodies are what points lie inside or outside of: a surface, or several that close a body together.
   struct Entry
   {
     const Volume* volume = nullptr;
-    int closed_by = -1;        ///< solid
-    std::vector<int> inside;   ///< solids
-    std::vector<int> outside;  ///< solids: those of `outside`, then those of `without`
-    std::size_t hiding = 0;    ///< how many of these, the first, hide what lies behind them
-    int within = -1;           ///< depth
+    std::optional<std::size_t> closed_by;  ///< body
+    std::vector<std::size_t> inside;       ///< bodies
+    std::vector<std::size_t> outside;      ///< bodies: those of `outside`, then those of `without`
+    std::size_t hiding = 0;                ///< the number of bodies of `outside`, which hide what lies behind them
+    std::optional<std::size_t> within;     ///< depth field
     int material = -1;
     int muscle = -1;
     std::vector<Band> bands;
 
-    /// Depths are counted on the near side of the `outside` surfaces only.
-    bool asks_sight() const { return within >= 0 && hiding > 0; }
+    /// Whether a point belongs to the volume only where no `outside` body lies between it and the surface from which
+    /// its depth is measured.
+    bool needs_sight() const { return within && hiding > 0; }
+    /// Whether `condition` is true of any of the hiding bodies.
+    template <class Condition>
+    bool any_hiding(const Condition& condition) const
+    {
+      return std::any_of(outside.begin(), outside.begin() + static_cast<std::ptrdiff_t>(hiding), condition);
+    }
   };
 
-  /// Throws Error naming what a volume, layer or muscle refers to that is not there.
-  Volumes(const Scene& scene, const std::vector<std::unique_ptr<PreparedSurface>>& surfaces, double sample_spacing);
+  /// Layers thinner than `sample_spacing` are thin layers. Throws Error where a volume, layer or muscle refers to
+  /// something that is not there.
+  Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing);
 
   const std::vector<Entry>& entries() const { return entries_; }
-  const std::vector<Solid>& solids() const { return solids_; }
-  const std::vector<Depth>& depths() const { return depths_; }
+  std::size_t bodies() const { return bodies_.size(); }
+  const PreparedSurface& body(std::size_t index) const { return *bodies_[index]; }
+  const std::vector<DepthField>& depth_fields() const { return depth_fields_; }
   const std::vector<ThinLayer>& thin_layers() const { return thin_layers_; }
 
-  /// Box that holds all tissue, in scene coordinates [m]. Throws Error where a tissue volume has no bounds.
+  /// The box around all tissue, in scene coordinates [m]. Throws Error where a tissue volume has no bounds.
   Box tissue_box() const;
 
-  /// "FILE:LINE: volume 'NAME'" for messages.
+  /// How messages about a volume begin.
   std::string place(const Volume& volume) const;
 
 private:
-  int solid(const std::vector<std::string>& names);
-  int depth(const std::string& name);
+  /// Bounds of a tissue volume. Throws Error where it has none, or nothing lies within them.
+  Box bounds_of(const Entry& entry) const;
+  /// Index of the body that these surfaces make together; made on first use, as is a depth field.
+  std::size_t body_of(const std::vector<std::string>& names);
+  std::size_t depth_field_below(const std::string& name);
   void add_layers(const Scene& scene, double sample_spacing);
 
   const Scene* scene_;
-  const std::vector<std::unique_ptr<PreparedSurface>>* surfaces_;
-  std::vector<std::unique_ptr<PreparedSurface>> joined_;
-  std::vector<std::vector<std::string>> solid_names_;
-  std::vector<Solid> solids_;
-  std::vector<Depth> depths_;
+  const PreparedSurfaces* surfaces_;
+  PreparedSurfaces joined_;
+  std::vector<std::vector<std::string>> body_names_;
+  std::vector<const PreparedSurface*> bodies_;
+  std::vector<DepthField> depth_fields_;
   std::vector<Entry> entries_;
   std::vector<ThinLayer> thin_layers_;
 };

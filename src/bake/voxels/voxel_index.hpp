@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Which voxel stands at (i,j,k): a sparse grid of blocks of 8^3.
+/// Finds the voxel at (i, j, k): a sparse grid, whose blocks of 8^3 cells exist where they hold a voxel.
 class VoxelIndex
 {
 public:
@@ -16,9 +16,7 @@ public:
   {
     for (int a = 0; a < 3; ++a)
       blocks_[a] = (size[a] + 7) / 8;
-    first_.assign(static_cast<std::size_t>(blocks_[0]) * static_cast<std::size_t>(blocks_[1]) *
-                      static_cast<std::size_t>(blocks_[2]),
-                  -1);
+    first_.assign(std::size_t{ 1 } * blocks_[0] * blocks_[1] * blocks_[2], -1);
     for (std::size_t e = 0; e < voxels.size(); ++e)
     {
       std::int32_t& first = first_[block(voxels[e])];
@@ -27,7 +25,7 @@ public:
         first = static_cast<std::int32_t>(number_.size() / 512);
         number_.resize(number_.size() + 512, -1);
       }
-      number_[static_cast<std::size_t>(first) * 512 + within(voxels[e])] = static_cast<std::int32_t>(e);
+      number_[std::size_t{ 512 } * first + within(voxels[e])] = static_cast<std::int32_t>(e);
     }
   }
 
@@ -40,21 +38,15 @@ public:
         return -1;
     }
     const std::int32_t first = first_[block(place)];
-    return first < 0 ? -1 : number_[static_cast<std::size_t>(first) * 512 + within(place)];
+    return first < 0 ? -1 : number_[std::size_t{ 512 } * first + within(place)];
   }
 
 private:
   std::size_t block(const std::array<std::int32_t, 3>& p) const
   {
-    return (static_cast<std::size_t>(p[2] / 8) * static_cast<std::size_t>(blocks_[1]) +
-            static_cast<std::size_t>(p[1] / 8)) *
-               static_cast<std::size_t>(blocks_[0]) +
-           static_cast<std::size_t>(p[0] / 8);
+    return (std::size_t{ 1 } * (p[2] / 8) * blocks_[1] + p[1] / 8) * blocks_[0] + p[0] / 8;
   }
-  static std::size_t within(const std::array<std::int32_t, 3>& p)
-  {
-    return static_cast<std::size_t>((p[2] % 8 * 8 + p[1] % 8) * 8 + p[0] % 8);
-  }
+  static std::size_t within(const std::array<std::int32_t, 3>& p) { return (p[2] % 8 * 8 + p[1] % 8) * 8 + p[0] % 8; }
 
   std::array<std::int32_t, 3> size_;
   std::array<std::int32_t, 3> blocks_{};

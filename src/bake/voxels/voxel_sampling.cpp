@@ -10,19 +10,18 @@ namespace frontalis
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
   clear_shares();
-  std::fill(gathered_.begin(), gathered_.end(), false);
-  std::fill(nearby_.begin(), nearby_.end(), Nearby());
-  // a little beside the centre: symmetric scenes have edges and corners there
-  base_ = box.centre() + Vector3{ 0.0131 * grid_.spacing[0], 0.0073 * grid_.spacing[1], -0.0113 * grid_.spacing[2] };
+  for (NearbyBody& body : nearby_body_)
+    body.known = false;
+  std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
+  // a little beside the centre, where scenes that are symmetric to the grid have edges and corners
+  middle_ = box.center() + Vector3d(0.0131, 0.0073, -0.0113).cwiseProduct(grid_.spacing);
 
   const double share = 1.0 / static_cast<double>(offsets_.size());
-  std::vector<Answer> inside(state.volume.size());
-  for (const Vector3& offset : offsets_)
+  std::vector<Answer> inside(state.inside_volume.size());
+  for (const Vector3d& offset : offsets_)
   {
-    Vector3 p{};
-    for (std::size_t a = 0; a < 3; ++a)
-      p[a] = box.lower[a] + offset[a] * grid_.spacing[a];
-    std::fill(solid_here_.begin(), solid_here_.end(), std::int8_t{ -1 });
+    const Vector3d p = box.min() + offset.cwiseProduct(grid_.spacing);
+    std::fill(body_here_.begin(), body_here_.end(), std::int8_t{ -1 });
     std::fill(depth_here_.begin(), depth_here_.end(), std::numeric_limits<double>::quiet_NaN());
 
     bool tissue = false;
@@ -40,7 +39,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       const Volumes::Entry& entry = volumes_.entries()[v];
       if (!entry.volume->tissue)
       {
-        inside[v] = state.volume[v];
+        inside[v] = state.inside_volume[v];
         if (inside[v] == Answer::unknown)
           inside[v] = sample_volume(v, p, state) ? Answer::yes : Answer::no;
       }
@@ -48,115 +47,94 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
         continue;
       volume_share_[v] += share;
       for (const Volumes::Band& band : entry.bands)
-        sample_depth(static_cast<std::size_t>(band.depth), p, state);
+        sample_depth(band.depth_field, p, state);
     }
-    count(inside, depth_here_, share);
+    add_share(inside, depth_here_, share);
   }
 }
 
-bool BlockClassifier::sample_volume(std::size_t volume, const Vector3& p, const BlockState& state)
+bool BlockClassifier::sample_volume(std::size_t volume, const Vector3d& p, const BlockState& state)
 {
   const Volumes::Entry& entry = volumes_.entries()[volume];
-  if (!contains(entry.volume->crop, p))
+  const auto in_body = [&](std::size_t b) { return sample_body(b, p, state); };
+  if (!to_box(entry.volume->crop).contains(p))
     return false;
-  if (entry.closed_by >= 0 && !sample_solid(static_cast<std::size_t>(entry.closed_by), p, state))
+  if (entry.closed_by && !in_body(*entry.closed_by))
     return false;
-  if (!entry.inside.empty() && std::none_of(entry.inside.begin(), entry.inside.end(),
-                                            [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); }))
+  if (!entry.inside.empty() && std::none_of(entry.inside.begin(), entry.inside.end(), in_body))
     return false;
-  if (entry.within >= 0)
+  if (entry.within)
   {
-    const double depth = sample_depth(static_cast<std::size_t>(entry.within), p, state);
+    const double depth = sample_depth(*entry.within, p, state);
     if (depth < entry.volume->depth_min || depth > entry.volume->depth_max)
       return false;
   }
-  if (std::any_of(entry.outside.begin(), entry.outside.end(),
-                  [&](int s) { return sample_solid(static_cast<std::size_t>(s), p, state); }))
+  if (std::any_of(entry.outside.begin(), entry.outside.end(), in_body))
     return false;
-  if (!entry.asks_sight() || state.sight[volume] != Answer::unknown)
-    return !entry.asks_sight() || state.sight[volume] == Answer::yes;
-  return in_sight(entry, p, entry.volume->depth_max + reach_);
+  if (!entry.needs_sight())
+    return true;
+  return state.in_sight[volume] == Answer::unknown ? in_sight(entry, p, entry.volume->depth_max + reach_)
+                                                   : state.in_sight[volume] == Answer::yes;
 }
 
-bool BlockClassifier::sample_solid(std::size_t solid, const Vector3& p, const BlockState& state)
+bool BlockClassifier::sample_body(std::size_t body, const Vector3d& p, const BlockState& state)
 {
-  if (state.solid[solid] != Answer::unknown)
-    return state.solid[solid] == Answer::yes;
-  std::int8_t& here = solid_here_[solid];
+  if (state.inside_body[body] != Answer::unknown)
+    return state.inside_body[body] == Answer::yes;
+  std::int8_t& here = body_here_[body];
   if (here >= 0)
     return here != 0;
-  const PreparedSurface& surface = *volumes_.solids()[solid].surface;
-  Crossing& known = crossings_[solid];
-  if (!gathered_[solid])
+  const PreparedSurface& surface = volumes_.body(body);
+  NearbyBody& nearby = nearby_body_[body];
+  if (!nearby.known)
   {
-    // the winding number at one point of the voxel; elsewhere it differs by the triangles between
-    Box box;
-    box.include(base_ - 0.52 * grid_.spacing);
-    box.include(base_ + 0.52 * grid_.spacing);
-    known.triangles.clear();
-    surface.tree().gather(box, known.triangles);
-    known.winding = surface.tree().winding_number(base_);
-    known.variation = surface.closed() ? 0 : surface.winding_variation(base_, 1.1 * reach_);
-    gathered_[solid] = true;
+    nearby.triangles.clear();
+    surface.tree().gather(Box(middle_ - 0.52 * grid_.spacing, middle_ + 0.52 * grid_.spacing), nearby.triangles);
+    nearby.winding = surface.tree().winding_number(middle_);
+    nearby.variation = surface.closed() ? 0 : surface.winding_variation(middle_, 1.1 * reach_);
+    nearby.known = true;
   }
-  double winding = known.winding;
-  for (const std::int32_t triangle : known.triangles)
-    winding += crossing(surface.mesh(), triangle, base_, p);
-  if (std::abs(winding - 0.5) <= known.variation)
+  // the winding number at p differs from that at the middle by the triangles that lie between
+  double winding = nearby.winding;
+  for (const std::int32_t triangle : nearby.triangles)
+    winding += crossing(surface.mesh(), triangle, middle_, p);
+  if (std::abs(winding - 0.5) <= nearby.variation)
     winding = surface.tree().winding_number(p);
   here = winding > 0.5 ? 1 : 0;
   return here != 0;
 }
 
-double BlockClassifier::sample_depth(std::size_t depth, const Vector3& p, const BlockState& state)
+double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const BlockState& state)
 {
-  double& here = depth_here_[depth];
+  double& here = depth_here_[field];
   if (!std::isnan(here))
     return here;
-  if (state.depth[depth].known)
-    return here = state.depth[depth].depth;
-  const Volumes::Depth& field = volumes_.depths()[depth];
-  Nearby& nearby = nearby_[depth];
+  if (state.depth[field].known)
+    return here = state.depth[field].value;
+  const auto& [surface, thresholds] = volumes_.depth_fields()[field];
+  NearbyDepth& nearby = nearby_depth_[field];
   if (!nearby.known)
   {
-    const ClosestPoint closest = field.surface->tree().closest(base_);
+    const ClosestPoint closest = surface->tree().closest(middle_);
     nearby.known = true;
     nearby.triangle = closest.triangle;
     nearby.distance = closest.distance;
-    nearby.depth = -field.surface->signed_distance(base_, closest);
-    nearby.steady = field.surface->closed() || !field.surface->rim_within(base_, closest.distance + 2.2 * reach_);
+    nearby.depth = -surface->signed_distance(middle_, closest);
+    nearby.steady = surface->closed() || !surface->rim_within(middle_, closest.distance + 2.2 * reach_);
   }
-  // depths change no faster than places: without a threshold between, that of the voxel's middle stands for this one
-  const double way = norm(p - base_);
-  const auto next = std::lower_bound(field.thresholds.begin(), field.thresholds.end(), nearby.depth - way);
-  if (nearby.steady && (next == field.thresholds.end() || *next > nearby.depth + way))
+  // A depth changes by at most the distance moved. If that reaches no threshold, the middle's depth serves for p too.
+  const double way = (p - middle_).norm();
+  const auto next = std::lower_bound(thresholds.begin(), thresholds.end(), nearby.depth - way);
+  if (nearby.steady && (next == thresholds.end() || *next > nearby.depth + way))
     return here = nearby.depth;
   const ClosestPoint closest =
-      field.surface->tree().closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12, nearby.triangle);
-  return here = -field.surface->signed_distance(p, closest);
+      surface->tree().closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12, nearby.triangle);
+  return here = -surface->signed_distance(p, closest);
 }
 
-void BlockClassifier::count_bands(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
+void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
 {
-  for (std::size_t v = 0; v < inside.size(); ++v)
-  {
-    const auto& bands = volumes_.entries()[v].bands;
-    if (bands.empty() || inside[v] != Answer::yes)
-      continue;
-    const auto holds = [&depth](const Volumes::Band& band)
-    {
-      const double d = depth[static_cast<std::size_t>(band.depth)];
-      return d >= band.from && d < band.to;
-    };
-    const auto band = std::find_if(bands.begin(), bands.end(), holds);
-    band_share_[v][static_cast<std::size_t>(band - bands.begin())] += share;
-  }
-}
-
-void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
-{
-  count_bands(inside, depth, share);
-  // the highest priority among those that bring a material; equals share
+  // the volumes of the highest priority share the place among those that bring a material
   int highest = std::numeric_limits<int>::min();
   int sharers = 0;
   for (std::size_t v = 0; v < inside.size(); ++v)
@@ -165,7 +143,7 @@ void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector
     if (inside[v] != Answer::yes)
       continue;
     if (entry.muscle >= 0)
-      muscle_share_[static_cast<std::size_t>(entry.muscle)] += share;
+      muscle_share_[entry.muscle] += share;
     if (entry.material < 0 || entry.volume->priority < highest)
       continue;
     sharers = entry.volume->priority > highest ? 1 : sharers + 1;
@@ -174,23 +152,19 @@ void BlockClassifier::count(const std::vector<Answer>& inside, const std::vector
   for (std::size_t v = 0; v < inside.size(); ++v)
   {
     const Volumes::Entry& entry = volumes_.entries()[v];
-    if (inside[v] != Answer::yes || entry.material < 0 || entry.volume->priority != highest)
+    if (inside[v] != Answer::yes)
       continue;
-    int material = entry.material;
-    for (const Volumes::Band& band : entry.bands)
-    {
-      const double d = depth[static_cast<std::size_t>(band.depth)];
-      if (d >= band.from && d < band.to)
-      {
-        material = band.material;
-        break;
-      }
-    }
-    material_share_[static_cast<std::size_t>(material)] += share / sharers;
+    const auto band = std::find_if(entry.bands.begin(), entry.bands.end(),
+                                   [&depth](const Volumes::Band& b)
+                                   { return depth[b.depth_field] >= b.from && depth[b.depth_field] < b.to; });
+    if (!entry.bands.empty())
+      band_share_[v][band - entry.bands.begin()] += share;
+    if (entry.material >= 0 && entry.volume->priority == highest)
+      material_share_[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
   }
 }
 
-void BlockClassifier::emit(const std::array<std::int32_t, 3>& place, double fill)
+void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));

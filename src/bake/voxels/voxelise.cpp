@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::int32_t block = 16;
+constexpr std::int32_t block = 16;  // voxels along each edge of a block
 
 }  // namespace
 
@@ -18,12 +18,13 @@ void Voxels::append(const Voxels& other)
 {
   const auto mixtures = static_cast<std::uint32_t>(material.size());
   const auto muscles = static_cast<std::uint32_t>(muscle.size());
-  place.insert(place.end(), other.place.begin(), other.place.end());
-  fill.insert(fill.end(), other.fill.begin(), other.fill.end());
-  material.insert(material.end(), other.material.begin(), other.material.end());
-  proportion.insert(proportion.end(), other.proportion.begin(), other.proportion.end());
-  muscle.insert(muscle.end(), other.muscle.begin(), other.muscle.end());
-  weight.insert(weight.end(), other.weight.begin(), other.weight.end());
+  const auto join = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
+  join(place, other.place);
+  join(fill, other.fill);
+  join(material, other.material);
+  join(proportion, other.proportion);
+  join(muscle, other.muscle);
+  join(weight, other.weight);
   for (std::size_t e = 1; e < other.mixture_begin.size(); ++e)
     mixture_begin.push_back(mixtures + other.mixture_begin[e]);
   for (std::size_t e = 1; e < other.muscle_begin.size(); ++e)
@@ -40,35 +41,33 @@ void Voxels::append(const Voxels& other)
   }
 }
 
-Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeStages& stages)
+Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeMonitor& monitor)
 {
-  std::array<std::int32_t, 3> blocks{};
+  VoxelPlace blocks{};
   std::size_t count = 1;
-  for (std::size_t a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a)
   {
     blocks[a] = (grid.size[a] + block - 1) / block;
-    count *= static_cast<std::size_t>(blocks[a]);
+    count *= blocks[a];
   }
   // each block gives its own list; they are joined in order, whichever thread made them
   std::vector<Voxels> parts(count);
-  parallel_for(
-      count,
-      [&](std::size_t number)
-      {
-        const auto index = static_cast<std::int64_t>(number);
-        const std::array<std::int64_t, 3> at{ { index % blocks[0], index / blocks[0] % blocks[1],
-                                                index / blocks[0] / blocks[1] } };
-        std::array<std::int32_t, 3> begin{}, end{};
-        for (std::size_t a = 0; a < 3; ++a)
-        {
-          begin[a] = static_cast<std::int32_t>(at[a]) * block;
-          end[a] = std::min(begin[a] + block, grid.size[a]);
-        }
-        BlockClassifier classifier(volumes, grid, samples, fill_min);
-        classifier.visit(begin, end);
-        parts[number] = classifier.take();
-      },
-      &stages);
+  parallel_for(monitor, count, 1,
+               [&](std::size_t number)
+               {
+                 const auto index = static_cast<std::int64_t>(number);
+                 const std::array<std::int64_t, 3> at{ { index % blocks[0], index / blocks[0] % blocks[1],
+                                                         index / blocks[0] / blocks[1] } };
+                 VoxelPlace begin{}, end{};
+                 for (int a = 0; a < 3; ++a)
+                 {
+                   begin[a] = static_cast<std::int32_t>(at[a]) * block;
+                   end[a] = std::min(begin[a] + block, grid.size[a]);
+                 }
+                 BlockClassifier classifier(volumes, grid, samples, fill_min);
+                 classifier.visit(begin, end);
+                 parts[number] = classifier.take();
+               });
   Voxels all;
   for (Voxels& part : parts)
   {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/bake_stages.hpp"
+#include "bake/bake_monitor.hpp"
 #include "bake/voxels/volumes.hpp"
 
 #include <cstdint>
@@ -9,23 +9,29 @@
 namespace frontalis
 {
 
-/// Box grid in scene axes: voxel (i,j,k) runs from lower + (i,j,k) * spacing.
+/// Indices of a voxel along the axes of its grid.
+using VoxelPlace = std::array<std::int32_t, 3>;
+
+/// Grid of voxels along the axes of the scene.
 struct Grid
 {
-  Vector3 lower{ 0, 0, 0 };    ///< [m]
-  Vector3 spacing{ 0, 0, 0 };  ///< [m]
-  std::array<std::int32_t, 3> size{ { 0, 0, 0 } };
+  Vector3d lower{ 0, 0, 0 };    ///< [m]
+  Vector3d spacing{ 0, 0, 0 };  ///< [m]
+  VoxelPlace size{ { 0, 0, 0 } };
+
+  /// The corner of a voxel at which its coordinates are least.
+  Vector3d corner(const VoxelPlace& p) const { return lower + Vector3d(p[0], p[1], p[2]).cwiseProduct(spacing); }
 };
 
 /// The grid that holds the scene's tissue. Throws Error, before anything is allocated, where it would have fewer than 8
-/// cells, or where the model would have more voxels than can be counted or take more memory than is free, both
-/// estimated from 2000 points. The text has the numbers, and the length unit that was probably meant.
+/// cells, or where the model would have too many voxels for its indices or for the free memory, both estimated from
+/// 2000 points. The text has the numbers, and the length unit that was probably meant.
 Grid make_grid(const Scene& scene, const Volumes& volumes);
 
-/// Voxels with tissue, in scene axes, in no particular but always the same order.
+/// Voxels with tissue, along the axes of the scene, in an order that depends on nothing but the scene.
 struct Voxels
 {
-  std::vector<std::array<std::int32_t, 3>> place;
+  std::vector<VoxelPlace> place;
   std::vector<float> fill;
   // entries of voxel e: begin[e] .. begin[e + 1]
   std::vector<std::uint32_t> mixture_begin{ 0 };
@@ -34,18 +40,18 @@ struct Voxels
   std::vector<std::uint32_t> muscle_begin{ 0 };
   std::vector<std::int16_t> muscle;
   std::vector<float> weight;
-  std::vector<double>
-      volume_size;  ///< of each volume of the scene, clipped to the tissue, before voxels are dropped [m3]
-  /// of each volume with layers: what its bands hold, and behind them what is left below them [m3]
+  /// Size of each volume of the scene in the tissue, before voxels with too little tissue are left out [m3].
+  std::vector<double> volume_size;
+  /// Of each volume with layers: the size of each band and, last, of what lies in none [m3].
   std::vector<std::vector<double>> band_size;
 
   void append(const Voxels& other);
 };
 
-/// Finds each voxel's proportions. A block of voxels whose box no surface, depth or crop passes through is all alike
-/// and is looked at once; else it is halved down to single voxels, which are sampled at samples^3 points of a
-/// low-discrepancy lattice (the R3 sequence, whose projections on every axis are even too, so that faces along the axes
-/// are met as well as oblique ones). Voxels with less tissue than `fill_min` are left out.
-Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeStages& stages);
+/// Finds what each voxel consists of. A block of voxels through which no surface, depth threshold or crop passes is
+/// decided as a whole; others are halved down to single voxels, which are sampled at samples^3 points of a
+/// low-discrepancy sequence (R3, whose projections on each axis are evenly spread too, so that surfaces along the axes
+/// are sampled as well as oblique ones). Voxels with a smaller proportion of tissue than `fill_min` are left out.
+Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -43,9 +43,6 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
   for (Node* node = nodes_.data() + (nodes.first - nodes_.data()); node != nodes.second; ++node)
   {
     const auto n = node->node;
-    // the state of friction stays too
-    if (step.held != nullptr && step.held[n] != 0)
-      continue;
     const physics::Pose now = node->bone < 0 ? physics::Pose() : pose_of(step.bone[node->bone]);
     const physics::Pose before = node->bone < 0 ? physics::Pose() : pose_of(step.bone_before[node->bone]);
     const physics::RelativeMotion motion = physics::relative_to(

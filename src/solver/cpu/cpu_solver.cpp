@@ -1,6 +1,7 @@
 #include "solver/cpu/cpu_solver.hpp"
 
 #include "solver/skin/bound_points.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "frontalis/physics/viscosity.hpp"
 #include "solver/stepping/step_bound.hpp"
 
@@ -45,13 +46,6 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
   buffer_stride_ = largest + 2 * Tile::width;
   buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
   share_planes(rows_.plane_tiles);
-  if (settings.sleep > 0)
-  {
-    std::ostringstream text;
-    text << "; what is at rest sleeps, within " << settings.sleep << " m";
-    remark_ += text.str();
-    sleep_ = std::make_unique<SleepingTiles>(*model_, rows_, settings.sleep);
-  }
   if (wants_ledger_)
   {
     account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
@@ -81,14 +75,6 @@ void CpuSolver<Real>::effect_switched(Effect effect)
   if (effect == Effect::sliding || effect == Effect::friction)
     restricted_.run(effects());
   loads_.run(effects());
-  wake();
-}
-
-template <class Real>
-void CpuSolver<Real>::wake()
-{
-  if (sleep_)
-    sleep_->wake(time());
 }
 
 template <class Real>
@@ -113,8 +99,6 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
   loads_.list_allocations(list);
   if (account_)
     account_->list_allocations(list);
-  if (sleep_)
-    sleep_->list_allocations(list);
 }
 
 // slabs of about equal numbers of tiles
@@ -145,8 +129,6 @@ void CpuSolver<Real>::rest()
       component.assign(model_->nodes.size(), 0);
   relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
   restricted_.reset();
-  if (sleep_)
-    sleep_->reset();
 }
 
 template <class Real>
@@ -157,14 +139,12 @@ struct CpuSolver<Real>::Kept : SteppingSolver::Fields
   std::vector<float> relaxed;
   typename EnergyAccount<Real>::Book book;
   std::vector<FibreMemory> fibre_memory;
-  SleepingTiles::State sleep;
 
   void archive(ByteArchive& archive) override
   {
     archive(u)(v)(rounding)(relaxed)(fibre_memory);
     contacts.archive(archive);
     book.archive(archive);
-    sleep.archive(archive);
   }
 };
 
@@ -182,8 +162,6 @@ void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
   kept.fibre_memory = fibre_memory_;
   if (account_)
     kept.book = account_->book();
-  if (sleep_)
-    kept.sleep = sleep_->state();
 }
 
 template <class Real>
@@ -198,8 +176,6 @@ void CpuSolver<Real>::restore_fields(const Fields& from)
   fibre_memory_ = kept.fibre_memory;
   if (account_)
     account_->restore(kept.book);
-  if (sleep_)
-    sleep_->restore(kept.sleep);
 }
 
 template <class Real>
@@ -230,7 +206,6 @@ template <class Real>
 void CpuSolver<Real>::set_velocities(const Vectors& in)
 {
   separate(in, v_);
-  wake();
   velocities_were_set();
 }
 
@@ -253,6 +228,9 @@ void CpuSolver<Real>::skin(SkinState& out)
 template class CpuSolver<float>;
 template class CpuSolver<double>;
 
+namespace
+{
+
 std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                         const std::string& remark)
 {
@@ -265,5 +243,9 @@ std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, cons
     solver->reset();
   return solver;
 }
+
+}  // namespace
+
+BackendDescription cpu_backend() { return { "cpu", make_cpu_solver }; }
 
 }  // namespace frontalis

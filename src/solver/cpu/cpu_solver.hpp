@@ -2,7 +2,6 @@
 
 #include "solver/cpu/cpu_kernel.hpp"
 #include "solver/stepping/nodal_loads.hpp"
-#include "solver/cpu/sleeping_tiles.hpp"
 #include "solver/stepping/stepping_solver.hpp"
 #include "solver/cpu/thread_team.hpp"
 #include "solver/cpu/voxel_rows.hpp"
@@ -54,12 +53,6 @@ private:
   void interleave(const Components& in, Vectors& out) const;
   void separate(const Vectors& in, Components& out) const;
   void share_planes(const std::vector<std::int32_t>& plane_tiles);
-  template <class Tiles>
-  static void compute(const Tiles& tiles, Arguments& g);
-  void hold(std::int32_t first, std::int32_t last, const Arguments& g) const;
-  void wake();
-  template <class Visit>
-  void each_range(int thread, bool first_step, const Visit& visit) const;
   Arguments arguments(double dt, const float* activation);
   void kick(Arguments& g, double seconds) const;
   void forces(const Components& at, Vectors& out);
@@ -76,7 +69,6 @@ private:
   Components u_, next_, v_, rounding_;
   std::vector<FibreMemory> fibre_memory_;
   std::unique_ptr<EnergyAccount<Real>> account_;
-  std::unique_ptr<SleepingTiles> sleep_;  // null: all is computed
   std::int32_t buffer_stride_ = 0;
   CpuKernelChoice choice_;
   CpuKernel<Real> kernel_;

@@ -15,16 +15,6 @@ void CpuSolver<Real>::kick(Arguments& g, double seconds) const
 }
 
 template <class Real>
-template <class Tiles>
-void CpuSolver<Real>::compute(const Tiles& tiles, Arguments& g)
-{
-  g.tiles = tiles.tiles.data();
-  g.plane_tiles = tiles.plane_tiles.data();
-  g.stiffness = tiles.stiffness.data();
-  g.stabilisation = tiles.stabilisation.empty() ? nullptr : tiles.stabilisation.data();
-}
-
-template <class Real>
 CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* activation)
 {
   Arguments g{};
@@ -42,7 +32,10 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.stretch_half_sum = static_cast<Real>(discretisation_.stretch_half_sum);
   g.inverse_mass = inverse_mass_.data();
   g.mobility = mobility_.empty() ? g.inverse_mass : mobility_.data();
-  compute(rows_, g);
+  g.tiles = rows_.tiles.data();
+  g.plane_tiles = rows_.plane_tiles.data();
+  g.stiffness = rows_.stiffness.data();
+  g.stabilisation = rows_.stabilisation.empty() ? nullptr : rows_.stabilisation.data();
   g.plane_nodes = rows_.plane_nodes.data();
   g.planes = rows_.planes;
   g.selective_reduced = discretisation_.selective_reduced;
@@ -146,20 +139,6 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
     }
 }
 
-// planes of a thread in which anything is to be done; all of them in a step that may be the first in which nodes are
-// held
-template <class Real>
-template <class Visit>
-void CpuSolver<Real>::each_range(int thread, bool first_step, const Visit& visit) const
-{
-  const std::int32_t begin = slab_[thread], end = slab_[thread + 1];
-  if (!sleep_ || first_step)
-    return visit(begin, end);
-  for (const auto& range : sleep_->planes())
-    if (std::max(range.first, begin) < std::min(range.second, end))
-      visit(std::max(range.first, begin), std::min(range.second, end));
-}
-
 // the work of a step in a thread's planes
 template <class Real>
 void CpuSolver<Real>::account(int thread, const Arguments& g)
@@ -174,35 +153,9 @@ void CpuSolver<Real>::account(int thread, const Arguments& g)
       account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.kick));
 }
 
-// nodes of tiles that sleep stay where they were before the step
-template <class Real>
-void CpuSolver<Real>::hold(std::int32_t first, std::int32_t last, const Arguments& g) const
-{
-  sleep_->each_held(first, last,
-                    [&](std::int32_t node, std::int32_t count)
-                    {
-                      for (int axis = 0; axis < 3; ++axis)
-                      {
-                        std::copy_n(g.u[axis] + node, count, g.next[axis] + node);
-                        std::fill_n(g.v[axis] + node, count, Real(0));
-                        if (g.rounding[axis] != nullptr)
-                          std::fill_n(g.rounding[axis] + node, count, Real(0));
-                      }
-                    });
-}
-
 template <class Real>
 double CpuSolver<Real>::run(const StepPlan& plan)
 {
-  if (sleep_)
-  {
-    if (settling_)
-      sleep_->wake(plan.time);
-    else
-      sleep_->look(constant(u_), plan);
-    if (sleep_->changed())
-      share_planes(sleep_->any() ? sleep_->awake().plane_tiles : rows_.plane_tiles);
-  }
   const std::size_t muscles = model_->muscles.size();
   std::vector<float> activation(plan.steps * muscles, 0);
   std::vector<ConstraintStep> constraint_steps;
@@ -211,22 +164,11 @@ double CpuSolver<Real>::run(const StepPlan& plan)
     if (runs(Effect::contraction))
       plan.activation(step, activation.data() + step * muscles);
     constraint_steps.push_back(plan.constraint_step(step));
-    if (sleep_)
-      constraint_steps.back().held = sleep_->held_nodes();
   }
   const std::vector<double> elapsed = relaxes() ? relaxations(plan) : std::vector<double>(plan.steps, 0);
-  if (sleep_ && sleep_->all() && !sleep_->changed())
-  {
-    for (const double seconds : elapsed)
-      if (seconds > 0)
-        relax(seconds);
-    return sleep_->frequency(0);
-  }
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
-  if (sleep_ && sleep_->any())
-    compute(sleep_->awake(), first);
   team_.run(
       [&](int t)
       {
@@ -248,29 +190,15 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             team_.barrier();
           }
           const auto task = plan.closely || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
-          each_range(t, step == 0,
-                     [&](std::int32_t from, std::int32_t to)
-                     {
-                       const Real frequency_squared = kernel_(g, from, to, buffer, task);
-                       if (!(frequency_squared <= seen[t]))
-                         seen[t] = frequency_squared;
-                       if (!loads_.idle())
-                         add_loads(rows_.plane_nodes[from], rows_.plane_nodes[to], g);
-                       // part of their forces alone moves them far, where sliding nodes would meet other surfaces
-                       if (sleep_)
-                         hold(from, to, g);
-                     });
+          const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
+          if (!(frequency_squared <= seen[t]))
+            seen[t] = frequency_squared;
+          if (!loads_.idle())
+            add_loads(begin, end, g);
           if (account_)
             account_->unconstrained(begin, end, g.v);
-          each_range(t, step == 0,
-                     [&](std::int32_t from, std::int32_t to)
-                     {
-                       if (!restricted_.idle())
-                         restricted_.apply(rows_.plane_nodes[from], rows_.plane_nodes[to], g.next, g.v, g.u,
-                                           constraint_steps[step]);
-                       if (sleep_)
-                         hold(from, to, g);
-                     });
+          if (!restricted_.idle())
+            restricted_.apply(begin, end, g.next, g.v, g.u, constraint_steps[step]);
           if (account_)
             account(t, g);
           team_.barrier();
@@ -283,9 +211,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           if (elapsed[step] > 0)
           {
             g.viscous_elapsed = static_cast<Real>(elapsed[step]);
-            Arguments whole = g;
-            compute(rows_, whole);
-            kernel_(whole, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
+            kernel_(g, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
             team_.barrier();
           }
         }
@@ -295,10 +221,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
   double worst = 0;
   for (const Real x : seen)
     worst = std::isfinite(x) ? std::max(worst, static_cast<double>(x)) : static_cast<double>(x);
-  if (!sleep_)
-    return worst;
-  sleep_->held();
-  return sleep_->frequency(worst);
+  return worst;
 }
 
 template class CpuSolver<float>;

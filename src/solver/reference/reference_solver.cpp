@@ -1,6 +1,7 @@
 #include "solver/reference/reference_solver.hpp"
 
 #include "solver/skin/bound_points.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "solver/stepping/step_bound.hpp"
 
@@ -237,12 +238,20 @@ double ReferenceSolver::run(const StepPlan& plan)
   return worst;
 }
 
-std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings)
+namespace
+{
+
+std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                                              const std::string& /*remark*/)
 {
   auto solver = std::make_unique<ReferenceSolver>(std::move(model), settings);
   if (settings.ledger)
     solver->reset();
   return solver;
 }
+
+}  // namespace
+
+BackendDescription reference_backend() { return { "reference", make_reference_solver }; }
 
 }  // namespace frontalis

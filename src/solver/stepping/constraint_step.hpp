@@ -14,7 +14,6 @@ struct ConstraintStep
   double dt = 0;
   std::vector<RigidTransform> bone;         ///< at the end of the step
   std::vector<RigidTransform> bone_before;  ///< at its begin
-  const char* held = nullptr;               ///< of each node: 1 where it stays for now; null: none does
 };
 
 }  // namespace frontalis

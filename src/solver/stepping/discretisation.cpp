@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "solver/stepping/mass_factors.hpp"
@@ -34,15 +35,15 @@ double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
 }
 
 // a material's parameters in a voxel: with the voxel's own directions where it has some
-std::array<double, 11> parameters_in(const Model& model, std::size_t voxel, const Material& material)
+physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, const Material& material)
 {
   auto parameters = material.parameters;
-  if ((material.law == Law::holzapfel || material.law == Law::guccione) && !model.material_directions.empty())
-    for (int family = 0; family < 2; ++family)
+  for (int family = 0; family < physics::description_of(material.law).directions; ++family)
+    if (!model.material_directions.empty())
     {
       const float* const d = model.material_directions[voxel].data() + 3 * family;
       if (d[0] != 0 || d[1] != 0 || d[2] != 0)
-        std::copy(d, d + 3, parameters.begin() + first_direction + 3 * family);
+        std::copy(d, d + 3, parameters.begin() + physics::first_direction + 3 * family);
     }
   return parameters;
 }
@@ -52,9 +53,7 @@ void add_law(const Model& model, std::size_t voxel, std::int32_t index, double p
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
   const auto parameters = parameters_in(model, voxel, material);
-  // exponents and directions have no mean
-  const bool averaged = material.law == Law::mooney_rivlin || material.law == Law::fung;
-  const std::int32_t key = averaged ? -1 : index;
+  const std::int32_t key = physics::description_of(material.law).averaged ? -1 : index;
   auto part = std::find_if(parts.begin(), parts.end(),
                            [&](const auto& p) { return p.law == material.law && p.material == key; });
   if (part == parts.end())

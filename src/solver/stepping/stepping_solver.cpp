@@ -58,8 +58,7 @@ SteppingSolver::SteppingSolver(std::shared_ptr<const Model> model, const SolverS
       wants_ledger_(settings.ledger),
       damping_(model_->damping),
       effects_(effects_of(*model_)),
-      forced_time_step_(settings.time_step),
-      computes_all_(settings.sleep > 0 ? "; all is computed: only the backend cpu lets tissue sleep" : "")
+      forced_time_step_(settings.time_step)
 {
   set_gravity();
   frequency_squared_ = discretisation_.frequency_squared_max;

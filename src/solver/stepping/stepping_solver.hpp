@@ -132,8 +132,6 @@ protected:
   virtual void effect_switched(Effect effect) = 0;
   virtual void list_allocations(AllocationList& list) const = 0;
   bool runs(Effect effect) const { return effects_.has(effect); }
-  /// For the descriptions of backends on which nothing sleeps; empty where nobody asked for it.
-  const std::string& computes_all() const { return computes_all_; }
   /// Whose memory fibres are: contraction's where the model has it.
   Effect effect_of_fibres() const;
   /// Activation of each muscle as its fibres feel it.
@@ -184,7 +182,6 @@ private:
   EffectSet effects_;
   std::unique_ptr<SkinValues> skin_values_;  // from the first request on
   double forced_time_step_ = 0;
-  std::string computes_all_;
   double slow_share_ = 1;  // of the safe time step
 };
 
@@ -206,10 +203,5 @@ private:
 
 /// Controls at rest: no activation, bones in place.
 Controls rest_controls(const Model& model);
-
-std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings);
-/// `remark` is added to its description.
-std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
-                                        const std::string& remark = {});
 
 }  // namespace frontalis

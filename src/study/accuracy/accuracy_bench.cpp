@@ -26,7 +26,7 @@ VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, co
 
 std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend) const
 {
-  std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + name_of(backend);
+  std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)
     text += " " + std::to_string(activation);
   return content_hash(text + " " + std::to_string(plan_.history.ramp) + " " + std::to_string(plan_.history.hold));
@@ -38,13 +38,13 @@ std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) c
 {
   std::vector<Backend> backends{ setting.backend };
   if (setting.backend == plan_.standard.backend && setting.profile.precision == "single")
-    backends.insert(backends.end(), { Backend::cuda, Backend::cpu });
+    backends.insert(backends.end(), { Backend("cuda"), Backend("cpu") });
   return backends;
 }
 
 std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting, Backend& played_by) const
 {
-  for (const Backend backend : backends_of(setting))
+  for (const Backend& backend : backends_of(setting))
     if (std::optional<VariantMotion> motion = store_.motion(key_of(setting, backend)))
     {
       played_by = backend;
@@ -55,7 +55,7 @@ std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& se
 
 bool VariantBench::is_kept(const AccuracySetting& setting) const
 {
-  for (const Backend backend : backends_of(setting))
+  for (const Backend& backend : backends_of(setting))
     if (store_.has_motion(key_of(setting, backend)))
       return true;
   return false;
@@ -170,7 +170,7 @@ void VariantBench::look_at_standard()
   setting.profile.mass_scaling = {};
   setting.profile.time_step = "element";
   const auto model = std::make_shared<const Model>(maker_.bake(setting));
-  for (const Backend backend : available_backends())
+  for (const Backend& backend : available_backends())
   {
     SolverSettings settings;
     settings.backend = backend;

@@ -255,7 +255,7 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   const double used = processor_seconds(), begin = wall_seconds();
   // the search for an assembled time step is dear while muscles begin to pull, and would pass for the steps' cost
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
-  const bool shared = setting.backend == Backend::cpu && !alone;
+  const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;
   std::vector<double> steps, skins;

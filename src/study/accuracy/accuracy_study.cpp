@@ -168,9 +168,9 @@ void Study::check_reference()
   if (!motion_of(base).fault.empty())
     return;
   exact.profile.precision = "double";
-  const bool elsewhere = exact.backend == Backend::cuda;  // which has no double precision
+  const bool elsewhere = exact.backend == "cuda";  // which has no double precision
   if (elsewhere)
-    exact.backend = Backend::cpu;
+    exact.backend = "cpu";
   halved.profile.time_step_share *= 0.5;
   for (const auto& [setting, words] : { std::pair<const AccuracySetting&, const char*>(
                                             exact, elsewhere ? "double precision on the CPU" : "double precision"),
@@ -234,7 +234,7 @@ AccuracyFindings Study::run()
       ++elsewhere[measured.played_by];
   }
   for (const auto& [backend, count] : elsewhere)
-    findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + name_of(backend) +
+    findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + backend +
                               ", which the folder had.");
   if (!plan_.exact)
   {

@@ -76,7 +76,7 @@ std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wa
 
 bool is_alone(const SolverSettings& settings)
 {
-  return settings.backend == Backend::reference || (settings.backend == Backend::cpu && settings.threads == 1);
+  return settings.backend == "reference" || (settings.backend == "cpu" && settings.threads == 1);
 }
 
 Spread spread_of(std::vector<double> values)

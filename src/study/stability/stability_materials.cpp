@@ -1,5 +1,6 @@
 // what materials make hard: near-incompressibility, contrasts, thin layers, stiffening, scaled mass
 
+#include "frontalis/physics/materials/all.hpp"
 #include "frontalis/study/equilibrium.hpp"
 #include "study/stability/stability_cases.hpp"
 #include "study/stability/stability_models.hpp"
@@ -109,7 +110,7 @@ void stiffening(const StabilitySettings& settings, const CaseFile& file, Trial& 
 {
   Model model = soft_block(file.size());
   Material& tissue = model.materials[0];
-  tissue.law = Law::fung;
+  tissue.law = law_of<physics::FungExponential>;
   tissue.parameters[2] = file.number("exponent");
   model.time_step_share = file.number("time_step_share");
   model.damping = file.number("damping", "1/s");

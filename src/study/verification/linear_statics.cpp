@@ -55,7 +55,7 @@ std::vector<float> make_of(const Model& model, std::size_t e)
 Matrix element_stiffness(const Model& model, std::size_t e, const std::array<double, 9>& gradient)
 {
   const auto one = std::make_shared<const Model>(lone_voxel(model, e));
-  const auto solver = make_solver(one, { Backend::reference, 1, 0 });
+  const auto solver = make_solver(one, { "reference", 1, 0 });
   Vectors u(8), f[2];
   for (std::size_t b = 0; b < 8; ++b)
   {

@@ -1,5 +1,6 @@
 // cardiac mechanics benchmark, problems 1 and 3: Land et al. 2015, Proc. R. Soc. A 471:20150641
 
+#include "frontalis/physics/materials/all.hpp"
 #include "frontalis/study/equilibrium.hpp"
 #include "study/verification/shape_model.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -18,7 +19,7 @@ Material heart(double kappa)
 {
   Material material;
   material.name = "heart";
-  material.law = Law::guccione;
+  material.law = law_of<physics::Guccione>;
   material.density = 1000;
   material.parameters = { { 2e3, kappa, 8, 2, 4, 1, 0, 0 } };
   return material;

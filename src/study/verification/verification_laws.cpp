@@ -1,6 +1,6 @@
 // forces of the element and the laws: what must hold to the last digit
 
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
 
@@ -67,20 +67,16 @@ Gradient piola_stress(const Model& model, Solver& solver)
 
 std::vector<std::pair<std::string, Material>> every_law()
 {
-  const double kappa = bulk_modulus(young, poisson);
   std::vector<std::pair<std::string, Material>> laws{ { "neo-Hookean", neo_hookean(young, poisson) } };
-  const auto add = [&](const std::string& name, Law law, const std::array<double, 11>& parameters)
-  {
-    Material material = laws.front().second;
-    material.law = law;
-    material.parameters = parameters;
-    laws.emplace_back(name, material);
-  };
-  add("Mooney-Rivlin", Law::mooney_rivlin, { { 4e3, kappa, 1e3 } });
-  add("Ogden", Law::ogden, { { 6e3, kappa, 2.5, -2e3, -2 } });
-  add("Fung", Law::fung, { { 8e3, kappa, 1.5 } });
-  add("Holzapfel-Gasser-Ogden", Law::holzapfel, { { 5e3, kappa, 6e3, 0.8, 0.1, 0.8, 0.6, 0, 0.8, -0.6, 0 } });
-  add("Guccione", Law::guccione, { { 2e3, kappa, 8, 2, 4, 0.8, 0.6, 0 } });
+  for (const Law law : physics::every_law)
+    if (law != Law::neo_hookean)
+    {
+      Material material = laws.front().second;
+      material.law = law;
+      material.parameters = physics::example_of(law);
+      material.parameters[physics::bulk_modulus_slot] = bulk_modulus(young, poisson);
+      laws.emplace_back(physics::description_of(law).title, material);
+    }
   return laws;
 }
 
@@ -104,7 +100,7 @@ Finding verify_rigid_motion(const VerificationSettings& settings)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       R[3 * i + j] = c * (i == j) + s * cross[3 * i + j] + (1 - c) * a[i] * a[j];
-  for (const auto& [backend, bound] : { std::pair{ Backend::reference, 1e-12 }, { settings.backend, 2e-5 } })
+  for (const auto& [backend, bound] : { std::pair{ Backend("reference"), 1e-12 }, { settings.backend, 2e-5 } })
     for (const auto form : { HourglassControl::scalar, HourglassControl::assumed_strain })
     {
       const auto model = std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 3, form));
@@ -112,8 +108,8 @@ Finding verify_rigid_motion(const VerificationSettings& settings)
       solver->set_displacements(affine(*model, R, { { 2e-3, 0, 0 } }));
       Vectors forces;
       solver->internal_forces(forces);
-      finding.checks.push_back(absolute_check("force over E h², " + frontalis::name_of(backend) + ", " + name_of(form),
-                                              "1", 0, largest(forces) / (young * edge * edge), bound));
+      finding.checks.push_back(absolute_check("force over E h², " + backend + ", " + name_of(form), "1", 0,
+                                              largest(forces) / (young * edge * edge), bound));
     }
   return finding;
 }
@@ -134,7 +130,7 @@ Finding verify_affine_motion(const VerificationSettings& settings)
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], one);
   const auto law =
       physics::stress(physics::NeoHookean<double>{ shear_modulus(young, poisson), bulk_modulus(young, poisson) }, k);
-  for (const auto& [backend, bound] : { std::pair{ Backend::reference, 1e-11 }, { settings.backend, 2e-5 } })
+  for (const auto& [backend, bound] : { std::pair{ Backend("reference"), 1e-11 }, { settings.backend, 2e-5 } })
   {
     const auto model =
         std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 4, HourglassControl::assumed_strain));
@@ -152,7 +148,7 @@ Finding verify_affine_motion(const VerificationSettings& settings)
       for (int j = 0; j < 3; ++j)
         error = std::max(error,
                          std::abs(P[3 * i + j] - law.on_gradient * k.F.a[i][j] - law.on_cofactor * k.cofactor.a[i][j]));
-    const std::string of = ", " + frontalis::name_of(backend);
+    const std::string of = ", " + backend;
     finding.checks.push_back(
         absolute_check("force inside over E h²" + of, "1", 0, inside / (young * edge * edge), bound));
     finding.checks.push_back(absolute_check("error of stress over E" + of, "1", 0, error / young, bound));
@@ -176,7 +172,7 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
       if (form == HourglassControl::assumed_strain && material.law != Law::neo_hookean)
         continue;
       const auto model = std::make_shared<const Model>(small_block(material, 2, form));
-      const auto energies = make_solver(model, { Backend::reference, 1, 0 });
+      const auto energies = make_solver(model, { "reference", 1, 0 });
       Vectors u(model->nodes.size());
       for (auto& v : u)
         for (auto& c : v)
@@ -193,7 +189,7 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
             const Monitor monitor = energies->monitor();
             slopes[n][axis] += side * (monitor.internal + monitor.hourglass) / (2 * step);
           }
-      for (const auto& [backend, bound] : { std::pair{ Backend::reference, 1e-6 }, { settings.backend, 2e-5 } })
+      for (const auto& [backend, bound] : { std::pair{ Backend("reference"), 1e-6 }, { settings.backend, 2e-5 } })
       {
         const auto solver = make_solver(model, { backend, 1, 0 });
         solver->set_displacements(u);
@@ -203,7 +199,7 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
         for (std::size_t n = 0; n < u.size(); ++n)
           for (int axis = 0; axis < 3; ++axis)
             errors[n][axis] = forces[n][axis] - slopes[n][axis];
-        std::string name = law + ", " + frontalis::name_of(backend);
+        std::string name = law + ", " + backend;
         if (form == HourglassControl::assumed_strain)
           name += ", " + name_of(form);
         finding.checks.push_back(absolute_check(name, "1", 0, largest(errors) / largest(slopes), bound));

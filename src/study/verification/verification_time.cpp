@@ -177,7 +177,7 @@ Finding verify_precision(const VerificationSettings&)
     solver->displacements(u);
     return mean_displacement(u, end)[2];
   };
-  const double expected = 1e3 * end_displacement(Backend::reference, Precision::double_precision);
+  const double expected = 1e3 * end_displacement("reference", Precision::double_precision);
   struct Way
   {
     const char* name;
@@ -187,7 +187,7 @@ Finding verify_precision(const VerificationSettings&)
   for (const auto& way : { Way{ "single", Precision::single, 1e-3 }, Way{ "compensated", Precision::compensated, 1e-3 },
                            Way{ "double", Precision::double_precision, 1e-7 } })
     finding.checks.push_back(relative_check(std::string(way.name) + ", end's displacement", "mm", expected,
-                                            1e3 * end_displacement(Backend::cpu, way.precision), way.bound));
+                                            1e3 * end_displacement("cpu", way.precision), way.bound));
   finding.remarks =
       "A compensated sum keeps every increment, but its forces are of single precision too, from differences "
       "of displacements that are rounded to the last place: that is most of the error here.";

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/element/fibres.hpp"
-#include "frontalis/physics/neo_hookean.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "frontalis/physics/viscosity.hpp"
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "frontalis/physics/exponential.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Transversely isotropic Fung-type solid (Guccione, McCulloch & Waldman 1991, J. Biomech. Eng. 113:42) of the
@@ -17,7 +17,26 @@ struct Guccione
   T bf;   ///< along the fibre, > 0 [-]
   T bt;   ///< across it, > 0 [-]
   T bfs;  ///< shear between the two, > 0 [-]
+
+  static constexpr MaterialDescription description{
+    "guccione",
+    "Guccione",
+    "c/2 times the largest of bf, bt and bfs",
+    false,  // averaged
+    1,      // directions
+    { { "c", "stiffness", Measure::pressure, above_zero, 2e3 },
+      { "bf", "stiffening along the fibre", Measure::number, above_zero, 8 },
+      { "bt", "stiffening across the fibre", Measure::number, above_zero, 2 },
+      { "bfs", "stiffening in shear between the two", Measure::number, above_zero, 4 } },
+  };
 };
+
+/// That of the stiffest direction.
+template <class T>
+FRONTALIS_LAW T shear_modulus(const Guccione<T>& material)
+{
+  return Number<T>::of(0.5) * material.c * Number<T>::max(material.bf, Number<T>::max(material.bt, material.bfs));
+}
 
 /// Isochoric strain, Q and half of its gradient.
 template <class T>
@@ -25,25 +44,23 @@ struct GuccioneStrain
 {
   Matrix3<T> C;         ///< F^T F
   Matrix3<T> gradient;  ///< 1/2 dQ/dE
-  T Q;
-  T squared;  ///< E : E
+  T Q, squared;         ///< squared: E : E
 };
 
 template <class T>
 FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, const Kinematics<T>& k, T g,
-                                                const Vec3<T>& fibre)
+                                                const Vec3<T>* fibre)
 {
   using N = Number<T>;
-  const auto& F = k.F.a;
-  const T a[3] = { fibre.x, fibre.y, fibre.z };
+  const T a[3] = { fibre->x, fibre->y, fibre->z };
   GuccioneStrain<T> s;
   T E[3][3], along[3];
+  s.C = right_cauchy_green(k.F);
   s.squared = N::of(0);
   for (int i = 0; i < 3; ++i)
   {
     for (int j = 0; j < 3; ++j)
     {
-      s.C.a[i][j] = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
       E[i][j] = N::of(0.5) * (i == j ? g * s.C.a[i][j] - N::of(1) : g * s.C.a[i][j]);
       s.squared = s.squared + E[i][j] * E[i][j];
     }
@@ -64,7 +81,7 @@ FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, con
 
 /// Adds the first Piola-Kirchhoff stress [Pa] of the solid with fibres along `fibre` (unit length, at rest) to P.
 template <class T>
-FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre, Matrix3<T>& P)
+FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre, Matrix3<T>& P)
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
@@ -82,20 +99,19 @@ FRONTALIS_LAW void add_stress(const Guccione<T>& material, const Kinematics<T>& 
                                k.F.a[i][2] * s.gradient.a[2][j]);
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
-FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {
-  using N = Number<T>;
-  const GuccioneStrain<T> s = guccione_strain(material, k, isochoric_scale(k.J).value, fibre);
-  return N::of(0.5) * material.c * (bounded_exponential(s.Q) - N::of(1));
+  const T Q = guccione_strain(material, k, isochoric_scale(k.J).value, fibre).Q;
+  return Number<T>::of(0.5) * material.c * (bounded_exponential(Q) - Number<T>::of(1));
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F,
 /// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact, d2Q is bounded by the norms of dE and d2E: the former's square is 1 at rest, as
 /// it is exactly, with what its bound has grown since.
 template <class T>
-FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>& fibre)
+FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
@@ -122,8 +138,8 @@ FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<
     }
   const T stretch = N::sqrt(k.I1), turn = -g.slope * N::sqrt(cofactor_squared), C = N::sqrt(strain_squared);
   const T change = g.value * stretch + N::of(0.5) * turn * C;
-  // at rest the square is (1 + sqrt(3))^2
-  const T change_squared = N::of(1) + N::max(change * change - N::of(7.4641016151377544), N::of(0));
+  const double at_rest = 7.4641016151377544;  // (1 + sqrt(3))^2
+  const T change_squared = N::of(1) + N::max(change * change - N::of(at_rest), N::of(0));
   const T bent = g.value + N::of(2) * turn * stretch + N::of(0.5) * bend * cofactor_squared * C -
                  N::of(1 / 1.7320508075688772) * g.slope * stretch * C;
   const T largest = N::max(material.bf, N::max(material.bt, material.bfs));
@@ -131,5 +147,4 @@ FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<
          (first_squared + N::of(2) * largest * change_squared + N::of(2) * N::sqrt(gradient_squared) * bent);
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics

@@ -1,38 +1,34 @@
 #pragma once
 
 #include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Isochoric Mooney-Rivlin solid: psi = c1 (g I1 - 3) + c2 (g^2 I2 - 3), g = J^(-2/3) (Bonet & Wood, 6.5), continued
-/// below a small J with g. Shear modulus at rest 2 (c1 + c2).
+/// below a small J with g.
 template <class T>
 struct MooneyRivlin
 {
   T c1;  ///< [Pa]
   T c2;  ///< [Pa]
+
+  static constexpr MaterialDescription description{
+    "mooney_rivlin",
+    "Mooney-Rivlin",
+    "2 (c1 + c2)",
+    true,  // averaged
+    0,     // directions
+    { { "c1", "coefficient of the first invariant", Measure::pressure, above_zero, 4e3 },
+      { "c2", "coefficient of the second invariant", Measure::pressure, from_zero, 1e3 } },
+  };
 };
 
-/// F^T F.
 template <class T>
-FRONTALIS_LAW Matrix3<T> right_cauchy_green(const Matrix3<T>& F)
+FRONTALIS_LAW T shear_modulus(const MooneyRivlin<T>& material)
 {
-  Matrix3<T> C;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      C.a[i][j] = F.a[0][i] * F.a[0][j] + F.a[1][i] * F.a[1][j] + F.a[2][i] * F.a[2][j];
-  return C;
-}
-
-/// Second invariant of C, (I1^2 - tr C^2) / 2.
-template <class T>
-FRONTALIS_LAW T second_invariant(const Matrix3<T>& C)
-{
-  return C.a[0][0] * C.a[1][1] + C.a[1][1] * C.a[2][2] + C.a[2][2] * C.a[0][0] - C.a[0][1] * C.a[0][1] -
-         C.a[1][2] * C.a[1][2] - C.a[2][0] * C.a[2][0];
+  return Number<T>::of(2) * (material.c1 + material.c2);
 }
 
 /// Adds the first Piola-Kirchhoff stress [Pa] to P.
@@ -52,7 +48,7 @@ FRONTALIS_LAW void add_stress(const MooneyRivlin<T>& material, const Kinematics<
                   on_product * (k.F.a[i][0] * C.a[0][j] + k.F.a[i][1] * C.a[1][j] + k.F.a[i][2] * C.a[2][j]);
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
 FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 {
@@ -80,5 +76,4 @@ FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinemat
                        material.c2 * (N::of(4) + N::max(second - N::of(at_rest), N::of(0))));
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics

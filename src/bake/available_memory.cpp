@@ -1,4 +1,4 @@
-#include "bake/voxels/available_memory.hpp"
+#include "bake/available_memory.hpp"
 
 #include <sys/resource.h>
 
@@ -14,7 +14,7 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// The number after a word of a file, or the file's first number where the word is empty.
+/// The number that follows a word in a file; for an empty word, the first number. Infinite where there is none.
 double number_in(const std::string& path, const std::string& after)
 {
   std::ifstream file(path);

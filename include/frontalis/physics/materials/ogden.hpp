@@ -1,22 +1,60 @@
 #pragma once
 
-#include "frontalis/physics/mooney_rivlin.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
 #include "frontalis/physics/symmetric_eigen.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Isochoric Ogden solid of two terms: psi = sum_p mu_p / alpha_p (sum_a (g c_a)^(alpha_p / 2) - 3), c_a the
-/// eigenvalues of C and g = J^(-2/3) (Ogden 1972). Shear modulus at rest 1/2 sum mu_p alpha_p. Below a small J, C gets
+/// eigenvalues of C and g = J^(-2/3) (Ogden 1972). Below a small J, C gets
 /// a multiple of the identity that grows as J falls (C1), so that no power of a vanishing stretch is taken.
 template <class T>
 struct Ogden
 {
-  T mu[2];     ///< [Pa]
-  T alpha[2];  ///< exponent, not 0 [-]
+  T mu1;     ///< [Pa]
+  T alpha1;  ///< exponent, not 0 [-]
+  T mu2;     ///< [Pa]
+  T alpha2;  ///< exponent, not 0 [-]
+
+  static constexpr MaterialDescription description{
+    "ogden",
+    "Ogden",
+    "(mu1 alpha1 + mu2 alpha2) / 2",
+    false,  // averaged
+    0,      // directions
+    { { "mu1", "coefficient of the first term", Measure::pressure, any_value, 6e3 },
+      { "alpha1", "exponent of the first term", Measure::number, not_zero, 2.5 },
+      { "mu2", "coefficient of the second term", Measure::pressure, any_value, -2e3 },
+      { "alpha2", "exponent of the second term", Measure::number, not_zero, -2 } },
+  };
 };
+
+template <class T>
+FRONTALIS_LAW T shear_modulus(const Ogden<T>& material)
+{
+  return Number<T>::of(0.5) * (material.mu1 * material.alpha1 + material.mu2 * material.alpha2);
+}
+
+/// The terms, to loop over.
+template <class T>
+struct OgdenTerms
+{
+  struct Term
+  {
+    T mu, alpha;
+  };
+  Term terms[2];
+  FRONTALIS_LAW const Term* begin() const { return terms; }
+  FRONTALIS_LAW const Term* end() const { return terms + 2; }
+};
+
+template <class T>
+FRONTALIS_LAW OgdenTerms<T> terms_of(const Ogden<T>& material)
+{
+  return { { { material.mu1, material.alpha1 }, { material.mu2, material.alpha2 } } };
+}
 
 /// What is added to C below the continuation: value and derivative with respect to J.
 template <class T>
@@ -43,8 +81,8 @@ FRONTALIS_LAW void add_stress(const Ogden<T>& material, const Kinematics<T>& k, 
     const T c = N::max(eigen.value[a] + shift.value, N::of(1e-6));
     const T logarithm = N::log(g.value * c);
     T sum = N::of(0);
-    for (int p = 0; p < 2; ++p)
-      sum = sum + material.mu[p] * N::exp(N::of(0.5) * material.alpha[p] * logarithm);
+    for (const auto& term : terms_of(material))
+      sum = sum + term.mu * N::exp(N::of(0.5) * term.alpha * logarithm);
     slope[a] = sum / c;
     trace = trace + slope[a];
     on_g = on_g + sum;
@@ -62,7 +100,7 @@ FRONTALIS_LAW void add_stress(const Ogden<T>& material, const Kinematics<T>& k, 
                   k.F.a[i][2] * S.a[2][j];
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
 FRONTALIS_LAW T energy(const Ogden<T>& material, const Kinematics<T>& k)
 {
@@ -71,15 +109,15 @@ FRONTALIS_LAW T energy(const Ogden<T>& material, const Kinematics<T>& k)
   const SymmetricEigen<T> eigen = symmetric_eigen(right_cauchy_green(k.F));
   const T shift = eigenvalue_shift(k.J).value;
   T sum = N::of(0);
-  for (int p = 0; p < 2; ++p)
+  for (const auto& term : terms_of(material))
   {
     T powers = N::of(-3);
     for (int a = 0; a < 3; ++a)
     {
       const T c = N::max(eigen.value[a] + shift, N::of(1e-6));
-      powers = powers + N::exp(N::of(0.5) * material.alpha[p] * N::log(g * c));
+      powers = powers + N::exp(N::of(0.5) * term.alpha * N::log(g * c));
     }
-    sum = sum + material.mu[p] / material.alpha[p] * powers;
+    sum = sum + term.mu / term.alpha * powers;
   }
   return sum;
 }
@@ -97,15 +135,11 @@ FRONTALIS_LAW T tangent_stiffness(const Ogden<T>& material, const Kinematics<T>&
   {
     const T c = N::max(eigen.value[a] + shift, N::of(1e-6));
     T sum = N::of(0);
-    for (int p = 0; p < 2; ++p)
-    {
-      const T alpha = material.alpha[p];
-      sum = sum + N::of(0.5) * N::max(material.mu[p] * alpha, N::of(0)) * N::exp(N::of(0.5) * alpha * N::log(g * c));
-    }
+    for (const auto& term : terms_of(material))
+      sum = sum + N::of(0.5) * N::max(term.mu * term.alpha, N::of(0)) * N::exp(N::of(0.5) * term.alpha * N::log(g * c));
     largest = N::max(largest, sum / c);
   }
   return largest;
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics

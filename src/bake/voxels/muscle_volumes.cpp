@@ -1,4 +1,4 @@
-#include "bake/fibres/muscle_volumes.hpp"
+#include "bake/voxels/muscle_volumes.hpp"
 
 #include "bake/parallel.hpp"
 #include "bake/voxels/volume_probe.hpp"
@@ -11,36 +11,30 @@ namespace frontalis
 namespace
 {
 
-constexpr double points_a_muscle = 10000;
+constexpr double points_per_muscle = 10000;
 
 struct Interval
 {
   double from = 0, to = 0;
 };
 
-/// Adds the parts of a line along x at (y, z) that a mesh winds around once or more.
+/// Adds the parts of the line along x through (y, z) that lie inside a mesh: where its winding number is above 0.
 void add_intervals(const TriangleTree& tree, const Box& box, double y, double z, double step,
                    std::vector<Interval>& intervals)
 {
   std::vector<std::int32_t> near;
-  Box line;
-  const double margin = 0.01 * step;
-  line.include(Vector3{ box.lower[0] - margin, y - margin, z - margin });
-  line.include(Vector3{ box.upper[0] + margin, y + margin, z + margin });
-  tree.gather(line, near);
+  const Vector3d margin = Vector3d::Constant(0.01 * step);
+  tree.gather(Box(Vector3d(box.min()[0], y, z) - margin, Vector3d(box.max()[0], y, z) + margin), near);
 
-  // crossings by place, +1 inwards and -1 outwards
+  // crossings by their x: +1 into the mesh, -1 out of it
   std::vector<std::pair<double, int>> crossings;
-  const TriangleMesh& mesh = tree.mesh();
   for (const std::int32_t t : near)
   {
-    std::array<Vector3, 3> v{};
-    for (std::size_t c = 0; c < 3; ++c)
-      v[c] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(t)][c])];
+    const auto v = corners(tree.mesh(), tree.mesh().triangles[t]);
     std::array<double, 3> area{};
     for (std::size_t c = 0; c < 3; ++c)
     {
-      const Vector3 &p = v[(c + 1) % 3], &q = v[(c + 2) % 3];
+      const Vector3d &p = v[(c + 1) % 3], &q = v[(c + 2) % 3];
       area[c] = (p[1] - y) * (q[2] - z) - (p[2] - z) * (q[1] - y);
     }
     const bool forwards = area[0] > 0 && area[1] > 0 && area[2] > 0;
@@ -60,7 +54,7 @@ void add_intervals(const TriangleTree& tree, const Box& box, double y, double z,
   }
 }
 
-/// Parts that several bodies cover count once.
+/// Joins intervals that overlap, so that what lies in several bodies counts once.
 void unite(std::vector<Interval>& intervals)
 {
   std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.from < b.from; });
@@ -75,21 +69,19 @@ void unite(std::vector<Interval>& intervals)
   intervals.resize(kept);
 }
 
-/// Where a point of a muscle stands: in the tissue and the muscle's limits, or what clips it.
-Standing muscle_standing(const Volumes& volumes, const Volumes::Entry& muscle, const Vector3& p)
+/// Whether a point of a muscle lies in the tissue and within the muscle's limits, or which condition fails.
+Membership in_tissue(const Volumes& volumes, const Volumes::Entry& muscle, const Vector3d& p)
 {
-  Standing best = Standing::cropped;
+  Membership best = Membership::cropped;
   for (const Volumes::Entry& entry : volumes.entries())
   {
     if (!entry.volume->tissue)
       continue;
-    const Standing here = standing(volumes, entry, p);
-    if (here == Standing::inside)
-    {
-      const Standing own = standing(volumes, muscle, p);
-      return own == Standing::inside ? own : (own == Standing::excluded ? own : Standing::too_deep);
-    }
-    best = here;
+    best = membership(volumes, entry, p);
+    if (best != Membership::inside)
+      continue;
+    const Membership own = membership(volumes, muscle, p);
+    return own == Membership::inside || own == Membership::excluded ? own : Membership::wrong_depth;
   }
   return best;
 }
@@ -98,21 +90,20 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
 {
   Box box;
   double size = 0;
-  for (const int s : entry.inside)
+  for (const std::size_t b : entry.inside)
   {
-    const PreparedSurface& surface = *volumes.solids()[static_cast<std::size_t>(s)].surface;
-    box.include(surface.box());
-    size += std::abs(signed_volume(surface.mesh()));
+    box.extend(volumes.body(b).box());
+    size += std::abs(signed_volume(volumes.body(b).mesh()));
   }
-  const double step = std::cbrt(size / points_a_muscle);
+  const double step = std::cbrt(size / points_per_muscle);
   std::vector<Interval> intervals;
-  for (double y = box.lower[1] + 0.4971 * step; y < box.upper[1]; y += step)
+  for (double y = box.min()[1] + 0.4971 * step; y < box.max()[1]; y += step)
   {
-    for (double z = box.lower[2] + 0.5013 * step; z < box.upper[2]; z += step)
+    for (double z = box.min()[2] + 0.5013 * step; z < box.max()[2]; z += step)
     {
       intervals.clear();
-      for (const int s : entry.inside)
-        add_intervals(volumes.solids()[static_cast<std::size_t>(s)].surface->tree(), box, y, z, step, intervals);
+      for (const std::size_t b : entry.inside)
+        add_intervals(volumes.body(b).tree(), box, y, z, step, intervals);
       unite(intervals);
       for (const Interval& interval : intervals)
       {
@@ -121,12 +112,12 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
         const double part = length / parts * step * step;
         for (double i = 0.5; i < parts; ++i)
         {
-          const Standing here = muscle_standing(volumes, entry, { interval.from + i / parts * length, y, z });
+          const Membership here = in_tissue(volumes, entry, { interval.from + i / parts * length, y, z });
           muscle.mesh += part;
-          (here == Standing::inside     ? muscle.in_tissue
-           : here == Standing::excluded ? muscle.in_bone
-           : here == Standing::beyond   ? muscle.beyond_skin
-                                        : muscle.elsewhere) += part;
+          (here == Membership::inside     ? muscle.in_tissue
+           : here == Membership::excluded ? muscle.in_bone
+           : here == Membership::beyond   ? muscle.beyond_skin
+                                          : muscle.elsewhere) += part;
         }
       }
     }
@@ -135,32 +126,29 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
 
 }  // namespace
 
-std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeStages& stages)
+std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeMonitor& monitor)
 {
   std::vector<BakeReport::MuscleVolume> muscles(model.muscles.size());
   const double voxel_volume = model.spacing[0] * model.spacing[1] * model.spacing[2];
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    for (auto m = static_cast<std::size_t>(model.fibre_begin[e]);
-         m < static_cast<std::size_t>(model.fibre_begin[e + 1]); ++m)
-      muscles[static_cast<std::size_t>(model.fibre_muscle[m])].voxels +=
+    for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
+      muscles[model.fibre_muscle[m]].voxels +=
           static_cast<double>(model.fill[e]) * static_cast<double>(model.fibre_weight[m]) * voxel_volume;
   }
   std::vector<const Volumes::Entry*> made_of_surfaces(muscles.size(), nullptr);
   for (const Volumes::Entry& entry : volumes.entries())
   {
     if (entry.muscle >= 0 && !entry.inside.empty())
-      made_of_surfaces[static_cast<std::size_t>(entry.muscle)] = &entry;
+      made_of_surfaces[entry.muscle] = &entry;
   }
-  parallel_for(
-      muscles.size(),
-      [&](std::size_t m)
-      {
-        muscles[m].name = model.muscles[m].name;
-        if (made_of_surfaces[m] != nullptr)
-          measure(volumes, *made_of_surfaces[m], muscles[m]);
-      },
-      &stages);
+  parallel_for(monitor, muscles.size(), 1,
+               [&](std::size_t m)
+               {
+                 muscles[m].name = model.muscles[m].name;
+                 if (made_of_surfaces[m] != nullptr)
+                   measure(volumes, *made_of_surfaces[m], muscles[m]);
+               });
   std::size_t kept = 0;
   for (std::size_t m = 0; m < muscles.size(); ++m)
   {

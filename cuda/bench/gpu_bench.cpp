@@ -4,7 +4,7 @@
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/dense_block.hpp"
-#include "study/bench/shell_model.hpp"
+#include "cuda/bench/shell_model.hpp"
 #include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ struct Timer
   }
 };
 
-// activations on their way to the wanted ones, reached after 0.3 s as in the published set-up
+// Activations rise linearly to the wanted ones within 0.3 s, as in the published set-up.
 Controls ramped(const Controls& wanted, double time)
 {
   Controls now = wanted;
@@ -73,7 +73,8 @@ Controls ramped(const Controls& wanted, double time)
   return now;
 }
 
-// seconds a step over a run of at least `steps` steps; frame_wall_time > 0: the skin is fetched that often
+// Seconds per step over a run of at least `steps` steps; the skin is fetched every `frame_wall_time` seconds, if above
+// 0.
 double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& controls, int steps, double frame_wall_time)
 {
   const std::int64_t before = solver.profile().steps;
@@ -98,7 +99,7 @@ double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& cont
 }
 
 // median of five runs
-double seconds_a_step(Solver& solver, const Controls& controls, int steps)
+double seconds_per_step(Solver& solver, const Controls& controls, int steps)
 {
   const Timer timer;
   std::vector<double> times;
@@ -108,8 +109,8 @@ double seconds_a_step(Solver& solver, const Controls& controls, int steps)
   return median(times);
 }
 
-// What fetching the skin 60 times a wall second adds, as a share: median of nine runs, each beside the mean of the two
-// without it before and after, because the motion goes on meanwhile.
+// The share that fetching the skin 60 times per wall second adds: median of nine runs, each compared with the mean of
+// the runs without it before and after, because the motion goes on meanwhile.
 double share_of_skin(Solver& solver, const Controls& controls, int steps)
 {
   const Timer timer;
@@ -125,7 +126,7 @@ double share_of_skin(Solver& solver, const Controls& controls, int steps)
   return median(shares);
 }
 
-// The voxels a second of the dense blocks of this run, by name: what other models are compared with.
+// Voxels per second of the dense blocks of this run, by name; other models are compared with them.
 using DenseRates = std::vector<std::pair<std::string, double>>;
 
 void bench(const Scene& scene, DenseRates& dense)
@@ -134,22 +135,23 @@ void bench(const Scene& scene, DenseRates& dense)
   const auto model = std::make_shared<const Model>(scene.make());
   std::size_t free_before = 0, free_after = 0, total = 0;
   cuda::require(cudaMemGetInfo(&free_before, &total), "asking for free memory");
-  const auto solver = make_solver(model, { Backend::cuda, 0, 0 });
+  const auto solver = make_solver(model, { "cuda", 0, 0 });
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
   const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no contact is renewed: the difference is what sliding far costs
+  // at rest no tangent plane is renewed: the difference to the motion is the cost of sliding far
   solver->advance(256 * solver->time_step(), controls);
-  const double still = model->muscles.empty() ? 0 : seconds_a_step(*solver, controls, scene.steps);
+  const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();
   controls.activation.assign(model->muscles.size(), 0.75f);
   const double warm_up = 256 * solver->time_step();
   solver->advance(warm_up, ramped(controls, warm_up));
-  const double step = seconds_a_step(*solver, controls, scene.steps);
+  const double step = seconds_per_step(*solver, controls, scene.steps);
   const auto voxels = static_cast<double>(model->voxels.size());
   std::printf(
-      "%-14s %10.0f voxels  %8.2f us a step  %7.2f G updates a second  %5.0f bytes a voxel  built in %.1f s  %s\n",
+      "%-14s %10.0f voxels  %8.2f us per step  %7.2f G updates per second  %5.0f bytes per voxel  built in %.1f s  "
+      "%s\n",
       scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
   if (model->skin.vertices.empty())
@@ -158,11 +160,11 @@ void bench(const Scene& scene, DenseRates& dense)
   {
     for (const auto& [name, rate] : dense)
       std::printf("%-14s %.2f of the rate of %s\n", "", voxels / step / rate, name.c_str());
-    std::printf("%-14s at rest %.2f us a step\n", "", 1e6 * still);
+    std::printf("%-14s at rest %.2f us per step\n", "", 1e6 * still);
     const double share = share_of_skin(*solver, controls, static_cast<int>(0.1 / step));
     std::printf(
-        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds a simulated one\n", "",
-        model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
+        "%-14s skin of %zu vertices at 60 Hz: %+.1f %%   time step %.2f us, %.2f wall seconds per simulated second\n",
+        "", model->skin.vertices.size(), 100 * share, 1e6 * solver->time_step(), step / solver->time_step());
   }
   const Monitor monitor = solver->monitor();
   if (!monitor.finite)
@@ -197,8 +199,8 @@ int run(int count, char** arguments)
     for (const int n : { 126, 252 })
     {
       const YardstickResult y = run_yardstick(n, 1000);
-      std::printf("yardstick      %10.0f voxels  %8.2f us a step  %7.2f G updates a second  copy %.2f TB/s\n",
-                  std::pow(n, 3), y.microseconds_a_step, y.updates_a_second * 1e-9, y.copy_bandwidth * 1e-12);
+      std::printf("yardstick      %10.0f voxels  %8.2f us per step  %7.2f G updates per second  copy %.2f TB/s\n",
+                  std::pow(n, 3), y.microseconds_per_step, y.updates_per_second * 1e-9, y.copy_bandwidth * 1e-12);
     }
     std::fflush(stdout);
   }

@@ -9,13 +9,13 @@ namespace frontalis
 
 /// Point i of a low-discrepancy sequence in a box (R3: Roberts, The unreasonable effectiveness of quasirandom
 /// sequences, 2018).
-inline Vector3 spread_point(const Box& box, int i)
+inline Vector3d spread_point(const Box& box, int i)
 {
   // 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
-  const Vector3 step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
-  Vector3 p{};
-  for (std::size_t a = 0; a < 3; ++a)
-    p[a] = box.lower[a] + std::fmod(0.5 + (i + 1) * step[a], 1.0) * (box.upper[a] - box.lower[a]);
+  const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
+  Vector3d p;
+  for (int a = 0; a < 3; ++a)
+    p[a] = box.min()[a] + std::fmod(0.5 + (i + 1) * step[a], 1.0) * (box.max()[a] - box.min()[a]);
   return p;
 }
 

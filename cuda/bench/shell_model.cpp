@@ -1,4 +1,4 @@
-#include "study/bench/shell_model.hpp"
+#include "cuda/bench/shell_model.hpp"
 
 #include "solver/contact/surface_tree.hpp"
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "frontalis/physics/exponential.hpp"
+#include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
 
-namespace frontalis
-{
-namespace physics
+namespace frontalis::physics
 {
 
 /// Two dispersed families of collagen fibres in an isochoric neo-Hookean matrix (Gasser, Ogden & Holzapfel 2006, J. R.
@@ -17,7 +17,25 @@ struct HolzapfelGasserOgden
   T k1;          ///< fibre stiffness [Pa]
   T k2;          ///< fibre stiffening, > 0 [-]
   T dispersion;  ///< d: 0 (aligned) to 1/3 (isotropic)
+
+  static constexpr MaterialDescription description{
+    "holzapfel",
+    "Holzapfel-Gasser-Ogden",
+    "shear",
+    false,  // averaged
+    2,      // directions
+    { { "shear", "shear modulus of the matrix", Measure::pressure, above_zero, 5e3 },
+      { "k1", "stiffness of the fibres", Measure::pressure, from_zero, 6e3 },
+      { "k2", "stiffening of the fibres", Measure::number, above_zero, 0.8 },
+      { "dispersion", "dispersion of the fibres", Measure::number, { 0, 1.0 / 3, true, true }, 0.1 } },
+  };
 };
+
+template <class T>
+FRONTALIS_LAW T shear_modulus(const HolzapfelGasserOgden<T>& material)
+{
+  return material.mu;
+}
 
 /// Fibre strain E and |F a0|^2 of the family along a0 (unit length).
 template <class T>
@@ -67,12 +85,10 @@ FRONTALIS_LAW void add_stress(const HolzapfelGasserOgden<T>& material, const Kin
       for (int j = 0; j < 3; ++j)
         P.a[i][j] = P.a[i][j] + on_fibre * along[i] * a[j];
   }
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      P.a[i][j] = P.a[i][j] + on_gradient * k.F.a[i][j] + on_cofactor * k.cofactor.a[i][j];
+  add_isotropic(k, on_gradient, on_cofactor, P);
 }
 
-/// Strain energy a volume at rest [J/m3].
+/// Strain energy per volume at rest [J/m3].
 template <class T>
 FRONTALIS_LAW T energy(const HolzapfelGasserOgden<T>& material, const Kinematics<T>& k, const Vec3<T>* a0)
 {
@@ -112,5 +128,4 @@ FRONTALIS_LAW T tangent_stiffness(const HolzapfelGasserOgden<T>& material, const
   return sum;
 }
 
-}  // namespace physics
-}  // namespace frontalis
+}  // namespace frontalis::physics

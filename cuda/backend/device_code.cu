@@ -1,0 +1,22 @@
+#include "cuda/backend/device_code.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+// compiled for the same architectures as all kernels
+__global__ void probe() {}
+
+}  // namespace
+
+cudaError_t has_device_code()
+{
+  cudaFuncAttributes attributes{};
+  return cudaFuncGetAttributes(&attributes, probe);
+}
+
+}  // namespace cuda
+}  // namespace frontalis

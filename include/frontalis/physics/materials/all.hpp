@@ -1,0 +1,94 @@
+#pragma once
+
+#include "frontalis/physics/materials/description.hpp"
+#include "frontalis/physics/materials/fung.hpp"
+#include "frontalis/physics/materials/guccione.hpp"
+#include "frontalis/physics/materials/holzapfel.hpp"
+#include "frontalis/physics/materials/mooney_rivlin.hpp"
+#include "frontalis/physics/materials/neo_hookean.hpp"
+#include "frontalis/physics/materials/ogden.hpp"
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace frontalis
+{
+namespace physics
+{
+
+template <template <class> class... Solids>
+struct MaterialList
+{
+  using Places = std::make_index_sequence<sizeof...(Solids)>;
+};
+
+/// The table of materials: every solid that a scene can ask for. A solid is a struct of its parameters with a
+/// `description`, and the functions add_stress, energy, tangent_stiffness and shear_modulus of it; with fibres, the
+/// first three take a pointer to their directions after the kinematics. New ones go to the end, for model files store
+/// places.
+using Materials = MaterialList<NeoHookean, MooneyRivlin, Ogden, FungExponential, HolzapfelGasserOgden, Guccione>;
+
+/// The solid with a material's numbers (description.hpp says where each stands).
+template <template <class> class Solid, class T, std::size_t... I>
+FRONTALIS_LAW Solid<T> solid_of(const T* numbers, std::index_sequence<I...>)
+{
+  // the only one that has the volumetric part too
+  if constexpr (std::is_same_v<Solid<T>, NeoHookean<T>>)
+    return { numbers[0], numbers[bulk_modulus_slot] };
+  else
+    return { numbers[slot_of(static_cast<int>(I))]... };
+}
+
+/// Calls visit(solid), or visit(solid, directions) where the solid has fibres.
+template <template <class> class Solid, class T, class Visit>
+FRONTALIS_LAW void visit_solid(const T* numbers, Visit&& visit)
+{
+  constexpr int parameters = Solid<T>::description.count(), directions = Solid<T>::description.directions;
+  const Solid<T> solid = solid_of<Solid>(numbers, std::make_index_sequence<parameters>());
+  if constexpr (directions == 0)
+    visit(solid);
+  else
+  {
+    Vec3<T> along[directions];
+    for (int d = 0; d < directions; ++d)
+    {
+      const T* const a = numbers + first_direction + 3 * d;
+      along[d] = { a[0], a[1], a[2] };
+    }
+    visit(solid, along);
+  }
+}
+
+/// Calls visit for the law's solid; laws before the place `First` are left out.
+template <int First, class T, class Visit, template <class> class... Solids, std::size_t... I>
+FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, MaterialList<Solids...>,
+                                std::index_sequence<I...>)
+{
+  (void)((static_cast<int>(I) >= First && law == static_cast<Law>(I) && (visit_solid<Solids>(numbers, visit), true)) ||
+         ...);
+}
+
+/// The same for all of the table, or for those from the place `First` on.
+template <int First = 0, class T, class Visit>
+FRONTALIS_LAW void visit_table(Law law, const T* numbers, Visit&& visit)
+{
+  visit_listed<First>(law, numbers, visit, Materials{}, Materials::Places{});
+}
+
+template <template <class> class Solid, template <class> class... Solids>
+constexpr Law find_law(MaterialList<Solids...>)
+{
+  int place = 0;
+  (void)((std::is_same_v<Solid<double>, Solids<double>> || (++place, false)) || ...);
+  return static_cast<Law>(place);
+}
+
+}  // namespace physics
+
+/// The law of a solid: law_of<physics::Guccione>.
+template <template <class> class Solid>
+constexpr Law law_of = physics::find_law<Solid>(physics::Materials{});
+static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels treat the first law apart");
+
+}  // namespace frontalis

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "frontalis/physics/invariant_bounds.hpp"
+#include "frontalis/physics/materials/description.hpp"
+
+namespace frontalis::physics
+{
+
+/// Compressible neo-Hookean solid with isochoric split: psi = mu/2 (g(J) I1 - 3) + kappa/2 (J - 1)^2 with g = J^(-2/3)
+/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5), continued below a small J. It has
+/// the volumetric part of all materials; with kappa = 0 it is a purely isochoric law as the others are.
+template <class T>
+struct NeoHookean
+{
+  T mu;     ///< shear modulus [Pa]
+  T kappa;  ///< bulk modulus [Pa]
+
+  static constexpr MaterialDescription description{
+    "neo_hookean",
+    "neo-Hookean",
+    "young / (2 (1 + poisson))",
+    true,  // averaged
+    0,     // directions
+    { { "young", "Young's modulus", Measure::young_modulus, above_zero, 30e3 } },
+  };
+};
+
+template <class T>
+FRONTALIS_LAW T shear_modulus(const NeoHookean<T>& material)
+{
+  return material.mu;
+}
+
+/// First Piola-Kirchhoff stress [Pa] as P = on_gradient F + on_cofactor cof F.
+template <class T>
+struct IsotropicStress
+{
+  T on_gradient;
+  T on_cofactor;
+};
+
+template <class T>
+FRONTALIS_LAW IsotropicStress<T> stress(const NeoHookean<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  const IsochoricScale<T> g = isochoric_scale(k.J);
+  return { material.mu * g.value, N::of(0.5) * material.mu * g.slope * k.I1 + material.kappa * k.dilatation };
+}
+
+/// Adds the first Piola-Kirchhoff stress [Pa] to P.
+template <class T>
+FRONTALIS_LAW void add_stress(const NeoHookean<T>& material, const Kinematics<T>& k, Matrix3<T>& P)
+{
+  const IsotropicStress<T> s = stress(material, k);
+  add_isotropic(k, s.on_gradient, s.on_cofactor, P);
+}
+
+/// Strain energy per volume at rest [J/m3].
+template <class T>
+FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
+{
+  using N = Number<T>;
+  return N::of(0.5) * material.mu * (isochoric_scale(k.J).value * k.I1 - N::of(3)) +
+         N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
+}
+
+/// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
+template <class T>
+FRONTALIS_LAW T tangent_stiffness(const NeoHookean<T>& material, const Kinematics<T>& k)
+{
+  return Number<T>::of(0.25) * material.mu * first_invariant_derivatives(k).second;
+}
+
+}  // namespace frontalis::physics

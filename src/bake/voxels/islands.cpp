@@ -1,0 +1,160 @@
+#include "bake/messages.hpp"
+#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/voxel_index.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+/// Number of the connected part that each voxel belongs to. `sizes` receives the numbers of voxels of the parts.
+std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
+{
+  const VoxelIndex index(model.voxels, model.size);
+  std::vector<std::int32_t> component(model.voxels.size(), -1);
+  std::vector<std::size_t> front;
+  for (std::size_t seed = 0; seed < component.size(); ++seed)
+  {
+    if (component[seed] >= 0)
+      continue;
+    const auto number = static_cast<std::int32_t>(sizes.size());
+    std::size_t size = 0;
+    component[seed] = number;
+    front.push_back(seed);
+    while (!front.empty())
+    {
+      const std::size_t e = front.back();
+      front.pop_back();
+      ++size;
+      for (int side = 0; side < 6; ++side)
+      {
+        auto place = model.voxels[e];
+        place[side / 2] += side % 2 == 0 ? -1 : 1;
+        const std::int32_t other = index.find(place);
+        if (other < 0 || component[other] >= 0)
+          continue;
+        component[other] = number;
+        front.push_back(other);
+      }
+    }
+    sizes.push_back(size);
+  }
+  return component;
+}
+
+/// Gives the restricted nodes their new numbers and removes those that are gone.
+template <class Restricted>
+void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& number)
+{
+  std::size_t kept = 0;
+  for (Restricted entry : list)
+  {
+    entry.node = number[entry.node];
+    if (entry.node >= 0)
+      list[kept++] = entry;
+  }
+  list.resize(kept);
+}
+
+/// Keeps the entries of the voxels that stay, in lists that `begin` divides up by voxels.
+template <class... Lists>
+void keep_entries(const std::vector<bool>& keep, std::vector<std::int32_t>& begin, Lists&... lists)
+{
+  std::vector<std::int32_t> kept{ 0 };
+  std::int32_t count = 0;
+  for (std::size_t e = 0; e < keep.size(); ++e)
+  {
+    if (!keep[e])
+      continue;
+    for (std::int32_t m = begin[e]; m < begin[e + 1]; ++m, ++count)
+      ((lists[count] = lists[m]), ...);
+    kept.push_back(count);
+  }
+  begin = std::move(kept);
+  (lists.resize(count), ...);
+}
+
+void keep_voxels(Model& model, const std::vector<bool>& keep)
+{
+  keep_entries(keep, model.mixture_begin, model.mixture_material, model.mixture_proportion);
+  keep_entries(keep, model.fibre_begin, model.fibre_muscle, model.fibre_weight, model.fibre_direction);
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < keep.size(); ++e)
+  {
+    if (!keep[e])
+      continue;
+    model.voxels[kept] = model.voxels[e];
+    model.fill[kept++] = model.fill[e];
+  }
+  model.voxels.resize(kept);
+  model.fill.resize(kept);
+
+  // the nodes that stay are in the same order as before
+  const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);
+  build_nodes(model);
+  std::vector<std::int32_t> number(old.size(), -1);
+  std::size_t at = 0;
+  for (std::size_t n = 0; n < old.size() && at < model.nodes.size(); ++n)
+  {
+    if (old[n] == model.nodes[at])
+      number[n] = static_cast<std::int32_t>(at++);
+  }
+  renumber(model.rigid, number);
+  renumber(model.sliding, number);
+  renumber(model.prescribed, number);
+}
+
+}  // namespace
+
+void remove_islands(Model& model, BakeMonitor& monitor)
+{
+  std::vector<std::size_t> sizes;
+  const std::vector<std::int32_t> component = face_components(model, sizes);
+  if (sizes.size() < 2)
+    return;
+  std::vector<bool> restricted(model.nodes.size(), false);
+  const auto mark = [&restricted](const auto& nodes)
+  {
+    for (const auto& entry : nodes)
+      restricted[entry.node] = true;
+  };
+  mark(model.rigid);
+  mark(model.sliding);
+  mark(model.prescribed);
+  std::vector<bool> held(sizes.size(), false);
+  for (std::size_t e = 0; e < component.size(); ++e)
+  {
+    for (const std::int32_t n : model.voxel_nodes[e])
+    {
+      if (restricted[n])
+        held[component[e]] = true;
+    }
+  }
+
+  const std::size_t largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  std::vector<bool> stays(sizes.size());
+  std::size_t islands = 0, crumbs = 0, voxels = 0;
+  for (std::size_t c = 0; c < sizes.size(); ++c)
+  {
+    stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
+    if (stays[c])
+      continue;
+    (held[c] ? crumbs : islands) += 1;  // a crumb has restricted nodes but is small
+    voxels += sizes[c];
+  }
+  if (voxels == 0)
+    return;
+  std::vector<bool> keep(component.size());
+  for (std::size_t e = 0; e < keep.size(); ++e)
+    keep[e] = stays[component[e]];
+  keep_voxels(model, keep);
+  monitor.found(
+      fmt::format("{} voxels removed: {} islands that nothing holds and {} small parts that hang on by an edge "
+                  "or a corner or not at all",
+                  voxels, islands, crumbs));
+}
+
+}  // namespace frontalis
