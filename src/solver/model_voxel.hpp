@@ -4,6 +4,8 @@
 #include "solver/law_share.hpp"
 #include "solver/stepping/discretisation.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 
