@@ -7,7 +7,7 @@ namespace cuda
 {
 
 // The bounds that the latest plans saw limit the steps of later plans, so they are part of the motion.
-struct CudaSolver::Kept : SteppingSolver::Fields
+struct CudaSolver::State : BackendState
 {
   cudaStream_t stream = nullptr;  // on which it is filled
   DeviceArray<float4> u;
@@ -38,59 +38,59 @@ struct CudaSolver::Kept : SteppingSolver::Fields
   }
 };
 
-void CudaSolver::save_fields(std::unique_ptr<Fields>& to) const
+void CudaSolver::save(std::unique_ptr<BackendState>& to) const
 {
   if (!to)
-    to = std::make_unique<Kept>();
-  Kept& kept = static_cast<Kept&>(*to);
-  kept.stream = stream_;
-  kept.u.assign(u_[present_], stream_);
+    to = std::make_unique<State>();
+  State& state = static_cast<State&>(*to);
+  state.stream = stream_;
+  state.u.assign(u_[present_], stream_);
   for (int axis = 0; axis < 3; ++axis)
-    kept.v[axis].assign(v_[axis], stream_);
-  device_.save(kept.contacts, stream_);
-  device_.viscosity().save(kept.viscosity, stream_);
+    state.v[axis].assign(v_[axis], stream_);
+  device_.save(state.contacts, stream_);
+  device_.viscosity().save(state.viscosity, stream_);
   if (account_)
-    kept.book.assign(account_->book(), stream_);
+    state.book.assign(account_->book(), stream_);
   if (plans_ > 0)
-    require(cudaMemcpyAsync(kept.seen.data(), slots_[(plans_ - 1) % plan_slots].controls.data(), sizeof(std::uint32_t),
+    require(cudaMemcpyAsync(state.seen.data(), slots_[(plans_ - 1) % plan_slots].controls.data(), sizeof(std::uint32_t),
                             cudaMemcpyDeviceToDevice, stream_),
             "copying the frequency bound");
-  kept.has_mode = mode_ != nullptr;
+  state.has_mode = mode_ != nullptr;
   if (mode_)
   {
-    kept.mode.assign(mode_->mode, stream_);
-    kept.mode_largest = mode_->largest;
-    kept.mode_length = mode_->length;
+    state.mode.assign(mode_->mode, stream_);
+    state.mode_largest = mode_->largest;
+    state.mode_length = mode_->length;
   }
-  kept.plans = plans_;
-  kept.still_moved = still_moved_;
+  state.plans = plans_;
+  state.still_moved = still_moved_;
 }
 
-void CudaSolver::restore_fields(const Fields& from)
+void CudaSolver::restore(const BackendState& from)
 {
-  const Kept& kept = static_cast<const Kept&>(from);
-  u_[present_].assign(kept.u, stream_);
+  const State& state = static_cast<const State&>(from);
+  u_[present_].assign(state.u, stream_);
   for (int axis = 0; axis < 3; ++axis)
-    v_[axis].assign(kept.v[axis], stream_);
-  device_.restore(kept.contacts, stream_);
-  device_.viscosity().restore(kept.viscosity, stream_);
+    v_[axis].assign(state.v[axis], stream_);
+  device_.restore(state.contacts, stream_);
+  device_.viscosity().restore(state.viscosity, stream_);
   if (account_)
-    account_->restore(kept.book, stream_);
-  if (!kept.has_mode)
+    account_->restore(state.book, stream_);
+  if (!state.has_mode)
     mode_.reset();
   else
   {
     if (!mode_)
       mode_.reset(new Mode(device_.nodes()));
-    mode_->mode.assign(kept.mode, stream_);
-    mode_->largest = kept.mode_largest;
-    mode_->length = kept.mode_length;
+    mode_->mode.assign(state.mode, stream_);
+    mode_->largest = state.mode_largest;
+    mode_->length = state.mode_length;
   }
-  plans_ = kept.plans;
-  still_moved_ = kept.still_moved;
+  plans_ = state.plans;
+  still_moved_ = state.still_moved;
   synchronise();
   if (plans_ > 0)
-    require(cudaMemcpy(slots_[(plans_ - 1) % plan_slots].seen.data(), kept.seen.data(), sizeof(std::uint32_t),
+    require(cudaMemcpy(slots_[(plans_ - 1) % plan_slots].seen.data(), state.seen.data(), sizeof(std::uint32_t),
                        cudaMemcpyDeviceToHost),
             "copying the frequency bound");
 }

@@ -4,6 +4,8 @@
 #include "cuda/backend/highest_frequency.hpp"
 #include "cuda/backend/launch_choice.hpp"
 #include "frontalis/solver/backend.hpp"
+#include "solver/stepping/effect_switches.hpp"
+#include "solver/stepping/time_stepper.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +16,8 @@ namespace frontalis
 namespace cuda
 {
 
-CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark)
-    : SteppingSolver(std::move(model), settings),
+CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
+    : StepBackend(input),
       remark_(remark.empty() ? "" : "; " + remark),
       device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
@@ -48,7 +50,7 @@ CudaSolver::CudaSolver(std::shared_ptr<const Model> model, const SolverSettings&
     slot.seen.data()[0] = 0;
     require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
   }
-  if (wants_ledger_)
+  if (input.settings.ledger)
   {
     account_ = std::make_unique<DeviceAccount>(*model_, device_);
     device_.viscosity().keep_account();
@@ -71,12 +73,12 @@ CudaSolver::~CudaSolver()
       cudaStreamDestroy(stream);
 }
 
-void CudaSolver::upload_displacements(const Vectors* in, DeviceArray<float4>& to) const
+void CudaSolver::upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const
 {
   std::vector<float4> u(device_.nodes(), float4{ 0, 0, 0, 0 });
   for (std::size_t n = 0; n < model_->nodes.size(); ++n)
   {
-    const auto x = in == nullptr ? std::array<double, 3>{ { 0, 0, 0 } } : (*in)[n];
+    const auto x = in.empty() ? std::array<double, 3>{ { 0, 0, 0 } } : in[n];
     u[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
                                     static_cast<float>(1 / discretisation_.node_mass[n]) };
   }
@@ -91,7 +93,7 @@ void CudaSolver::rest()
   present_ = 0;
   plans_ = 0;
   still_moved_ = false;
-  upload_displacements(nullptr, u_[0]);
+  upload_displacements({}, u_[0]);
   require(cudaMemcpy(u_[1].data(), u_[0].data(), u_[0].bytes(), cudaMemcpyDeviceToDevice), "copying on the device");
   for (auto& component : v_)
     require(cudaMemset(component.data(), 0, component.bytes()), "clearing velocities");
@@ -104,10 +106,8 @@ void CudaSolver::rest()
 void CudaSolver::effect_switched(Effect effect)
 {
   synchronise();
-  device_.run(*model_, discretisation_, effects());
+  device_.run(*model_, discretisation_, conditions_.running);
   launch_ = choose_launch(device_);
-  if (loads_)
-    loads_->run(effects());
   if (effect == Effect::viscosity)
     device_.viscosity().reset();
   if (effect == Effect::sliding || effect == Effect::friction)
@@ -118,7 +118,7 @@ void CudaSolver::effect_switched(Effect effect)
 
 void CudaSolver::list_allocations(AllocationList& list) const
 {
-  device_.list_allocations(effect_of_fibres(), list);
+  device_.list_allocations(effect_of_fibres(*model_), list);
   for (const auto& u : u_)
     list.add(Effect::elasticity, "motion", u.bytes());
   for (const auto& v : v_)
@@ -128,25 +128,24 @@ void CudaSolver::list_allocations(AllocationList& list) const
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
   if (account_)
-    account_->list_allocations(effect_of_fibres(), list);
+    account_->list_allocations(effect_of_fibres(*model_), list);
   if (monitor_)
     list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
   if (mode_)
     list.add(Effect::elasticity, "mode of the highest frequency", mode_->bytes());
-  if (loads_)
-    loads_->list_allocations(list);
 }
 
-void CudaSolver::set_displacements(const Vectors& in)
+void CudaSolver::set(NodalField field, const NodalVectors& in)
 {
-  rest();
-  upload_displacements(&in, u_[present_]);
-  still_moved_ = true;
-  displacements_were_set();
-}
-
-void CudaSolver::set_velocities(const Vectors& in)
-{
+  if (field == NodalField::displacements)
+  {
+    rest();
+    if (in.empty())
+      return;
+    upload_displacements(in, u_[present_]);
+    still_moved_ = true;
+    return;
+  }
   synchronise();
   std::vector<float> component(device_.nodes(), 0);
   for (int axis = 0; axis < 3; ++axis)
@@ -157,16 +156,9 @@ void CudaSolver::set_velocities(const Vectors& in)
       component[device_.device_node()[node]] = 0;
     v_[axis].upload(component.data(), component.size());
   }
-  velocities_were_set();
 }
 
-void CudaSolver::displacements(Vectors& out) const
-{
-  synchronise();
-  download(u_[present_], out);
-}
-
-void CudaSolver::download(const DeviceArray<float4>& field, Vectors& out) const
+void CudaSolver::download(const DeviceArray<float4>& field, NodalVectors& out) const
 {
   std::vector<float4> values;
   field.download(values);
@@ -178,9 +170,11 @@ void CudaSolver::download(const DeviceArray<float4>& field, Vectors& out) const
   }
 }
 
-void CudaSolver::velocities(Vectors& out) const
+void CudaSolver::get(NodalField field, NodalVectors& out) const
 {
   synchronise();
+  if (field == NodalField::displacements)
+    return download(u_[present_], out);
   out.resize(model_->nodes.size());
   std::vector<float> component;
   for (int axis = 0; axis < 3; ++axis)
@@ -213,15 +207,25 @@ void CudaSolver::skin(SkinState& out)
   take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
 }
 
-std::string CudaSolver::description() const
+// Long plans hide the work between them, but the time step must follow a tissue that stiffens: half a millisecond is
+// short enough. Searches that run beside a plan take about 64 steps. Looks at all displacements and checks wait for the
+// device, which takes some 40 us; a step of a small model takes 2 us. The host's look at millions of nodes takes as
+// long as a hundred steps.
+BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
   require(cudaGetDeviceProperties(&device, 0), "asking for the device");
-  return fmt::format("cuda (float, {}, {}{})", device.name,
-                     launch_.patches
-                         ? fmt::format("{} patches", device_.patches())
-                         : fmt::format("{} strips, {:.0f} % filled", device_.strips(), 100 * device_.filled()),
-                     remark_);
+  const std::string cut = launch_.patches
+                              ? fmt::format("{} patches", device_.patches())
+                              : fmt::format("{} strips, {:.0f} % filled", device_.strips(), 100 * device_.filled());
+  BackendTraits traits;
+  traits.description = fmt::format("cuda (float, {}, {}{})", device.name, cut, remark_);
+  traits.seconds_per_plan = 0.5e-3;
+  traits.fewest_steps_per_plan = 32;
+  traits.most_steps_per_plan = device_.contacts() > 0 ? 64 : 128;
+  traits.steps_per_look = model_->nodes.size() > 1000000 ? 2048 : 512;
+  traits.steps_per_check = 2048;
+  return traits;
 }
 
 }  // namespace cuda
@@ -254,10 +258,9 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  auto solver = std::make_unique<cuda::CudaSolver>(std::move(model), settings, remark);
-  if (settings.ledger)
-    solver->reset();
-  return solver;
+  return std::make_unique<TimeStepper>(std::move(model), settings,
+                                       [&](const BackendInput& input)
+                                       { return std::make_unique<cuda::CudaSolver>(input, remark); });
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include "cuda/backend/device_account.hpp"
 #include "cuda/backend/device_monitor.hpp"
 #include "cuda/backend/device_model.hpp"
-#include "solver/stepping/nodal_loads.hpp"
-#include "solver/stepping/stepping_solver.hpp"
+#include "solver/stepping/step_backend.hpp"
 
 #include <memory>
 
@@ -25,38 +24,26 @@ struct PlanSlot
 /// Single precision, on one NVIDIA GPU. Steps are queued without waiting for them: the frequency bound that a plan's
 /// last step reports limits the plan after the next. The host waits only for that bound and for results that it asks
 /// for.
-class CudaSolver : public SteppingSolver
+class CudaSolver : public StepBackend
 {
 public:
-  CudaSolver(std::shared_ptr<const Model> model, const SolverSettings& settings, const std::string& remark);
+  /// `remark` is added to its description.
+  CudaSolver(const BackendInput& input, const std::string& remark);
   ~CudaSolver() override;
 
-  void skin(SkinState& out) override;
-  void displacements(Vectors& out) const override;
-  void set_displacements(const Vectors& in) override;
-  void set_velocities(const Vectors& in) override;
-  void internal_forces(Vectors& out) override { forces(u_[present_].data(), out); }
-  /// monitor() and save() wait for the device, which takes some 40 us; a step of a small model takes 2 us.
-  int steps_a_check() const override { return 2048; }
-  std::string description() const override;
-
-protected:
-  double run(const StepPlan& plan) override;
-  void save_fields(std::unique_ptr<Fields>& to) const override;
-  void restore_fields(const Fields& from) override;
-  int steps_a_plan() const override;
-  /// The host's look at millions of nodes takes as long as a hundred steps.
-  int steps_a_look() const override { return model_->nodes.size() > 1000000 ? 2048 : 512; }
-  void rest() override;
-  void effect_switched(Effect effect) override;
+  BackendTraits traits() const override;
   void list_allocations(AllocationList& list) const override;
-  void velocities(Vectors& out) const override;
-  void forces_at(const Vectors& at, Vectors& out) override;
-  double assembled_frequency_squared(int most_iterations) override;
-  void external_forces(Vectors& out) override;
-  void open_account() override;
-  Work work() override;
-  Monitor measure() override;
+  double run(const StepPlan& plan) override;
+  void effect_switched(Effect effect) override;
+  void get(NodalField field, NodalVectors& out) const override;
+  void set(NodalField field, const NodalVectors& in) override;
+  void save(std::unique_ptr<BackendState>& to) const override;
+  void restore(const BackendState& from) override;
+  void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
+  std::optional<double> highest_frequency_squared(int most_iterations) override;
+  Monitor monitor() override;
+  Work work(bool open) override;
+  void skin(SkinState& out) override;
 
 private:
   static constexpr int plan_slots = 3;
@@ -66,13 +53,14 @@ private:
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(StepArguments& g, int begin, int end);
-  void forces(float4* at, Vectors& out);
+  void rest();
   void queue_forces(float4* at, const float* activation, float4* out);
-  void download(const DeviceArray<float4>& field, Vectors& out) const;
-  void upload_displacements(const Vectors* in, DeviceArray<float4>& to) const;
+  void download(const DeviceArray<float4>& field, NodalVectors& out) const;
+  /// No values stand for zeros.
+  void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
-  struct Kept;
+  struct State;
   struct Mode;
   struct ModeDeleter
   {
@@ -98,7 +86,6 @@ private:
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
   std::unique_ptr<DeviceMonitor> monitor_;   // made on first use
-  std::unique_ptr<NodalLoads> loads_;        // on the host, made on first use
   std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
 };
 

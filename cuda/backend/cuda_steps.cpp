@@ -18,7 +18,7 @@ constexpr double steps_of_lead = 10;
 void CudaSolver::kick(StepArguments& g, double seconds) const
 {
   g.kick = seconds;
-  static_cast<physics::Kick<float>&>(g) = physics::kick_of<float>(damping_, seconds, gravity_);
+  static_cast<physics::Kick<float>&>(g) = conditions_.kick<float>(seconds);
   if (mutation::no_gpu_gravity)
     std::fill_n(g.impulse, 3, 0.0f);
 }
@@ -59,11 +59,8 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   std::memset(staged, 0, sizeof(double));
   if (muscles > 0)
   {
-    const std::vector<float> none(runs(Effect::contraction) ? 0 : muscles, 0);
-    const float* const begin = none.empty() ? plan.begin.activation.data() : none.data();
-    const float* const end = none.empty() ? plan.end.activation.data() : none.data();
-    std::memcpy(staged + sizeof(double), begin, muscles * sizeof(float));
-    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), end, muscles * sizeof(float));
+    std::memcpy(staged + sizeof(double), plan.begin.activation.data(), muscles * sizeof(float));
+    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), plan.end.activation.data(), muscles * sizeof(float));
   }
   for (int step = 0; bones > 0 && step <= plan.steps; ++step)
   {
@@ -110,15 +107,8 @@ void CudaSolver::do_steps(StepArguments& g, int begin, int end)
       account_->before_step(g, s, stream_);
     step(g, s, s + 1);
     if (account_)
-      account_->after_step(g, damping_, s, stream_);
+      account_->after_step(g, conditions_.damping, s, stream_);
   }
-}
-
-// Long plans hide the work between them, but the time step must follow a tissue that stiffens: half a millisecond is
-// short enough. Searches that run beside a plan take about 64 steps.
-int CudaSolver::steps_a_plan() const
-{
-  return static_cast<int>(std::clamp(0.5e-3 / time_step(), 32.0, device_.contacts() > 0 ? 64.0 : 128.0));
 }
 
 double CudaSolver::run(const StepPlan& plan)
@@ -127,9 +117,9 @@ double CudaSolver::run(const StepPlan& plan)
   StepArguments g = arguments(plan.dt);
   g.time = plan.time;
   g.steps = plan.steps;
-  g.look_always = plan.closely;
+  g.look_always = plan.bound_every_step;
   const bool relaxes = !device_.viscosity().idle();
-  const std::vector<double> elapsed = relaxes ? relaxations(plan) : std::vector<double>(plan.steps, 0);
+  const std::vector<double> elapsed = relaxes ? plan.relaxation : std::vector<double>(plan.steps, 0);
   // patches relax their viscous stresses within launches, unless the ledger needs the work
   std::vector<float> relaxation;
   if (launch_.patches && !account_ && relaxes)
@@ -192,10 +182,10 @@ double CudaSolver::run(const StepPlan& plan)
     return double(squared);
   };
   // waits for the plan before, so that the device always has work; for its own where the motion changes fast
-  if (plans_ == 1 || plan.awaited)
+  if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
-  return before > plan.alarm ? seen(plans_ - 1) : before;
+  return before > plan.alarming_frequency_squared ? seen(plans_ - 1) : before;
 }
 
 // Internal forces at any displacements; `out` must hold zeros for nodes without voxels.
@@ -212,74 +202,47 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
   present_ = present;
 }
 
-void CudaSolver::forces(float4* at, Vectors& out)
+void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
 {
   synchronise();
-  const DeviceArray<float> activation(felt_activation());
+  DeviceArray<float4> moved;
+  if (displacements != nullptr)
+  {
+    moved = DeviceArray<float4>(device_.nodes());
+    upload_displacements(*displacements, moved);
+  }
+  const DeviceArray<float> activation(conditions_.activation);
   const DeviceArray<float4> forces(device_.nodes());
   require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
-  queue_forces(at, activation.data(), forces.data());
+  queue_forces(displacements != nullptr ? moved.data() : u_[present_].data(), activation.data(), forces.data());
   synchronise();
   download(forces, out);
 }
 
-void CudaSolver::forces_at(const Vectors& at, Vectors& out)
+Work CudaSolver::work(bool open)
 {
-  DeviceArray<float4> u(device_.nodes());
-  upload_displacements(&at, u);
-  forces(u.data(), out);
-}
-
-void CudaSolver::external_forces(Vectors& out)
-{
-  out.assign(model_->nodes.size(), {});
-  if (!loads_)
+  synchronise();
+  StepArguments g = arguments(0);
+  const DeviceArray<float> activation(conditions_.activation);
+  g.activation_begin = g.activation_end = activation.data();
+  g.steps = 1;
+  if (open)
   {
-    loads_ = std::make_unique<NodalLoads>(*model_, discretisation_);
-    loads_->run(effects());
+    account_->open(g, u_[present_].data(), stream_);
+    device_.viscosity().reset_account();
   }
-  if (loads_->idle())
-    return;
-  Vectors u;
-  displacements(u);
-  std::vector<double> component[3];
-  for (int axis = 0; axis < 3; ++axis)
-    for (const auto& x : u)
-      component[axis].push_back(x[axis]);
-  const double* const pointers[3] = { component[0].data(), component[1].data(), component[2].data() };
-  loads_->update(time(), pointers);
-  for (std::size_t l = 0; l < loads_->nodes().size(); ++l)
-    out[loads_->nodes()[l]] = loads_->forces()[l];
-}
-
-// Work is counted from the present fibre and viscous stresses on.
-void CudaSolver::open_account()
-{
-  synchronise();
-  StepArguments g = arguments(0);
-  const DeviceArray<float> activation(felt_activation());
-  g.activation_begin = g.activation_end = activation.data();
-  g.steps = 1;
-  account_->open(g, u_[present_].data(), stream_);
-  device_.viscosity().reset_account();
-  synchronise();
-}
-
-Work CudaSolver::work()
-{
-  StepArguments g = arguments(0);
-  const DeviceArray<float> activation(felt_activation());
-  g.activation_begin = g.activation_end = activation.data();
-  g.steps = 1;
-  account_->look(g, u_[present_].data(), 0, stream_);
-  device_.viscosity().relax(arguments(0), u_[present_].data(), u_[1 - present_].data(), 0, stream_);
+  else
+  {
+    account_->look(g, u_[present_].data(), 0, stream_);
+    device_.viscosity().relax(arguments(0), u_[present_].data(), u_[1 - present_].data(), 0, stream_);
+  }
   synchronise();
   Work work = account_->work();
   work.viscous = device_.viscosity().work();
   return work;
 }
 
-Monitor CudaSolver::measure()
+Monitor CudaSolver::monitor()
 {
   if (!monitor_)
     monitor_ = std::make_unique<DeviceMonitor>(*model_, device_);

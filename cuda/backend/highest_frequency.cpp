@@ -1,5 +1,7 @@
 #include "cuda/backend/highest_frequency.hpp"
 
+#include "solver/stepping/highest_frequency_search.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +12,13 @@ namespace cuda
 
 void CudaSolver::ModeDeleter::operator()(Mode* mode) const { delete mode; }
 
-double CudaSolver::assembled_frequency_squared(int most_iterations)
+std::optional<double> CudaSolver::highest_frequency_squared(int most_iterations)
 {
   synchronise();
   if (!mode_)
   {
     mode_.reset(new Mode(device_.nodes()));
-    Vectors random(model_->nodes.size());
-    random_mode(random);
+    const NodalVectors random = random_mode(model_->nodes.size());
     std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
     for (std::size_t n = 0; n < random.size(); ++n)
     {
@@ -35,15 +36,12 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
   }
   Mode& m = *mode_;
   const auto nodes = static_cast<std::uint32_t>(device_.nodes());
-  double step = mode_amplitude(*model_);
   const float4* const u = u_[present_].data();
   const float* const mobility = device_.arguments().mobility;
-  const DeviceArray<float> activation(felt_activation());
+  const DeviceArray<float> activation(conditions_.activation);
   queue_forces(u_[present_].data(), activation.data(), m.present.data());
   std::vector<double2> seen;
-  double squared = 0;
-  ModeSearch search;
-  for (int iteration = 0; iteration < most_iterations; ++iteration, step = -step)
+  const auto multiply = [&](double step)
   {
     require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(step / m.largest), m.moved.data(),
                             stream_),
@@ -60,12 +58,12 @@ double CudaSolver::assembled_frequency_squared(int most_iterations)
       largest = std::max(largest, s.x);
       sum += s.y;
     }
-    squared = std::sqrt(sum) * m.largest / m.length;
+    const double ratio = std::sqrt(sum) * m.largest / m.length;
     m.largest = largest;
     m.length = std::sqrt(sum);
-    if (search.settled(squared) || !std::isfinite(squared))
-      break;
-  }
+    return ratio;
+  };
+  const double squared = largest_eigenvalue(most_iterations, mode_amplitude(*model_), multiply);
   if (!std::isfinite(squared))
     mode_.reset();
   return squared;

@@ -4,6 +4,7 @@
 #include "frontalis/error.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include <memory>
 
@@ -23,9 +24,7 @@ namespace
 
 std::string time_text(double seconds)
 {
-  char text[32];
-  std::snprintf(text, sizeof text, seconds < 90 ? "%.0f s" : "%.0f min", seconds < 90 ? seconds : seconds / 60);
-  return text;
+  return seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
 }
 
 void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& options, const std::string& title)
@@ -36,18 +35,18 @@ void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& opti
   write_text(path + ".csv", table.csv());
   write_text(path + ".json", table.json());
   write_text(path + ".md", report + "\n![" + title + "](accuracy.png)\n");
-  std::printf("\n%s", table.text().c_str());
-  std::printf("\nreference %s\n",
-              report.substr(report.find("\n\n") + 2, report.find("\n\n|") - report.find("\n\n") - 2).c_str());
-  std::printf("\nwritten   %s.csv, .json, .md", path.c_str());
+  // the paragraphs of the report between its title and its table
+  const std::size_t begin = report.find("\n\n") + 2;
+  fmt::print("\n{}\nreference {}\n\nwritten   {}.csv, .json, .md", table.text(),
+             report.substr(begin, report.find("\n\n|") - begin), path);
   try
   {
     write_plot(accuracy_plot(findings, title), path);
-    std::printf(", .png, .svg\n");
+    fmt::print(", .png, .svg\n");
   }
   catch (const Error& error)
   {
-    std::printf("\nno plot   %s\n", error.what());
+    fmt::print("\nno plot   {}\n", error.what());
   }
 }
 
@@ -58,21 +57,21 @@ void choose(const AccuracyFindings& findings, const AccuracyOptions& options)
   const AccuracyRow& row = options.tolerance > 0 ? cheapest_within(findings, 1e-3 * options.tolerance)
                                                  : most_accurate_within(findings, options.time);
   const std::string profile = profile_text(row, "chosen", findings.machine);
-  std::printf("chosen    %s: error %.3g mm RMS, %.3g mm at most; %.3g s a simulated second%s\n\n  %s\n",
-              row.name.c_str(), 1e3 * row.error.rms, 1e3 * row.error.largest, row.cost,
-              row.noisy ? " (timed on a disturbed machine)" : "", profile.c_str());
+  fmt::print("chosen    {}: error {:.3g} mm RMS, {:.3g} mm at most; {:.3g} s per simulated second{}\n\n  {}\n",
+             row.name, 1e3 * row.error.rms, 1e3 * row.error.largest, row.cost,
+             row.noisy ? " (timed on a disturbed machine)" : "", profile);
   if (!options.save.empty())
   {
-    write_text(options.save,
-               "# " + row.name + ", as measured by: frontalis accuracy " + options.source.path + "\n" + profile + "\n");
-    std::printf("\nwritten   %s; use it with --accuracy %s\n", options.save.c_str(), options.save.c_str());
+    write_text(options.save, fmt::format("# {}, as measured by: frontalis accuracy {}\n{}\n", row.name,
+                                         options.source.path, profile));
+    fmt::print("\nwritten   {0}; use it with --accuracy {0}\n", options.save);
   }
 }
 
 void study(AccuracyOptions options)
 {
   if (options.tolerance > 0 && options.time > 0)
-    throw WrongUsage("--tolerance and --time: one of the two");
+    throw WrongUsage("--tolerance and --time: only one of the two may be given");
   if (!options.save.empty() && options.tolerance <= 0 && options.time <= 0)
     throw WrongUsage("--save goes with --tolerance or --time");
   const AccuracySubject subject = accuracy_subject(options);
@@ -92,14 +91,13 @@ void study(AccuracyOptions options)
         }
         last = stage;
         progress.update(
-            std::to_string(count) + ": " + stage + (left_then > 0 ? ", then about " + time_text(left_then) : ""), done);
+            fmt::format("{}: {}{}", count, stage, left_then > 0 ? ", then about " + time_text(left_then) : ""), done);
         return !interrupt_requested();
       });
   progress.clear();
   if (!findings.complete)
   {
-    std::fprintf(stderr, "what was finished is kept in %s; the same command goes on from there\n",
-                 options.folder.c_str());
+    fmt::print(stderr, "finished settings are kept in {}; the same command goes on from there\n", options.folder);
     throw Interrupted();
   }
   write_outputs(findings, options, "Accuracy against time: " + subject.name);
@@ -131,33 +129,30 @@ void add_accuracy_command(CLI::App& app, Action& action)
   command
       ->add_option(
           "--knobs", options->knobs,
-          "only these, without combinations: voxel, samples, fill_min, hourglass, integration, precision, share, "
-          "time_step, mass_scaling, poisson, time_scaling, backend, profiles")
+          "vary only these, without combinations: voxel, samples, fill_min, hourglass, integration, precision, "
+          "share, time_step, mass_scaling, poisson, time_scaling, backend, profiles")
       ->delimiter(',');
   command->add_option("--voxels", options->voxels, "voxel edges, coarse to fine [mm]; the last is the reference's")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
-  command->add_flag("--quick", options->quick, "fewer settings, a shorter motion: minutes");
+  command->add_flag("--quick", options->quick, "fewer settings and a shorter motion, for a study of minutes");
   command
       ->add_option("--budget", options->budget,
                    "wall seconds that the study may take (280 with --quick, else all it needs)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--expression", options->expression, "what is activated (the scene's first expression)");
+  command->add_option("--expression", options->expression, "the expression to activate (the scene's first one)");
   command->add_option("--ramp", options->ramp, "seconds over which activations grow (0.3)")->check(CLI::PositiveNumber);
   command->add_option("--hold", options->hold, "seconds for which they are held (0.3)")->check(CLI::PositiveNumber);
   auto* tolerance = command->add_option("--tolerance", options->tolerance,
-                                        "choose the cheapest setting with at most this error of the skin, RMS [mm]");
+                                        "choose the cheapest setting whose skin has at most this RMS error [mm]");
   tolerance->check(CLI::PositiveNumber);
   command
       ->add_option("--time", options->time,
-                   "choose the most accurate setting of at most so many wall seconds a "
-                   "simulated second")
+                   "choose the most accurate setting that takes at most so many wall seconds per simulated second")
       ->check(CLI::PositiveNumber);
   command->add_option("--save", options->save, "write the chosen profile to this file, for --accuracy");
   command->add_option("-o,--output", options->folder, "folder for results and finished variants (accuracy_SCENE)");
-  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
-      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
-  command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
+  add_solver_options(*command, options->solver);
   command->callback([options, &action] { action = [options] { study(*options); }; });
 }
 

@@ -1,15 +1,15 @@
 #ifdef FRONTALIS_WITH_BAKE
-// what a study of accuracy is of, from the command line
+// the subject of a study of accuracy, as the command line names it
 
 #include "cli/accuracy_subject.hpp"
 #include "cli/command.hpp"
-#include "cli/interrupt.hpp"
 
-#include "frontalis/bake/bake.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/scene/read_scene.hpp"
 #include "frontalis/study/closed_form.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace
 Scene scene_with(Scene scene, const AccuracySetting& setting)
 {
   scene.accuracy = setting.profile;
-  // what decides nothing, so that equal variants are known as such
+  // names and measured figures do not change the model, and must not make equal variants look different
   scene.accuracy.name = "standard";
   scene.accuracy.measured = {};
   scene.profiles.clear();
@@ -33,21 +33,6 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
       material.parameters["poisson"] = setting.poisson;
   scene.content = content_of(scene);
   return scene;
-}
-
-Model bake_interruptibly(const Scene& scene)
-{
-  try
-  {
-    return bake(scene, nullptr, [](const std::string&, double) { return !interrupt_requested(); });
-  }
-  catch (const Error&)
-  {
-    // an interrupted bake ends in an error that is none
-    if (interrupt_requested())
-      throw Interrupted();
-    throw;
-  }
 }
 
 // the profile called standard, else the one that the scene takes
@@ -79,17 +64,21 @@ void check_numbers(const AccuracyOptions& options)
       throw WrongUsage("--voxels, --budget, --ramp, --hold, --tolerance, --time: must be numbers greater than 0");
 }
 
-// what the command line says of any subject; what it leaves open stays as it is
+// takes over the options that any subject has; those that were not given change nothing
 void take_options(const AccuracyOptions& options, AccuracyPlan& plan)
 {
-  plan.standard.backend = backend_from_name(options.backend);
+  plan.standard.backend = backend_from_name(options.solver.backend);
   if (plan.standard.backend == "auto")
-    plan.standard.backend = available_backends().front();
+  {
+    const auto backends = available_backends();
+    const bool device = std::find(backends.begin(), backends.end(), "cuda") != backends.end();
+    plan.standard.backend = device ? "cuda" : "cpu";
+  }
   if (!options.knobs.empty())
     plan.knobs = options.knobs;
   plan.quick = options.quick;
   plan.budget = options.budget > 0 ? options.budget : options.quick ? 280 : 0;
-  plan.threads = options.threads;
+  plan.threads = options.solver.threads;
   if (options.ramp > 0)
     plan.history.ramp = options.ramp;
   if (options.hold > 0)
@@ -118,15 +107,16 @@ AccuracySubject scene_subject(const AccuracyOptions& options)
     plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
   take_options(options, plan);
 
-  // meshes are read once for the content of all
+  // the meshes' content is the same for all settings and is hashed once
   Scene bare = scene_with(scene, {});
   const std::string meshes = bare.content;
   bare.surfaces.clear();
   subject.maker = { [meshes, bare](const AccuracySetting& setting)
                     { return meshes + scene_with(bare, setting).content; },
-                    [scene](const AccuracySetting& setting)
-                    { return bake_interruptibly(scene_with(scene, setting)); } };
-  // the coarsest model knows the muscles' names
+                    [scene](const AccuracySetting& setting) {
+                      return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
+                    } };
+  // any model has the names of the muscles; the coarsest is baked fastest
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
   plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
@@ -139,16 +129,12 @@ AccuracySubject closed_form_subject(const ClosedForm& form, const AccuracyOption
   if (!source.accuracy.empty() || !source.voxel.empty() || !source.mesh_directory.empty() ||
       !options.expression.empty() || options.ramp > 0 || options.hold > 0)
     throw WrongUsage(form.name +
-                     " is a body with a closed form: --accuracy, --voxel, --mesh-dir, --expression, --ramp "
-                     "and --hold are for scenes");
+                     " is a body with a closed form; --accuracy, --voxel, --mesh-dir, --expression, --ramp "
+                     "and --hold go with scenes");
   for (const std::string& knob : options.knobs)
     if (std::find(form.plan.knobs.begin(), form.plan.knobs.end(), knob) == form.plan.knobs.end())
-    {
-      std::string list;
-      for (const std::string& name : form.plan.knobs)
-        list += (list.empty() ? "" : ", ") + name;
-      throw Error(form.name + " has no knob '" + knob + "'; its knobs are " + list);
-    }
+      throw Error(
+          fmt::format("{} has no knob '{}'; its knobs are {}", form.name, knob, fmt::join(form.plan.knobs, ", ")));
   AccuracySubject subject{ form.name, form.plan, form.maker };
   take_options(options, subject.plan);
   return subject;
@@ -167,10 +153,11 @@ AccuracySubject accuracy_subject(AccuracyOptions& options)
   const auto form = std::find_if(forms.begin(), forms.end(), [&](const auto& f) { return f.name == path; });
   if (!exists && form == forms.end())
   {
-    std::string names;
+    std::vector<std::string> names;
     for (const ClosedForm& known : forms)
-      names += (names.empty() ? "" : ", ") + known.name;
-    throw Error(path + ": there is no such scene file, nor a body of that name with a closed form: " + names);
+      names.push_back(known.name);
+    throw Error(fmt::format("{}: there is no such scene file, nor a body of that name with a closed form: {}", path,
+                            fmt::join(names, ", ")));
   }
   AccuracySubject subject =
       exists || form == forms.end() ? scene_subject(options) : closed_form_subject(*form, options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/model_source.hpp"
+#include "cli/solver_options.hpp"
 
 #include <string>
 #include <vector>
@@ -22,14 +23,13 @@ struct AccuracyOptions
   double budget = 0;
   double tolerance = 0, time = 0;
   std::string folder, save;
-  std::string backend = "auto";
-  int threads = 0;
+  SolverOptions solver;
   bool quick = false;
 };
 
 #ifdef FRONTALIS_WITH_BAKE
 
-/// What is studied: a scene, or a body with a closed form.
+/// The subject of a study: a scene, or a body with a closed form.
 struct AccuracySubject
 {
   std::string name;
@@ -37,7 +37,7 @@ struct AccuracySubject
   ModelMaker maker;
 };
 
-/// Throws Error, WrongUsage. `options.folder` gets its default.
+/// Sets `options.folder` to its default where it is empty. Throws Error, WrongUsage.
 AccuracySubject accuracy_subject(AccuracyOptions& options);
 
 #endif

@@ -1,48 +1,31 @@
 #include "cli/activation_list.hpp"
 
 #include "cli/command.hpp"
+#include "cli/fields.hpp"
 
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstddef>
 #include <set>
 
 namespace frontalis
 {
-namespace
-{
-
-double parse_value(const std::string& entry, const std::string& text)
-{
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const std::from_chars_result result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end)
-    throw WrongUsage("--activate: '" + entry + "' has no number behind '='; write MUSCLE=VALUE,MUSCLE=VALUE");
-  return value;
-}
-
-}  // namespace
 
 std::map<std::string, double> parse_activation_list(const std::string& text)
 {
   std::map<std::string, double> listed;
-  std::size_t begin = 0;
-  while (!text.empty() && begin <= text.size())
+  for (const std::string& entry : text.empty() ? std::vector<std::string>() : fields_of(text))
   {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string entry = text.substr(begin, end - begin);
     const std::size_t equals = entry.find('=');
     if (equals == std::string::npos || equals == 0)
       throw WrongUsage("--activate: '" + entry + "' is not written MUSCLE=VALUE");
-    const std::string name = entry.substr(0, equals);
-    if (!listed.emplace(name, parse_value(entry, entry.substr(equals + 1))).second)
-      throw WrongUsage("--activate: '" + name + "' is given twice");
-    begin = end + 1;
+    const std::optional<double> value = number_from(entry.substr(equals + 1));
+    if (!value)
+      throw WrongUsage("--activate: '" + entry + "' has no number after '='; write MUSCLE=VALUE,MUSCLE=VALUE");
+    if (!listed.emplace(entry.substr(0, equals), *value).second)
+      throw WrongUsage("--activate: '" + entry.substr(0, equals) + "' is given twice");
   }
   return listed;
 }
@@ -62,22 +45,18 @@ std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::ve
   for (const std::string& text : texts)
   {
     const std::size_t equals = text.find('=');
-    std::array<double, 6> values{};
-    std::size_t count = 0, begin = equals == std::string::npos ? text.size() : equals + 1;
-    for (; count < 6 && begin < text.size(); ++count)
-    {
-      const std::size_t end = std::min(text.find(',', begin), text.size());
-      const auto [stopped, fault] = std::from_chars(text.data() + begin, text.data() + end, values[count]);
-      if (fault != std::errc() || stopped != text.data() + end)
-        break;
-      begin = end + 1;
-    }
-    if (count != 6 || begin <= text.size() || equals == 0)
+    const std::string name = text.substr(0, equals);
+    std::vector<double> values;
+    if (equals != std::string::npos && equals > 0)
+      for (const std::string& field : fields_of(text.substr(equals + 1)))
+        if (const std::optional<double> value = number_from(field))
+          values.push_back(*value);
+    if (values.size() != 6 || std::count(text.begin(), text.end(), ',') != 5)
       throw WrongUsage("--bone: '" + text + "' is not written NAME=X,Y,Z,RX,RY,RZ (mm, degrees)");
-    if (!given.insert(text.substr(0, equals)).second)
-      throw WrongUsage("--bone: '" + text.substr(0, equals) + "' is given twice");
+    if (!given.insert(name).second)
+      throw WrongUsage("--bone: '" + name + "' is given twice");
     constexpr double degree = 3.14159265358979323846 / 180;
-    set_bone_motion(model, text.substr(0, equals),
+    set_bone_motion(model, name,
                     rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
                                  { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } }),
                     bones);

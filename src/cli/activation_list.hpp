@@ -9,17 +9,17 @@
 namespace frontalis
 {
 
-/// Reads "frontalis_left=0.75,procerus=0.2". Throws WrongUsage where it is not written so.
+/// Reads "frontalis_left=0.75,procerus=0.2". Throws WrongUsage on any other form.
 std::map<std::string, double> parse_activation_list(const std::string& text);
 
-/// One activation a muscle: those of the expression (may be empty), then those listed; the rest are 0. Throws Error
-/// naming each muscle or expression that the model does not have and those that it has, and values outside 0..1.
+/// One activation per muscle: that of the expression (may be empty), replaced by that of the list; 0 for the others.
+/// Throws Error on values outside 0..1, and on unknown muscles and expressions, with those that the model has.
 std::vector<float> target_activation(const Model& model, const std::string& expression,
                                      const std::map<std::string, double>& listed);
 
-/// Reads "jaw=0,0,-2,0,10,0", one a bone: shift along x, y, z [mm], and rotation vector [degrees] about the origin,
-/// both in the face frame. Returns one motion a bone of the model, in the local frame. Throws WrongUsage where it is
-/// not written so, and Error on unknown bones and motions that are not finite.
+/// Reads "jaw=0,0,-2,0,10,0", one text per bone: shift along x, y, z [mm] and rotation vector about the origin
+/// [degrees], both in the face frame. Returns one motion per bone of the model, in the local frame. Throws WrongUsage
+/// on any other form, and Error on unknown bones and motions that are not finite.
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
 
 }  // namespace frontalis

@@ -9,8 +9,8 @@
 namespace frontalis
 {
 
-/// The cases named in `only`, in their own order; where it names none, the short ones, or all with `all`. Throws
-/// WrongUsage on a name that no case has.
+/// The cases that `only` names, in the order of `cases`; where it is empty, the short cases, or with `all` all of them.
+/// Throws WrongUsage on a name that no case has.
 template <class Case>
 std::vector<Case> chosen_cases(std::vector<Case> cases, const std::vector<std::string>& only, bool all)
 {

@@ -8,11 +8,12 @@
 namespace frontalis
 {
 
-/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. Every file is whole or not there.
+/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. Every file is written whole or
+/// not at all.
 class FrameFolder
 {
 public:
-  /// Makes the folder where it is missing, and removes the files that an earlier run has left in it. Throws Error.
+  /// Makes the folder where it is missing and removes the files of an earlier run from it. Throws Error.
   FrameFolder(std::string path, const Model& model);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
@@ -21,8 +22,6 @@ public:
   void finish(const std::string& summary);
 
 private:
-  void write(const std::string& name, const std::string& bytes) const;
-
   std::string path_;
   const Model& model_;
   int frames_ = 0;

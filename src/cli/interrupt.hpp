@@ -3,12 +3,12 @@
 namespace frontalis
 {
 
-/// Thrown where work ends early because of Ctrl-C.
+/// Thrown where Ctrl-C ends the work early.
 struct Interrupted
 {
 };
 
-/// From now on the first Ctrl-C (or SIGTERM) only sets a flag; the second one ends the program at once.
+/// Makes the first Ctrl-C (or SIGTERM) only set a flag; the second one ends the program at once.
 void catch_interrupts();
 
 bool interrupt_requested();

@@ -9,9 +9,9 @@
 namespace
 {
 
-int tell(const std::exception& error, int code)
+int report(const char* text, int code)
 {
-  std::fprintf(stderr, "%s\n", error.what());
+  std::fprintf(stderr, "%s\n", text);
   return code;
 }
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv)
   }
   catch (const CLI::ParseError& error)
   {
-    // --help and --version come this way too, with code 0
+    // --help and --version are exceptions too, with code 0
     return app.exit(error) == 0 ? frontalis::exit_success : frontalis::exit_wrong_usage;
   }
 
@@ -51,20 +51,18 @@ int main(int argc, char** argv)
   }
   catch (const frontalis::Interrupted&)
   {
-    std::fprintf(stderr, "interrupted\n");
-    return frontalis::exit_interrupted;
+    return report("interrupted", frontalis::exit_interrupted);
   }
   catch (const frontalis::WrongUsage& error)
   {
-    return tell(error, frontalis::exit_wrong_usage);
+    return report(error.what(), frontalis::exit_wrong_usage);
   }
   catch (const std::bad_alloc&)
   {
-    std::fprintf(stderr, "out of memory; use larger voxels or a smaller region\n");
-    return frontalis::exit_error;
+    return report("out of memory; use larger voxels or a smaller region", frontalis::exit_error);
   }
   catch (const std::exception& error)
   {
-    return tell(error, frontalis::exit_error);
+    return report(error.what(), frontalis::exit_error);
   }
 }

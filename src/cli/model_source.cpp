@@ -13,8 +13,8 @@
 #endif
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -47,7 +47,7 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-/// A folder that holds models by their scenes' content hashes. A fault of it never keeps a scene from being baked.
+/// A folder that keeps models by the hash of their scenes' content. A scene is baked even where the folder fails.
 class Cache
 {
 public:
@@ -69,7 +69,7 @@ public:
     }
     catch (const Error& error)
     {
-      told = std::string("of no use: ") + error.what() + "; ";
+      told = std::string("not usable: ") + error.what() + "; ";
       return std::nullopt;
     }
   }
@@ -100,32 +100,46 @@ BakeSummary summary_of(const BakeReport& report)
   BakeSummary summary;
   summary.whole = report.measure_muscles;
   summary.findings = report.findings;
-  char line[256];
   for (const BakeReport::Stage& stage : report.stages)
-  {
-    std::snprintf(line, sizeof line, "%8.3f s  %6.0f MB  ", stage.seconds, stage.peak_memory / 1e6);
-    summary.stages.push_back(line + stage.name);
-  }
+    summary.stages.push_back(
+        fmt::format("{:8.3f} s  {:6.0f} MB  {}", stage.seconds, stage.peak_memory / 1e6, stage.name));
+  if (!report.muscles.empty())
+    summary.muscles.push_back(fmt::format("{:>8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}  cm3", "voxels", "in tissue",
+                                          "differ", "mesh", "in bone", "off skin", "limits", "nurbs"));
   for (const BakeReport::MuscleVolume& muscle : report.muscles)
-  {
-    if (summary.muscles.empty())
-    {
-      std::snprintf(line, sizeof line, "%8s %9s %7s %8s %8s %8s %8s %8s  cm3", "voxels", "in tissue", "differ", "mesh",
-                    "in bone", "off skin", "limits", "nurbs");
-      summary.muscles.emplace_back(line);
-    }
-    char nurbs[16] = "-";
-    if (muscle.nurbs > 0)
-      std::snprintf(nurbs, sizeof nurbs, "%.3f", 1e6 * muscle.nurbs);
-    std::snprintf(line, sizeof line, "%8.3f %9.3f %6.1f%% %8.3f %8.3f %8.3f %8.3f %8s  ", 1e6 * muscle.voxels,
-                  1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1), 1e6 * muscle.mesh,
-                  1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere, nurbs);
-    summary.muscles.push_back(line + muscle.name);
-  }
+    summary.muscles.push_back(
+        fmt::format("{:8.3f} {:9.3f} {:6.1f}% {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:>8}  {}", 1e6 * muscle.voxels,
+                    1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1), 1e6 * muscle.mesh,
+                    1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
+                    muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name));
   return summary;
 }
 
 }  // namespace
+
+Model bake_interruptibly(const Scene& scene, BakeReport* report,
+                         const std::function<void(const std::string&, double)>& progress)
+{
+  Model model;
+  try
+  {
+    model = bake(scene, report,
+                 [&progress](const std::string& stage, double done)
+                 {
+                   progress(stage, done);
+                   return !interrupt_requested();
+                 });
+  }
+  catch (const Error&)
+  {
+    // an interrupted bake throws an Error too
+    if (!interrupt_requested())
+      throw;
+  }
+  if (interrupt_requested())
+    throw Interrupted();
+  return model;
+}
 
 Model bake_scene(const ModelSource& source, BakeSummary* summary)
 {
@@ -146,25 +160,8 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   Progress progress;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
-  Model model;
-  try
-  {
-    model = bake(scene, &report,
-                 [&progress](const std::string& stage, double done)
-                 {
-                   progress.update(stage, done);
-                   return !interrupt_requested();
-                 });
-  }
-  catch (const Error&)
-  {
-    // an interrupted bake ends in an error that is none
-    if (interrupt_requested())
-      throw Interrupted();
-    throw;
-  }
-  if (interrupt_requested())
-    throw Interrupted();
+  const Model model = bake_interruptibly(
+      scene, &report, [&progress](const std::string& stage, double done) { progress.update(stage, done); });
   cache.keep(model, of_cache);
   if (summary != nullptr)
   {
@@ -193,8 +190,7 @@ Model obtain_model(const ModelSource& source)
                                       std::pair<const char*, const std::string&>("--accuracy", source.accuracy),
                                       std::pair<const char*, const std::string&>("--voxel", source.voxel) })
     if (!text.empty())
-      throw WrongUsage(std::string(option) + " goes with a scene; '" + source.path +
-                       "' is a model that is baked already");
+      throw WrongUsage(fmt::format("{} goes with a scene; '{}' is already a baked model", option, source.path));
   return read_model(source.path);
 }
 

@@ -2,6 +2,7 @@
 
 #include "frontalis/model/model.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,21 +14,24 @@ class App;
 namespace frontalis
 {
 
-/// What the command line says about the scene or model to take.
+struct BakeReport;
+struct Scene;
+
+/// The scene or model that the command line names.
 struct ModelSource
 {
   std::string path;
   std::string mesh_directory;
   std::string accuracy;
   std::string voxel;
-  std::string cache;  ///< folder of models by content hash: taken from there, or left there; empty: none
+  std::string cache;  ///< folder that keeps models by the hash of their scene; empty: none
 };
 
-/// What a bake told, ready to print.
+/// The report of a bake, ready to print.
 struct BakeSummary
 {
-  bool whole = false;                ///< to be set before: measure the muscles too
-  std::string cache;                 ///< what became of the cache, a sentence; empty: none was asked for
+  bool whole = false;                ///< set before the bake: measure the muscles too
+  std::string cache;                 ///< what the cache was used for, a sentence; empty: there is no cache
   std::vector<std::string> stages;   ///< seconds, peak memory and name
   std::vector<std::string> muscles;  ///< a table of their volumes, heading first; empty: none
   std::vector<std::string> findings;
@@ -39,8 +43,12 @@ void add_scene_options(CLI::App& command, ModelSource& source);
 /// By its extension (.vtkhdf, .h5, .hdf5) or by the signature of HDF5 at its beginning.
 bool is_model_file(const std::string& path);
 
-/// Reads a scene and bakes it, telling its progress. Throws Error, Interrupted.
+/// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.
 Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);
+
+/// bake() that Ctrl-C ends by Interrupted. Only in builds that bake.
+Model bake_interruptibly(const Scene& scene, BakeReport* report,
+                         const std::function<void(const std::string& stage, double done)>& progress);
 
 /// Reads a model file, or reads a scene and bakes it. Throws Error, WrongUsage, Interrupted.
 Model obtain_model(const ModelSource& source);

@@ -1,11 +1,14 @@
 #include "cli/motion.hpp"
 
+#include "cli/fields.hpp"
+
 #include "frontalis/error.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -15,38 +18,25 @@ namespace frontalis
 namespace
 {
 
-constexpr double steps_a_slice = 4096;  // a second or so of a large model
+// steps between two looks for Ctrl-C: about a second of a large model
+constexpr double steps_per_slice = 4096;
 
-std::vector<std::string> fields_of(const std::string& line)
+double finite_number(const std::string& text, const std::string& place)
 {
-  std::vector<std::string> fields;
-  for (std::size_t begin = 0; begin <= line.size();)
-  {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::size_t first = line.find_first_not_of(" \t\r", begin), last = line.find_last_not_of(" \t\r", end - 1);
-    fields.push_back(first < end ? line.substr(first, last + 1 - first) : "");
-    begin = end + 1;
-  }
-  return fields;
-}
-
-double number(const std::string& text, const std::string& place)
-{
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+  const std::optional<double> value = number_from(text);
+  if (!value || !std::isfinite(*value))
     throw Error(place + "found '" + text + "'; must be a number");
-  return value;
+  return *value;
 }
 
-// activations of a row's columns by name, the first being time
+// the activations of a row, whose columns after the first have the names of muscles
 std::vector<float> row_activation(const Model& model, const std::vector<std::string>& header,
                                   const std::vector<double>& row, const std::string& place)
 {
   std::map<std::string, double> named;
   for (std::size_t c = 1; c < header.size(); ++c)
     if (!named.emplace(header[c], row[c]).second)
-      throw Error(place + "'" + header[c] + "' is there twice");
+      throw Error(place + "'" + header[c] + "' is there twice; must be there once");
   std::vector<float> activation(model.muscles.size(), 0);
   try
   {
@@ -96,15 +86,14 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
   {
     if (line.find_first_not_of(" \t\r") == std::string::npos)
       continue;
-    const std::string place = path + ":" + std::to_string(row) + ": ";
+    const std::string place = fmt::format("{}:{}: ", path, row);
     const auto fields = fields_of(line);
     if (fields.size() != header.size())
-      throw Error(place + "found " + std::to_string(fields.size()) + " fields; the header has " +
-                  std::to_string(header.size()));
+      throw Error(fmt::format("{}found {} fields; the header has {}", place, fields.size(), header.size()));
     std::vector<double> numbers;
     numbers.reserve(fields.size());
     for (const std::string& field : fields)
-      numbers.push_back(number(field, place));
+      numbers.push_back(finite_number(field, place));
     const double time = numbers[0];
     if (!(time >= 0) || (!empty && time <= curve.time.back()))
       throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
@@ -136,7 +125,7 @@ void Motion::advance_to(double time)
 void Motion::advance(double end)
 {
   while (time_ < end && go_on_())
-    take_slice(std::min(end, time_ + steps_a_slice * solver_.time_step() * scaling_));
+    take_slice(std::min(end, time_ + steps_per_slice * solver_.time_step() * scaling_));
 }
 
 void Motion::take_slice(double time)

@@ -10,10 +10,10 @@
 namespace frontalis
 {
 
-/// Activations over time: linear between knots, constant after the last.
+/// Activations over time, linear between knots and constant after the last one.
 struct ActivationCurve
 {
-  std::vector<double> time;  ///< ascending from 0 [s], on the clock on which activations are given
+  std::vector<double> time;  ///< ascending from 0 [s], on the clock of the activations
   std::vector<std::vector<float>> activation;
 
   std::vector<float> at(double seconds) const;
@@ -22,11 +22,11 @@ struct ActivationCurve
 /// From rest to a target over a ramp.
 ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
 
-/// Reads a table: a header `time,MUSCLE,MUSCLE,...`, then a row a knot, times ascending; before the first row muscles
-/// go linearly from rest. Throws Error with the file's line.
+/// Reads a table with a header `time,MUSCLE,MUSCLE,...` and one row per knot, times ascending. Up to the first row
+/// activations grow linearly from 0. Throws Error with the file's line.
 ActivationCurve read_activation_curve(const std::string& path, const Model& model);
 
-/// Plays a curve on a solver, watched by a guard or not, and takes bones to their place over the first `ramp` seconds.
+/// Plays a curve on a solver, with or without a guard, and moves bones to their poses over the first `ramp` seconds.
 class Motion
 {
 public:
@@ -42,10 +42,10 @@ public:
   {
   }
 
-  /// Advances to `time` on the activations' clock, from knot to knot; `go_on` is asked every few thousand steps, and
-  /// where it says no, the motion ends there.
+  /// Advances to `time` on the clock of the activations. `go_on` is called every few thousand steps and ends the motion
+  /// where it returns false.
   void advance_to(double time);
-  double time() const { return time_; }  ///< reached
+  double time() const { return time_; }  ///< that is reached
 
 private:
   void advance(double end);

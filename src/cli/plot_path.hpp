@@ -7,7 +7,8 @@
 namespace frontalis
 {
 
-/// What write_plot wants of --plot FILE.png; empty where none is asked for. Throws WrongUsage on another extension.
+/// The path of --plot FILE.png without its extension, for write_plot(); empty without the option. Throws WrongUsage on
+/// another extension.
 inline std::string plot_path(const std::string& option)
 {
   const std::string extension = ".png";

@@ -8,11 +8,11 @@
 namespace frontalis
 {
 
-/// Tells how far work is: a bar a stage where stderr is a terminal, else a line a stage on stdout.
+/// Shows the progress of work: one bar per stage where stderr is a terminal, else one line per stage on stdout.
 class Progress
 {
 public:
-  /// Where stderr is no terminal: a line a stage, or nothing.
+  /// What is shown where stderr is no terminal.
   enum class OffTerminal
   {
     lines,
@@ -25,7 +25,7 @@ public:
 
   /// `done` from 0 to 1.
   void update(const std::string& stage, double done);
-  /// Ends the line of a bar that is not full.
+  /// Ends the line of an unfinished bar.
   void clear();
 
 private:

@@ -6,17 +6,17 @@
 #include "cli/motion.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_summary.hpp"
+#include "cli/solver_options.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
-#include "frontalis/solver/solver.hpp"
+#include "frontalis/study/step_time.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -40,19 +40,19 @@ struct RunOptions
   double seconds = 1;
   std::string frames;
   double frame_rate = 0;  ///< [1/s]; 0: the model's
-  std::string backend = "auto";
-  int threads = 0;
+  SolverOptions solver;
   double time_step = 0;     ///< [s]; 0: found by the solver
-  int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's
+  int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
 };
 
-// a state that cannot be trusted ends the run before its frame is written
+// ends the run before a frame of a motion that diverged is written
 void check_motion(const Monitor& monitor, const SkinState& skin, double time)
 {
   if (!monitor.finite || !is_finite(skin))
     throw Error(
-        "the motion diverged at " + std::to_string(time) +
-        " s: displacements are no longer finite; use a smaller time_step_share, smaller activations or more damping");
+        fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
+                    "time_step_share, smaller activations or more damping",
+                    time));
 }
 
 void look(Solver& solver, const Model& model, double time, RunSummary& summary)
@@ -77,7 +77,7 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
 {
   const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
   const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * frame_rate * (1 - 1e-9))));
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_seconds();
   Progress progress;
   for (int frame = 0; frame <= frames; ++frame)
   {
@@ -91,7 +91,7 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
     if (folder)
       folder->add(time, summary.end);
     summary.frames = frame + 1;
-    summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
     if (time < options.seconds && interrupt_requested())
     {
@@ -101,11 +101,11 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
   }
 }
 
-// relaxes to equilibrium, the activations at once where they end
+// relaxes to equilibrium under the final activations
 void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& options, const Controls& target,
             std::optional<FrameFolder>& folder, RunSummary& summary)
 {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_seconds();
   look(solver, model, 0, summary);
   summary.rest = summary.end;
   Progress progress;
@@ -120,7 +120,7 @@ void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& 
   const double time = found.seconds * model.time_scaling;
   look(solver, model, time, summary);
   summary.frames = 1;
-  summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  summary.wall = wall_seconds() - begin;
   summary.equilibrium = found;
   summary.complete = !interrupt_requested() || found.reached;
   if (folder)
@@ -132,9 +132,8 @@ void check_options(const RunOptions& options)
   if (!options.activation_file.empty() && (!options.activation.empty() || !options.expression.empty()))
     throw WrongUsage("--activations goes with neither --activate nor --expression");
   if (options.to_equilibrium && options.ledger)
-    throw WrongUsage("--ledger: there is no balance of energies on the way to equilibrium");
-  if (!(options.seconds > 0) || !std::isfinite(options.seconds))
-    throw WrongUsage("--seconds: must be a number greater than 0");
+    throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
+  check_seconds(options.seconds);
   if (!std::isfinite(options.ramp))
     throw WrongUsage("--ramp: must be a number from 0");
   if (!(options.frame_rate >= 0) || !std::isfinite(options.frame_rate))
@@ -143,7 +142,7 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
-// those that need others first
+// in reverse order, since an effect comes after those that it needs
 void switch_off(Solver& solver, EffectSet off)
 {
   const auto effects = every_effect();
@@ -156,9 +155,7 @@ void run(const RunOptions& options)
 {
   check_options(options);
   const std::map<std::string, double> listed = parse_activation_list(options.activation);
-  SolverSettings settings;
-  settings.backend = backend_from_name(options.backend);
-  settings.threads = options.threads;
+  SolverSettings settings = options.solver.settings();
   settings.time_step = options.time_step;
   settings.ledger = options.ledger;
   EffectSet off;
@@ -205,7 +202,7 @@ void run(const RunOptions& options)
   }
   catch (const Error& error)
   {
-    // what was reached is kept
+    // the result up to here is written before the error is told
     summary.complete = false;
     summary.failure = error.what();
     if (folder)
@@ -218,51 +215,54 @@ void run(const RunOptions& options)
   if (!summary.complete)
     throw Interrupted();
   if (summary.equilibrium && !summary.equilibrium->reached)
-    throw Error("no equilibrium after " + std::to_string(options.seconds) +
-                " s of relaxation: " + std::to_string(summary.equilibrium->residual) +
-                " of the displacement is left; allow more --seconds or a larger --tolerance");
+    throw Error(
+        fmt::format("no equilibrium after {:g} s of relaxation: {:.3g} of the displacement is left; allow more "
+                    "--seconds or a larger --tolerance",
+                    options.seconds, summary.equilibrium->residual));
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& app, Action& action)
 {
-  CLI::App* command = app.add_subcommand("run", "simulate a scene or a baked model and say how the landmarks moved");
+  CLI::App* command = app.add_subcommand("run", "simulate a scene or a baked model and print how its landmarks moved");
   const auto options = std::make_shared<RunOptions>();
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   command->add_option("--activate", options->activation, "activations from 0 to 1: MUSCLE=VALUE,MUSCLE=VALUE,...");
-  command->add_option("--expression", options->expression, "a named set of activations; --activate goes before it");
+  command->add_option("--expression", options->expression,
+                      "a named set of activations, over which --activate takes precedence");
   command->add_option("--activations", options->activation_file,
-                      "activations over time: a table (CSV) with columns time [s] and one a muscle");
+                      "activations over time: a table (CSV) with a column time [s] and one column per muscle");
   command->add_flag("--to-equilibrium", options->to_equilibrium,
-                    "no motion: relax to equilibrium with the activations as they end, within --seconds (10)");
-  command->add_option("--tolerance", options->tolerance, "of equilibrium: motion left over displacement (0.001)")
+                    "relax to equilibrium under the final activations, within --seconds (10)");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "of equilibrium: remaining motion divided by displacement (0.001)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--ledger", options->ledger, "keep account of energies and print it");
+  command->add_flag("--ledger", options->ledger, "keep the energy ledger and print it");
   command->add_option("--bone", options->bones,
                       "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
-                      "the origin [degrees]; once a bone");
+                      "the origin [degrees]; once per bone");
   command
       ->add_option("--ramp", options->ramp,
-                   "activations and bones move linearly over so many seconds (0.1, or half the run)")
+                   "seconds over which activations and bones move linearly (0.1, or half of the run)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--without", options->without, "effects to switch off: NAME,NAME,... (see frontalis effects)")
       ->delimiter(',');
   command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
   command->add_option("--frames", options->frames,
                       "folder for skin_NNNN.ply, landmarks.csv and run.json; files of an earlier run are replaced");
-  command->add_option("--frame-rate", options->frame_rate, "frames a simulated second (the model's)")
+  command->add_option("--frame-rate", options->frame_rate, "frames per simulated second (as the model says)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--backend", options->backend, "auto, reference, cpu or cuda (auto)")
-      ->check(CLI::IsMember({ "auto", "reference", "cpu", "cuda" }));
+  add_solver_options(*command, options->solver);
   command
-      ->add_option("--guard", options->guard_interval,
-                   "steps between two checks of the motion, which go back and take shorter steps where it is unstable "
-                   "(512, on a GPU 2048); 0: none")
+      ->add_option(
+          "--guard", options->guard_interval,
+          "steps between two checks of the motion (512, on a GPU 2048; 0: no checks); an unstable motion goes back "
+          "to the last good check and takes shorter steps")
       ->check(CLI::Range(0, 1 << 30));
-  command->add_option("--threads", options->threads, "CPU threads (0: one a core)")->check(CLI::Range(0, 1024));
   command->add_option("--time-step", options->time_step,
-                      "longest time step [s], at most the critical one (0: the safe one, by the model's share)");
+                      "longest time step [s], at most the critical one (0: the safe one, by the model's share of it)");
   add_scene_options(*command, options->source);
   command->callback(
       [&action, options, command]

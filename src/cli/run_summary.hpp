@@ -9,22 +9,22 @@
 namespace frontalis
 {
 
-/// What a run came to.
+/// The result of a run.
 struct RunSummary
 {
   std::string backend;
-  double seconds = 0;    ///< simulated, on the clock on which activations are given [s]
-  double wall = 0;       ///< [s], all of the run but building the model and the solver
+  double seconds = 0;    ///< simulated, on the clock of the activations [s]
+  double wall = 0;       ///< wall time without building the model and the solver [s]
   double time_step = 0;  ///< [s]
   int frames = 0;
   bool complete = true;     ///< false: interrupted or stopped
-  std::string failure;      ///< why it was stopped; empty: it was not
+  std::string failure;      ///< why it was stopped; empty: it was not stopped
   Monitor monitor;          ///< at the end
   double peak_kinetic = 0;  ///< [J]
   double peak_internal = 0;
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
-  std::optional<GuardCounts> guard;        ///< where the motion was watched
+  std::optional<GuardCounts> guard;        ///< where the motion was guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, where one was kept
   std::optional<Equilibrium> equilibrium;  ///< where one was looked for
   SkinState rest;                          ///< face frame

@@ -1,6 +1,7 @@
 #include "cli/chosen_cases.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/solver_options.hpp"
 #include "cli/stability_scenes.hpp"
 
 #include "frontalis/error.hpp"
@@ -8,9 +9,9 @@
 #include "frontalis/study/stability.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 namespace frontalis
@@ -45,17 +46,14 @@ void run_stability(const StabilityOptions& options)
   int motion = 0;
   if (!options.models.empty())
   {
-    std::error_code failed;
-    std::filesystem::create_directories(options.models, failed);
-    if (failed)
-      throw Error(options.models + ": " + failed.message());
+    make_folder(options.models);
     settings.model = [&](const Model& model)
-    { write_model(model, options.models + "/" + name + "_" + std::to_string(++motion) + ".vtkhdf"); };
+    { write_model(model, fmt::format("{}/{}_{}.vtkhdf", options.models, name, ++motion)); };
   }
   Trials trials;
   int failed = 0, skipped = 0;
   double seconds = 0;
-  std::printf("%s\n", trial_heading().c_str());
+  fmt::print("{}\n", trial_heading());
   std::fflush(stdout);
   for (const auto& c : cases)
   {
@@ -63,7 +61,7 @@ void run_stability(const StabilityOptions& options)
     motion = 0;
     const Trial trial = run_case(c, settings);
     progress.clear();
-    std::printf("%s\n", trial_line(c, trial).c_str());
+    fmt::print("{}\n", trial_line(c, trial));
     std::fflush(stdout);
     failed += trial.passed() ? 0 : 1;
     skipped += trial.skipped.empty() ? 0 : 1;
@@ -78,9 +76,9 @@ void run_stability(const StabilityOptions& options)
     write_stability(trials, options.markdown);
   const int ran = static_cast<int>(cases.size()) - skipped;
   if (failed > 0)
-    throw Error(std::to_string(failed) + " of " + std::to_string(ran) + " cases failed");
-  std::printf("all %d cases passed in %.0f s%s\n", ran, seconds,
-              skipped > 0 ? (", " + std::to_string(skipped) + " skipped").c_str() : "");
+    throw Error(fmt::format("{} of {} cases failed", failed, ran));
+  fmt::print("all {} cases passed in {:.0f} s{}\n", ran, seconds,
+             skipped > 0 ? fmt::format(", {} skipped", skipped) : "");
 }
 
 }  // namespace
@@ -88,21 +86,21 @@ void run_stability(const StabilityOptions& options)
 void add_stability_command(CLI::App& app, Action& action)
 {
   auto options = std::make_shared<StabilityOptions>();
-  CLI::App* command = app.add_subcommand("stability", "run what explicit codes fail at, and say whether it held");
+  CLI::App* command =
+      app.add_subcommand("stability", "run motions that explicit codes fail at, and check that each holds");
   command->add_option("--only", options->only, "cases to run, by name");
-  command->add_flag("--all", options->all, "long cases too, and all in full length");
-  command->add_option("--backend", options->backend, "reference, cpu or cuda (cpu)")
-      ->check(CLI::IsMember({ "reference", "cpu", "cuda" }));
-  command->add_option("--cases", options->cases, "folder of the cases' files (where the program finds them itself)");
-  command->add_option("--mesh-dir", options->scenes.mesh_directory, "folder of the real head's meshes, for its case");
-  command->add_option(
-      "--scenes", options->scenes.folder,
-      "folder of the cases' scenes, or of models baked from them (where the program finds them itself)");
-  command->add_option("--models", options->models, "write the models of the cases' motions to this folder");
+  command->add_flag("--all", options->all, "run long cases too, and all of them in full length");
+  add_backend_option(*command, options->backend, named_backends());
+  command->add_option("--cases", options->cases, "folder of the cases' files (found beside the program)");
+  command->add_option("--mesh-dir", options->scenes.mesh_directory,
+                      "folder of the real head's meshes, which its case needs");
+  command->add_option("--scenes", options->scenes.folder,
+                      "folder of the cases' scenes, or of models baked from them (found beside the program)");
+  command->add_option("--models", options->models, "write the model of each motion to this folder");
   command->add_option("--json", options->json, "write the figures to this file");
   command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--markdown", options->markdown,
-                      "write stability.md to this folder, its plots to a folder stability in it");
+                      "write stability.md to this folder, and its plots to its folder stability");
   command->callback([options, &action] { action = [options] { run_stability(*options); }; });
 }
 

@@ -16,8 +16,8 @@ namespace
 
 namespace fs = std::filesystem;
 
-// where a folder of the package may be: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/ beside
-// `bundled`), in the sources
+// The places where a folder of the package may be: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/
+// beside `bundled`), or in the sources.
 std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
 {
   std::error_code none;
@@ -35,7 +35,8 @@ std::string stability_folder(const std::string& given)
   for (const fs::path& folder : folders("stability", "stability", "test/stability"))
     if (fs::is_directory(folder))
       return folder.lexically_normal().string();
-  throw Error("the files of the hard cases (stability/*.yaml) are not beside the program: say where (--cases)");
+  throw Error(
+      "the files of the hard cases (stability/*.yaml) are not beside the program; --cases must name their folder");
 }
 
 std::shared_ptr<const Model> stability_scene(const StabilityScenes& where, const std::string& name)

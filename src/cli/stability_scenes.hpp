@@ -8,19 +8,19 @@
 namespace frontalis
 {
 
-/// Where the scenes of hard cases are.
+/// The places of the scenes of hard cases.
 struct StabilityScenes
 {
-  std::string folder;  ///< empty: beside the program, as installed or bundled, else the sources'
+  std::string folder;  ///< empty: beside the program, or in the sources
   std::string mesh_directory;
 };
 
-/// Folder of the cases' files: that given, or where it is empty beside the program, as installed or bundled, else the
-/// sources'. Throws Error where there is none.
+/// Folder of the cases' files: `given`, or, where that is empty, the one beside the program or in the sources. Throws
+/// Error where there is none.
 std::string stability_folder(const std::string& given);
 
-/// A scene of that name, baked, or the model that was baked from it. Throws Skipped where this build cannot bake or
-/// the scene needs meshes that were not given, Error where the scene is wrong, Interrupted.
+/// The model of the scene of that name, read or baked. Throws Skipped where this build cannot bake or the scene needs
+/// meshes that were not given, Error where the scene is wrong, Interrupted.
 std::shared_ptr<const Model> stability_scene(const StabilityScenes& where, const std::string& name);
 
 }  // namespace frontalis

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 namespace frontalis
 {
 namespace
@@ -52,13 +54,20 @@ TEST_F(AccuracyCommand, measures_chooses_and_the_profile_can_be_used)
   const std::string chosen = folder / "chosen.yaml";
   const ProgramResult result = run({ "--tolerance", "5", "--save", chosen });
   ASSERT_EQ(result.code, 0) << result.errors << result.output;
-  expect_contains(result.output, "chosen    5 mm");
+  // which setting is the cheapest is the machine's; the choice must agree with the costs that were measured
+  nlohmann::json cheapest;
+  for (const nlohmann::json& row : json_from(text_of(results + "/accuracy.json")))
+    if (row.at("front") == "*" && row.at("error RMS [mm]") <= 5 &&
+        (cheapest.is_null() || row.at("cost [s/s]") < cheapest.at("cost [s/s]")))
+      cheapest = row;
+  ASSERT_FALSE(cheapest.is_null()) << result.output;
+  expect_contains(result.output, "chosen    " + cheapest.at("setting").get<std::string>() + ":");
   expect_contains(text_of(results + "/accuracy.csv"), "setting,front,error RMS [mm]");
-  expect_contains(text_of(results + "/accuracy.json"), "\"cost [s/s]\"");
   expect_contains(text_of(results + "/accuracy.md"), "Its own error is about");
   const ProgramResult baked = run_program({ "bake", scene, "--accuracy", chosen, "-o", folder / "bar.vtkhdf" });
   EXPECT_EQ(baked.code, 0) << baked.errors;
-  expect_contains(baked.output, "of 5 x 5 x 5 mm");
+  const std::string edge = std::regex_replace(text_of(chosen), std::regex("(.|\n)*voxel: ([0-9.]+) mm(.|\n)*"), "$2");
+  expect_contains(baked.output, "of " + edge + " x " + edge + " x " + edge + " mm");
 
   const ProgramResult again = run({ "--tolerance", "1e-6" });
   EXPECT_EQ(again.code, 1);

@@ -3,6 +3,7 @@
 #include "files.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,6 +65,14 @@ inline ProgramResult run_program(std::vector<std::string> arguments, const std::
   result.output = text_of(output);
   result.errors = text_of(errors);
   return result;
+}
+
+/// The content of a file written by the program, or its output; a failure where it is no JSON.
+inline nlohmann::json json_from(const std::string& text)
+{
+  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  EXPECT_FALSE(json.is_discarded()) << text;
+  return json;
 }
 
 inline void expect_contains(const std::string& text, const std::string& part)

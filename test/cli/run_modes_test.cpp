@@ -13,13 +13,6 @@ namespace frontalis
 namespace
 {
 
-// number behind a key of run.json
-double number_in(const std::string& json, const std::string& key)
-{
-  const std::size_t place = json.find("\"" + key + "\": ");
-  return place == std::string::npos ? NAN : std::stod(json.substr(place + key.size() + 4));
-}
-
 class RunModes : public testing::Test
 {
 protected:
@@ -76,8 +69,20 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
     EXPECT_NE(table.output.find(part), std::string::npos) << table.output;
   const auto json = run_program({ "effects", model, "--seconds", "0.01", "--backend", "cpu", "--json" });
   ASSERT_EQ(json.code, 0);
-  EXPECT_GT(number_in(json.output, "plain_step_us"), 0);
-  EXPECT_GE(number_in(json.output, "step_us"), 0);
+  const nlohmann::json costs = json_from(json.output);
+  EXPECT_EQ(costs.at("voxels"), 32);
+  for (const char* const time : { "plain_step_us", "step_us", "field_us" })
+    EXPECT_GE(costs.at(time), 0) << time;
+  ASSERT_EQ(costs.at("effects").size(), 11U);
+  for (const nlohmann::json& effect : costs.at("effects"))
+  {
+    const bool on = effect.at("on") == "on";
+    const bool is_timed = on && effect.at("effect") != "output_fields";
+    EXPECT_EQ(effect.at("step [us]").is_number(), is_timed) << effect;
+    EXPECT_EQ(effect.at("bytes") == 0, !is_timed) << effect;
+  }
+  for (const char* const seconds : { "0", "-1", "inf", "nan" })
+    EXPECT_EQ(run_program({ "effects", model, "--seconds", seconds }).code, 2) << seconds;
   EXPECT_EQ(run_program({ "effects", model, "--plot", "bars.svg" }).code, 2);
   const auto bench = run_program({ "bench", "--effects", model, "--plot", "shares" });
   EXPECT_EQ(bench.code, 2);
@@ -87,7 +92,7 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
 TEST_F(RunModes, a_time_step_is_taken_or_refused)
 {
   ASSERT_EQ(run_program({ "run", model, "--time-step", "2e-6", "--seconds", "0.001", "--frames", frames }).code, 0);
-  EXPECT_DOUBLE_EQ(number_in(text_of(frames + "/run.json"), "time_step_s"), 2e-6);
+  EXPECT_DOUBLE_EQ(json_from(text_of(frames + "/run.json")).at("time_step_s").get<double>(), 2e-6);
   for (const char* const step : { "0.1", "-1e-6", "nan" })
   {
     const ProgramResult result = run_program({ "run", model, "--time-step", step, "--seconds", "0.001" });
@@ -126,10 +131,10 @@ TEST_F(RunModes, the_ledger_of_a_shortening_bar_closes)
       run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "0.2", "--ledger", "--frames", frames });
   ASSERT_EQ(result.code, 0) << result.errors;
   EXPECT_NE(result.output.find("energy balance"), std::string::npos);
-  const std::string json = text_of(frames + "/run.json");
-  const double work = number_in(json, "ledger_muscle_J");
+  const nlohmann::json json = json_from(text_of(frames + "/run.json"));
+  const double work = json.at("ledger_muscle_J");
   EXPECT_GT(work, 0);
-  EXPECT_LT(std::abs(number_in(json, "ledger_imbalance_J")), 0.01 * work);
+  EXPECT_LT(std::abs(json.at("ledger_imbalance_J").get<double>()), 0.01 * work);
 }
 
 TEST_F(RunModes, equilibrium_is_where_a_damped_motion_ends)
@@ -137,10 +142,8 @@ TEST_F(RunModes, equilibrium_is_where_a_damped_motion_ends)
   const std::string other = folder / "other";
   ASSERT_EQ(run_program({ "run", model, "--activate", "pull=0.5", "--to-equilibrium", "--frames", frames }).code, 0);
   ASSERT_EQ(run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "2", "--frames", other }).code, 0);
-  const double settled =
-      number_in(text_of(frames + "/run.json").substr(text_of(frames + "/run.json").find("tip")), "up_mm");
-  const double damped =
-      number_in(text_of(other + "/run.json").substr(text_of(other + "/run.json").find("tip")), "up_mm");
+  const double settled = json_from(text_of(frames + "/run.json")).at("landmarks").at("tip").at("up_mm"),
+               damped = json_from(text_of(other + "/run.json")).at("landmarks").at("tip").at("up_mm");
   EXPECT_NEAR(settled, damped, 0.01 * std::abs(damped));
 }
 
@@ -161,10 +164,10 @@ TEST(PublishedForehead, contracts_to_three_quarters_activation_and_its_energies_
       run_program({ "run", FRONTALIS_SOURCE_DIRECTORY "/config/published.yaml", "--accuracy", "draft", "--voxel", "5",
                     "--expression", "contract", "--ramp", "0.2", "--seconds", "0.25", "--ledger", "--frames", frames });
   ASSERT_EQ(result.code, 0) << result.errors;
-  const std::string json = text_of(frames + "/run.json");
-  EXPECT_GT(number_in(json.substr(json.find("brow_left")), "up_mm"), 5);
-  EXPECT_GT(number_in(json, "worst_jacobian"), 0.1);
-  EXPECT_LT(std::abs(number_in(json, "ledger_imbalance_J")), 0.01 * number_in(json, "ledger_muscle_J"));
+  const nlohmann::json json = json_from(text_of(frames + "/run.json"));
+  EXPECT_GT(json.at("landmarks").at("brow_left").at("up_mm"), 5);
+  EXPECT_GT(json.at("worst_jacobian"), 0.1);
+  EXPECT_LT(std::abs(json.at("ledger_imbalance_J").get<double>()), 0.01 * json.at("ledger_muscle_J").get<double>());
 }
 
 }  // namespace

@@ -62,12 +62,8 @@ Ply read_ply(const std::string& path)
 // motion of a landmark as run.json has it: forward, left, up [mm]
 std::array<double, 3> motion_in(const std::string& json, const std::string& landmark)
 {
-  const std::size_t place = json.find("\"" + landmark + "\": {");
-  if (place == std::string::npos)
-    return { NAN, NAN, NAN };
-  const auto number = [&](const std::string& key)
-  { return std::stod(json.substr(json.find(key, place) + key.size())); };
-  return { number("\"forward_mm\": "), number("\"left_mm\": "), number("\"up_mm\": ") };
+  const nlohmann::json motion = json_from(json).at("landmarks").at(landmark);
+  return { motion.at("forward_mm"), motion.at("left_mm"), motion.at("up_mm") };
 }
 
 std::vector<std::string> names_in(const std::string& folder)
@@ -277,9 +273,9 @@ TEST_F(RunModel, interrupted_leaves_whole_files_and_130)
       EXPECT_EQ(read_ply(frames + "/" + name).vertices.size(), 4U) << name;
     }
   }
-  const std::string json = text_of(frames + "/run.json");
-  expect_contains(json, "\"complete\": false");
-  expect_contains(json, "\"frames\": " + std::to_string(skins) + ",");
+  const nlohmann::json json = json_from(text_of(frames + "/run.json"));
+  EXPECT_EQ(json.at("complete"), false);
+  EXPECT_EQ(json.at("frames"), skins);
 }
 
 TEST_F(RunModel, scene_options_do_not_go_with_it)

@@ -31,7 +31,7 @@ public:
   void restore(const Snapshot& snapshot) override { solver_->restore(snapshot); }
   std::string pack() override { return solver_->pack(); }
   void unpack(const std::string& bytes) override { solver_->unpack(bytes); }
-  int steps_a_check() const override { return solver_->steps_a_check(); }
+  int steps_per_check() const override { return solver_->steps_per_check(); }
   void slow_down(double share) override { solver_->slow_down(share); }
   double time() const override { return solver_->time(); }
   double time_step() const override { return solver_->time_step(); }

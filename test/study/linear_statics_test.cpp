@@ -16,9 +16,7 @@ Model bar(double young, double poisson)
   box.spacing = { { 1e-3, 2e-3, 1.5e-3 } };
   box.materials = { neo_hookean(young, poisson) };
   Model model = voxel_model(box);
-  for (int axis = 0; axis < 3; ++axis)
-    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
-              { { axis == 0, axis == 1, axis == 2 } });
+  hold_mirror_planes(model);
   return model;
 }
 

@@ -1,8 +1,12 @@
 #include "frontalis/study/verification.hpp"
 
+#include "files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 using namespace frontalis;
@@ -24,9 +28,31 @@ TEST(Check, LineSaysNameFiguresAndVerdict)
     EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
 }
 
-TEST(Cases, HaveNamesOfTheirOwn)
+TEST(Cases, HaveNamesOfTheirOwnAndATextInTheManual)
 {
+  const std::string texts = text_of(std::string(FRONTALIS_SOURCE_DIRECTORY) + "/doc/verification/text.md");
   std::set<std::string> names;
   for (const auto& c : verification_cases())
+  {
     EXPECT_TRUE(names.insert(c.name).second) << c.name;
+    EXPECT_NE(texts.find("\n## " + c.name + ": "), std::string::npos) << c.name;
+  }
+}
+
+TEST(Manual, HasTheTextOfEachCaseAroundItsFigures)
+{
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "manual");
+  std::ofstream(folder / "manual/text.md")
+      << "# Texts\n\nignored\n\n## bar: A bar\n\nis *pulled*\n\n### After\n\nand let go\n";
+  Finding finding;
+  finding.checks.absolute("length", "m", 2, 2.5, 1);
+  write_manual({ { "bar", finding } }, folder / "manual.md");
+  const std::string manual = text_of(folder / "manual.md");
+  EXPECT_EQ(manual.find("ignored"), std::string::npos);
+  const std::size_t title = manual.find("## A bar\n"), before = manual.find("is *pulled*"),
+                    check = manual.find("| length | m | 2 | 2.5 | 0.5 | 1 | pass |"), after = manual.find("and let go");
+  EXPECT_TRUE(title < before && before < check && check < after && after < manual.size()) << manual;
+  EXPECT_NE(manual.find("| [A bar](#bar) | 1 | 1 |"), std::string::npos) << manual;
+  EXPECT_THROW(write_manual({ { "rod", finding } }, folder / "manual.md"), Error);
 }

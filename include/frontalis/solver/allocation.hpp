@@ -17,7 +17,7 @@ struct Allocation
   std::size_t bytes;
 };
 
-/// Notes arrays that hold something: capacity for vectors of the host, bytes for arrays of a device.
+/// Lists arrays that are not empty: vectors in host memory by their capacity, arrays of a device by their bytes.
 class AllocationList
 {
 public:

@@ -6,7 +6,7 @@ namespace frontalis
 /// Where the energy is and where it came from [J], since reset or since displacements or velocities were set.
 struct EnergyLedger
 {
-  double initial = 0;  ///< kinetic, internal, hourglass at the begin
+  double initial = 0;  ///< kinetic, internal and hourglass energy at the begin
   double kinetic = 0;  ///< 1/2 m v(n - 1/2) . v(n + 1/2): what central differences conserve
   double internal = 0;
   double hourglass = 0;
@@ -19,7 +19,7 @@ struct EnergyLedger
   double constraint = 0;  ///< work done by bones, prescribed motion and sliding surfaces, without friction
   double largest = 0;     ///< largest of the above, in magnitude, that was seen so far
 
-  /// What the terms leave unexplained; 0 for exact arithmetic and small steps.
+  /// Energy that the terms leave unexplained; it goes to 0 with the time step.
   double imbalance() const
   {
     return kinetic + internal + hourglass + viscous + damping + friction - muscle - load - gravity - constraint -

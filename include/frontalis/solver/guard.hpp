@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-/// What a check of the motion may find.
+/// What a check of the motion may find, in the order of words_for().
 enum class Instability
 {
   none,
@@ -27,11 +27,11 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 0;              ///< steps between two checks; 0: Solver::steps_a_check
-  double slower = 0.5;           ///< share of the time step after a finding; each further try takes it once more
-  int recovery = 4;              ///< checks that find nothing before the whole time step is taken again
+  int interval = 0;              ///< steps between two checks; 0: Solver::steps_per_check
+  double slower = 0.5;           ///< factor on the time step after a finding, and again for each further try
+  int recovery = 4;              ///< checks without a finding before the whole time step is taken again
   int tries = 3;                 ///< in a row, before the motion is stopped
-  double inverted_share = 0.05;  ///< of voxels that may be inside out (J <= 0), if not more were so before
+  double inverted_share = 0.05;  ///< of voxels that may be inside out (J <= 0), unless more were so before
   bool ledger = false;           ///< judge energy by the ledger's imbalance: needs SolverSettings::ledger
 };
 
@@ -49,7 +49,7 @@ struct InstabilityReport
 {
   Instability kind = Instability::none;
   double time = 0;                    ///< [s] simulated, of the finding
-  std::int32_t voxel = -1;            ///< that is worst off
+  std::int32_t voxel = -1;            ///< the worst
   double jacobian = 1;                ///< its J
   std::array<double, 3> scene{};      ///< its centre at rest, scene frame [m]
   std::array<double, 3> face{};       ///< the same in the face frame [m]
@@ -60,7 +60,7 @@ struct InstabilityReport
   std::string text() const;           ///< all of it, two or three sentences
 };
 
-/// The motion was stopped; the solver is at a good state: the latest, or the one before where that led here too.
+/// The motion was stopped. The solver is at the latest good state, or at the one before if the latest led here too.
 class Unstable : public Error
 {
 public:
@@ -68,15 +68,18 @@ public:
   InstabilityReport report;
 };
 
-/// Watches a solver's motion: every so many steps it looks for what must not be (Instability), keeps a snapshot where
-/// there is nothing, and otherwise goes back to the last good one and takes shorter steps for a while.
+/// Watches a solver's motion. Every so many steps it looks for signs of instability. If there are none it keeps a
+/// snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
 ///
-/// Energy, without a ledger: kinetic, internal and hourglass energy E may have grown since the last good check, t ago,
-/// to no more than twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2, where W is the energy of a strain of 1e-4
-/// everywhere, what the fibres can give (tension times volume times a stretch of 1.2, and of 0.3 of passive ones), what
-/// bones that went a way of d, there and back, and prescribed nodes that moved by d can have brought (four times
-/// the bound of stiffness of the voxels that hang on them times d^2) and what viscous stresses can give back; f
-/// are gravity and surface loads on nodes of mass m.
+/// Energy is judged by a bound if there is no ledger: t after the last good check, where the kinetic, internal and
+/// hourglass energy was E, it may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f is gravity and
+/// surface loads on a node of mass m, and W is the sum of
+/// - the energy of a strain of 1e-4 everywhere;
+/// - what fibres can give: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive too;
+/// - what bones and prescribed nodes can have brought, whose paths since then have length d: four times the bound of
+/// the
+///   stiffness of the voxels at them, times d^2;
+/// - what viscous stresses can give back.
 class Guard
 {
 public:
@@ -87,11 +90,11 @@ public:
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// As Solver::advance, in parts, so that checks are in time. After a rollback controls go linearly from those of the
-  /// snapshot to `target`. Throws Error as advance() does; throws Unstable when `tries` in a row were in vain, with a
-  /// good state restored.
+  /// As Solver::advance, in parts, so that checks are in time. After a rollback, controls go linearly from those of the
+  /// snapshot to `target`. Throws Error as Solver::advance does; throws Unstable when `tries` in a row have failed,
+  /// with a good state restored.
   void advance(double seconds, const Controls& target);
-  /// Checks now, whatever was checked when; goes back to a good state where something is found, or throws Unstable.
+  /// Checks now. After a finding it goes back to a good state, or throws Unstable.
   void check();
   /// As Solver::settle, watched like advance(), but not by the ledger, which begins anew after it. Throws as both do.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
@@ -100,7 +103,7 @@ public:
   void restart();
 
   const GuardCounts& counts() const;
-  const Monitor& latest() const;  ///< of the latest check that found nothing
+  const Monitor& latest() const;  ///< at the latest check without a finding
 
 private:
   struct Implementation;

@@ -18,11 +18,11 @@ RigidTransform inverse(const RigidTransform& pose);
 /// Rotation by a rotation vector (axis times angle [rad]) about the origin, then a translation [m].
 RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation);
 
-/// Farthest that a corner of the box between the origin and `corner` [m] gets between two poses, as the crow flies [m].
+/// Largest distance [m] between the places of a corner at two poses, of the box between the origin and `corner` [m].
 double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
-/// The same where the way of interpolate() is gone at an even pace and no corner stops being as fast as the fastest is
-/// on it [m]: no less, and more where it turns.
+/// Length [m] of the path that such a corner would go if it moved along interpolate() at all times as fast as the
+/// fastest corner does at any time.
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
 }  // namespace frontalis

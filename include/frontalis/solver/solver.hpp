@@ -15,8 +15,8 @@
 namespace frontalis
 {
 
-/// Of motions: raised whenever the same model and controls give another one than before (other steps, other laws) or
-/// Solver::pack() other bytes. What was kept of another generation is not taken for this one's.
+/// Raised whenever the same model and controls give another motion than before (other steps, other laws), or
+/// Solver::pack() gives other bytes: motions that were kept by another generation are refused.
 constexpr int motion_generation = 10;
 
 /// A name of backend_names(): "auto" (the GPU where there is one, else the CPU), "reference" (double precision, plain
@@ -34,22 +34,22 @@ SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stre
 struct SolverSettings
 {
   Backend backend = "auto";
-  int threads = 0;       ///< CPU threads; 0: one a core
+  int threads = 0;       ///< CPU threads; 0: one per core
   double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
-  bool ledger = false;   ///< keep account of energies (Solver::ledger); costs a part of a step
+  bool ledger = false;   ///< keep account of energies (Solver::ledger); makes steps slower
 };
 
-/// What constraint_steps the model from outside.
+/// What moves the model from outside.
 struct Controls
 {
-  std::vector<float> activation;     ///< one a muscle, 0..1
-  std::vector<RigidTransform> bone;  ///< one a bone: motion from its rest pose, in the local frame
+  std::vector<float> activation;     ///< one per muscle, 0..1
+  std::vector<RigidTransform> bone;  ///< one per bone: motion from its rest pose, in the local frame
 };
 
 /// Controls at a fraction of the way between two; bones turn about the shortest axis.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
 
-/// All that the motion depends on at one moment; what is in it only the solver knows that made it.
+/// All that the motion depends on at one moment. Its contents are known to the solver alone that made it.
 class Snapshot
 {
 public:
@@ -81,23 +81,25 @@ public:
   /// Throws Error where advance() would: a state that diverged, a bad duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;
 
-  /// Dynamic relaxation: controls go to `target` at once, and the motion is damped critically for the lowest frequency
-  /// that it shows (Underwood 1983) until what is left of it, estimated from its speed, damping and lowest frequency,
-  /// stays within `tolerance` of the displacement (norms weighted by mass), or `seconds` are simulated. Viscous
-  /// stresses are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws Error as advance().
+  /// Dynamic relaxation (Underwood 1983): controls go to `target` at once, and the motion is damped critically for the
+  /// lowest frequency that it shows. It ends when the motion that is left, estimated from speed, damping and lowest
+  /// frequency, stays within `tolerance` of the displacement (norms weighted by mass), or after `seconds` of
+  /// simulation. Viscous stresses are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws
+  /// Error as advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 
-  /// What the motion depends on now, into `to`, whose memory is used again where it holds a snapshot of this solver.
+  /// Saves what the motion depends on now in `to`, whose memory is used again if it holds a snapshot of this solver.
   virtual void save(std::unique_ptr<Snapshot>& to) = 0;
-  /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on another's.
+  /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on a snapshot of
+  /// another solver.
   virtual void restore(const Snapshot& snapshot) = 0;
   /// The same as bytes, for a solver that another process makes of an equal model, on the same machine and with the
   /// same settings. unpack() throws Error on what is no such motion, and leaves the state as it was.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Steps that take about a hundred times as long as monitor() and save().
-  virtual int steps_a_check() const = 0;
+  /// Number of steps that take about a hundred times as long as monitor() and save() do.
+  virtual int steps_per_check() const = 0;
   /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
   virtual void slow_down(double share) = 0;
 
@@ -117,7 +119,7 @@ public:
   virtual std::vector<Allocation> allocations() const = 0;
 
   virtual void skin(SkinState& out) = 0;
-  /// One number a vertex of the skin, from the voxels' centres through means at their nodes. Nothing is stored for it
+  /// One number per vertex of the skin, from the voxels' centres through means at their nodes. Nothing is stored for it
   /// until it is asked for first. Throws Error where the scene switched output fields off.
   virtual void skin_field(SkinField field, std::vector<float>& out) = 0;
   virtual Monitor monitor() = 0;

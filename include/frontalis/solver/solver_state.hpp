@@ -15,7 +15,7 @@ struct SkinState
   std::vector<std::array<float, 3>> landmarks;
 };
 
-/// What of the tissue below the skin can be shown on it, one number a vertex; computed only where it is asked for.
+/// What can be shown on the skin of the tissue below it, one number per vertex; computed only when it is asked for.
 enum class SkinField
 {
   strain,  ///< largest principal Green-Lagrange strain
@@ -26,14 +26,14 @@ enum class SkinField
 struct Monitor
 {
   double kinetic = 0;
-  double internal = 0;  ///< elastic strain energy of the materials; fibres and hourglass not
+  double internal = 0;  ///< elastic strain energy of the materials, without fibres and hourglass control
   double hourglass = 0;
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
   std::int64_t inverted = 0;         ///< voxels with J <= 0
   double critical_time_step = 0;     ///< [s] now, bounded at nodes (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< of those at the node that sets it
-  double step_share = 0;             ///< latest time step over the critical now, by the model's estimate
+  double step_share = 0;             ///< latest time step over the critical one now, by the model's estimate
   bool finite = true;
 };
 
@@ -41,7 +41,7 @@ struct Monitor
 struct Equilibrium
 {
   bool reached = false;
-  double residual = 0;  ///< motion that is left over displacement, as estimated
+  double residual = 0;  ///< estimate of the motion that is left, over the displacement
   double seconds = 0;   ///< simulated
 };
 

@@ -14,7 +14,7 @@
 namespace frontalis
 {
 
-/// One position of every knob of accuracy against time.
+/// A setting of all knobs that trade accuracy for time.
 struct AccuracySetting
 {
   AccuracyProfile profile;
@@ -23,7 +23,7 @@ struct AccuracySetting
   Backend backend = "cpu";
 };
 
-/// From rest to an activation over a ramp, then held; times are on the activations' clock [s].
+/// Activations that grow from rest over a ramp and are then held; times are on the clock of the activations [s].
 struct ActivationHistory
 {
   std::vector<float> activation;
@@ -34,64 +34,63 @@ struct ActivationHistory
 /// Makes the models of a study.
 struct ModelMaker
 {
-  std::function<std::string(const AccuracySetting&)> content;  ///< everything that decides the model, as text
-  std::function<Model(const AccuracySetting&)> bake;           ///< may throw Error: that setting has no model
+  std::function<std::string(const AccuracySetting&)> content;  ///< all that the model depends on, as text
+  std::function<Model(const AccuracySetting&)> bake;           ///< throws Error where the setting has no model
 };
 
 struct AccuracyPlan
 {
-  /// Displacement [m] of a place of the skin [m] once settled, both in the face frame, where a closed form is known:
-  /// settled skins are compared with it, and no finer solution serves as reference.
+  /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. Where it is
+  /// given, settled skins are compared with it, and there is no reference of finer voxels.
   std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
-  AccuracySetting standard;               ///< the knobs are turned one at a time from here
-  std::vector<AccuracyProfile> profiles;  ///< the scene's own, measured too
-  std::vector<std::string> knobs;         ///< names of knob_names(); empty: all
-  std::vector<double>
-      edges;  ///< voxel edges, coarse to fine [m]; the last is the reference's, where there is no `exact`
+  AccuracySetting standard;               ///< each knob is varied from here
+  std::vector<AccuracyProfile> profiles;  ///< the scene's own, which are measured too
+  std::vector<std::string> knobs;         ///< some of knob_names(), without combinations; empty: all
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last is the reference's
   ActivationHistory history;
-  double frame_rate = 30;  ///< published skins a simulated second [1/s]
-  std::string folder;      ///< where finished variants are kept, by their content
-  double budget = 0;       ///< wall seconds that the study may take; 0: as many as it needs
-  bool quick = false;      ///< fewer positions of each knob
-  int threads = 0;         ///< of the CPU; 0: one a core
+  double frame_rate = 30;  ///< published skins per simulated second [1/s]
+  std::string folder;      ///< where finished variants are kept
+  double budget = 0;       ///< wall seconds that the study may take; 0: no limit
+  bool quick = false;      ///< fewer settings per knob
+  int threads = 0;         ///< of the CPU; 0: one per core
 };
 
-/// How far a published skin is from the reference's [m].
+/// Distance of a published skin from the reference's [m].
 struct SkinError
 {
   double rms = NAN;  ///< weighted by area
   double largest = NAN;
 };
 
-/// One setting, measured.
+/// The figures of one setting.
 struct AccuracyRow
 {
-  std::string name;  ///< what it differs in from the standard setting
+  std::string name;  ///< its differences from the standard setting
   AccuracySetting setting;
-  std::string fault;        ///< why it has no figures: unstable, no model; empty: it has
-  SkinError error;          ///< of the worst phase of the history, settled included
+  std::string fault;        ///< why there are no figures (unstable, no model); empty: there are
+  SkinError error;          ///< in the worst phase of the history, settled included
   SkinError settled;        ///< once settled
-  double averaged = NAN;    ///< as error, RMS, of the skin averaged over AccuracyFindings::averaged_over [m]
-  double landmark = NAN;    ///< farthest that a landmark is off in any phase [m]
-  double energy = NAN;      ///< what the ledger of energies leaves unexplained, over its largest term
-  double cost = NAN;        ///< wall seconds a simulated second, skins published at the scene's frame rate
-  double spread = NAN;      ///< of the repeated timings: quartiles' distance over the median
-  double processors = NAN;  ///< share of its processors that it got while it was timed
-  double step = NAN;        ///< wall seconds a step, median
-  double steps = NAN;       ///< a simulated second
+  double averaged = NAN;    ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
+  double landmark = NAN;    ///< largest error of a landmark in any phase [m]
+  double energy = NAN;      ///< imbalance of the energy ledger over its largest term
+  double cost = NAN;        ///< wall seconds per simulated second, skins published at the scene's frame rate
+  double spread = NAN;      ///< distance of the quartiles of repeated timings over their median
+  double processors = NAN;  ///< share of its processors that the solver got while it was timed
+  double step = NAN;        ///< wall seconds per step, median
+  double steps = NAN;       ///< per simulated second
   double memory = NAN;      ///< of model and solver, on the host [bytes]
-  double build = NAN;       ///< of the model [s]
+  double build = NAN;       ///< wall seconds to make the model
   double voxels = NAN;
-  bool noisy = false;  ///< spread above 20 %, or others took more than a fifth of the processors
+  bool noisy = false;  ///< spread above 20 %, or other programs took more than a fifth of the processors
 
-  /// Whether a profile of a scene file can say it.
+  /// Whether a profile of a scene file can express the setting.
   bool is_profile(const AccuracySetting& standard) const
   {
     return setting.poisson == 0 && setting.time_scaling == 1 && setting.backend == standard.backend;
   }
 };
 
-/// The positions of one knob, by row.
+/// The rows that vary one knob.
 struct KnobLine
 {
   std::string knob;
@@ -100,41 +99,42 @@ struct KnobLine
 
 struct AccuracyFindings
 {
-  bool complete = true;  ///< false: it was interrupted; what was finished is kept
+  bool complete = true;  ///< false: the study was interrupted; finished variants are kept
   std::vector<AccuracyRow> rows;
   std::vector<KnobLine> knobs;
-  std::vector<std::size_t> front;  ///< rows that no other beats in both error and cost, cheapest first
+  std::vector<std::size_t> front;  ///< the Pareto front: rows that none beats in both error and cost, cheapest first
   AccuracySetting standard, reference;
-  bool closed_form = false;    ///< what skins are compared with; otherwise the reference's
-  double motion = 0;           ///< root mean square displacement of the reference's skin, largest of the phases [m]
+  bool closed_form = false;    ///< skins are compared with the closed form instead of the reference
+  double motion = 0;           ///< RMS displacement of the reference's skin in the phase where it is largest [m]
   double reference_error = 0;  ///< [m], estimated
   double averaged_over = 0;    ///< standard deviation of the Gaussian [m]; 0: nothing was averaged
   double order = NAN;          ///< observed order of convergence in the voxel edge
-  bool extrapolated = false;   ///< whether the order is one to extrapolate with (0.5 to 2.5)
+  bool extrapolated = false;   ///< whether the order is good enough to extrapolate with (0.5 to 2.5)
   std::string machine;
-  std::vector<std::string> notes;  ///< sentences: checks of the reference, what was left out, noise
+  std::vector<std::string> notes;  ///< sentences about checks of the reference, and what was left out
 };
 
-/// Called with what is under way, the share done and the wall seconds that are left, as estimated; false interrupts.
+/// Called with the name of the present stage, the share of it that is done and an estimate of the wall seconds left;
+/// returning false interrupts the study.
 using AccuracyProgress = std::function<bool(const std::string& stage, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
 
-/// Measures the error and the cost of each setting. Throws Error: unknown knobs, a budget too small for one
-/// comparison, a reference that diverges, a folder that cannot be written.
+/// Measures the error and the cost of each setting. Throws Error on unknown knobs, a budget that is too small for a
+/// comparison, a reference that diverges and a folder that cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
-/// All rows with their figures, the front's marked.
+/// All rows with their figures; those of the front are marked.
 Table accuracy_table(const AccuracyFindings& findings);
-/// Error against cost, each knob a line, the front with its points named, the reference's own error as a line.
+/// Error against cost: a line for each knob, the front with its points named, and the reference's own error.
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title);
-/// What was found in words, and the table.
+/// The findings in words, and the table, as markdown.
 std::string accuracy_report(const AccuracyFindings& findings, const std::string& title);
-/// The setting as it stands in a scene file under `accuracy`, with its measured figures: "NAME: {...}"; lengths in mm.
+/// The setting with its measured figures as an entry of `accuracy` in a scene file, "NAME: {...}"; lengths in mm.
 std::string profile_text(const AccuracyRow& row, const std::string& name, const std::string& machine);
 
-/// The cheapest setting of the front with an error of at most `tolerance` [m]; the most accurate one that costs at most
-/// `seconds` of wall time a simulated second. Throws Error telling what was measured where there is none.
+/// The cheapest setting of the front with an error of at most `tolerance` [m], and the most accurate one that costs at
+/// most `seconds` of wall time per simulated second. Throws Error with the nearest figures where there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 

@@ -8,20 +8,20 @@
 namespace frontalis
 {
 
-/// A body made in code whose deformation at rest is known, for a study of accuracy: its plan has the closed form, the
-/// edges that fit the body, and the knobs that it can turn.
+/// A body for a study of accuracy whose settled deformation is known. The plan has the closed form, the voxel edges
+/// that fit the body and the knobs that can be varied.
 struct ClosedForm
 {
-  std::string name, title;
+  std::string name;
   AccuracyPlan plan;
   ModelMaker maker;
 };
 
-/// "cantilever": a square bar in plane strain, displaced at both ends as a beam bent by a force at its end is:
+/// "cantilever": a square bar in plane strain whose ends are displaced like those of a beam under a force at its end:
 /// Timoshenko & Goodier, Theory of Elasticity, article 21, in the form of Augarde & Deeks, Finite Elements in Analysis
 /// and Design 44 (2008) 595. "stretched_block": neo-Hookean, drawn to 1.3 of its length with free sides. "active_bar":
-/// the same, free, drawn together by a muscle without tension-length relation. The stretches of both are where the
-/// derivatives of mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 balance; uniform, so that voxels represent them exactly.
+/// the same, free, contracted by a muscle without tension-length relation. The stretches of both follow from the
+/// derivatives of mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2; they are uniform, so that voxels represent them exactly.
 std::vector<ClosedForm> closed_forms();
 
 }  // namespace frontalis

@@ -2,6 +2,7 @@
 
 #include "frontalis/effect.hpp"
 #include "frontalis/solver/solver.hpp"
+#include "frontalis/study/step_time.hpp"
 
 #include <memory>
 #include <vector>
@@ -9,27 +10,28 @@
 namespace frontalis
 {
 
-/// What an effect costs a step where a share of the voxels (of the nodes of a face: sliding, friction) has it.
+/// The cost of an effect in a model of which a share has it: of the voxels, or, of sliding and friction, of the nodes
+/// of a face.
 struct PresenceCost
 {
   Effect effect;
-  double share;   ///< of voxels or nodes, 0..1
-  double step;    ///< more than without it (friction: than a face that slides) [s]
-  double spread;  ///< half of what lies between the quartiles [s]
-  double base;    ///< of a step without it [s]
+  double share;  ///< 0..1
+  Spread step;   ///< of a step [s], more than without the effect (friction: more than of a face that slides)
+  double base;   ///< of a step without it [s]
 };
 
-/// A dense block of 64 x 40 x 40 voxels of which contiguous shares of 0, 10, 50 and 100 % along y have one effect,
-/// timed in turn for about so many wall seconds an effect.
+/// A dense block of 64 x 40 x 40 voxels of which contiguous shares along y have one effect: for each effect that voxels
+/// or nodes may have, one entry for each of presence_shares().
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds);
+std::vector<double> presence_shares();  ///< ascending from 0 to 1
 
-/// Seconds a step of a model with its first muscle at activation 0.75 and the others at 0, and with all at 0.75.
+/// Seconds per step of a model with its first muscle at activation 0.75 and the others at 0, and with all at 0.75.
 struct ActivationCost
 {
   double one = 0, all = 0;
   double spread = 0;  ///< of the difference
 };
 ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
-                                  double seconds);
+                                  const StepTimer& timer);
 
 }  // namespace frontalis

@@ -11,12 +11,12 @@ namespace frontalis
 struct EquilibriumSettings
 {
   Backend backend = "cpu";
-  double period = 0;         ///< [s] of the slowest motion, about
-  double ramp = 1;           ///< periods over which loads and activations grow, critically damped
-  double tolerance = 1e-4;   ///< as Solver::settle takes it
-  double longest = 60;       ///< periods; Error beyond
-  float activation = 0;      ///< of every muscle
-  RigidTransform bone_pose;  ///< of every bone
+  double period = 0;              ///< of the slowest vibration, about [s]
+  double ramp = 1;                ///< periods over which loads and activations grow
+  double tolerance = 1e-4;        ///< of Solver::settle
+  double longest = 60;            ///< periods after which it is an Error
+  float activation = 0;           ///< of every muscle
+  RigidTransform bone_pose = {};  ///< of every bone
 };
 
 /// Model at rest under its loads.
@@ -26,8 +26,8 @@ struct RestState
   Vectors displacements;  ///< [m]
 };
 
-/// Lets the model come to rest under slowly growing loads (the model's own damping is replaced), by Solver::settle.
-/// Throws Error where it does not within settings.longest.
+/// Brings the model to rest under slowly growing loads, critically damped for the period, and then by Solver::settle.
+/// Throws Error where it is not at rest within settings.longest.
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 
 /// Mean displacement [m] of nodes, and the internal force [N] on them.

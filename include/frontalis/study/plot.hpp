@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,34 +18,40 @@ struct Plot
     line_and_points,
     bars,
     faint,   ///< small grey points
-    strong,  ///< black line and points, the one that counts
-    guide    ///< thin grey dashes, told by their label
+    strong,  ///< black line and points, for the main curve
+    guide    ///< thin grey dashes, named by a label instead of the legend
   };
   struct Curve
   {
-    std::string name;  ///< in the legend; empty: not in it
-    std::vector<double> x, y;
+    std::string name;  ///< in the legend; empty: the curve is not in it
+    std::vector<double> x{}, y{};
     Style style = Style::line_and_points;
     std::vector<std::string> labels{};                ///< beside the points; empty: none
     std::string label_place = "left offset 0.7,0.7";  ///< of the labels beside their points, in gnuplot's words
-    bool coloured_labels = false;                     ///< as the curve
+    bool coloured_labels = false;                     ///< in the colour of the curve
+
+    void add(double at_x, double at_y)
+    {
+      x.push_back(at_x);
+      y.push_back(at_y);
+    }
   };
 
   std::string title;             ///< lines end with \n
   std::string x_label, y_label;  ///< with units
   bool x_log = false, y_log = false;
-  /// Limits of an axis where the two differ.
-  double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
-  std::vector<double> x_ticks, y_ticks{};  ///< where the axes have numbers; empty: gnuplot's choice
-  std::vector<std::string> x_names;        ///< written at x = 0, 1, 2, ... instead of numbers
-  double shaded_below = 0;                 ///< y under which the plot is grey; 0: nowhere
-  std::string key = "top right";           ///< place of the legend in gnuplot's words; "below ...": under the axes
-  std::vector<Curve> curves;
+  /// Limits of each axis; equal: gnuplot chooses them.
+  std::array<double, 2> x_range{}, y_range{};
+  std::vector<double> x_ticks{}, y_ticks{};  ///< numbers on the axes; empty: gnuplot chooses them
+  std::vector<std::string> x_names{};        ///< written at x = 0, 1, 2, ... instead of numbers
+  double shaded_below = 0;                   ///< y under which the plot is grey; 0: nowhere
+  std::string key = "top right";             ///< place of the legend in gnuplot's words; "below ...": under the axes
+  std::vector<Curve> curves{};
   int width = 800, height = 500;  ///< pixels
 };
 
-/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error where gnuplot fails, with what it said, and
-/// where it is missing: then PATH.gnuplot is left, for a machine that has it.
+/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error with gnuplot's message where it fails. Where
+/// gnuplot is missing it throws too, and leaves PATH.gnuplot, which can be drawn on another machine.
 void write_plot(const Plot& plot, const std::string& path);
 
 }  // namespace frontalis

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <string>
 #include <variant>
 #include <vector>
@@ -7,17 +9,17 @@
 namespace frontalis
 {
 
-/// What a study found, row by row: written as text, markdown, CSV or JSON. Numbers keep six digits in text and markdown
-/// and are written whole in CSV and JSON; NaN is an empty cell (JSON: null).
+/// The results of a study, row by row, as text, markdown, CSV or JSON. Numbers have six digits in text and markdown; in
+/// CSV and JSON they have as many as it takes to read the same number again. NaN is an empty cell (JSON: null).
 class Table
 {
 public:
   using Cell = std::variant<std::string, double>;
 
-  /// Columns with their names, units included where they have some: "force [N]".
+  /// Names of the columns, with their units where they have any: "force [N]".
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  /// Throws Error where the number of cells is not that of the columns.
+  /// Throws Error where there are not as many cells as columns.
   void add(std::vector<Cell> row);
 
   const std::vector<std::string>& columns() const { return columns_; }
@@ -33,16 +35,22 @@ private:
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// A number for readers: six significant digits; empty where it is NaN.
+/// A number in so many significant digits; empty where it is NaN.
 std::string readable(double value, int digits = 6);
 
 /// A length [m] with its unit: "0.2 mm".
 std::string millimetres(double metres, int digits = 3);
 
-/// Text as a JSON string with its quotes.
-std::string json_string(const std::string& text);
+/// Markdown with its lines broken at spaces to at most so many columns; rows of tables stay whole.
+std::string wrapped(const std::string& text, std::size_t columns = 120);
 
-/// Writes a whole file; throws Error naming it.
+/// JSON indented by one space per level, with a line break at its end.
+std::string json_text(const nlohmann::ordered_json& json);
+
+/// Makes a folder and those above it; throws Error naming it.
+void make_folder(const std::string& path);
+
+/// Writes a file whole or not at all; throws Error naming it.
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace frontalis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
+#include "frontalis/study/check.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
@@ -12,57 +13,35 @@
 namespace frontalis
 {
 
-/// One figure beside what it should be.
-struct Check
-{
-  std::string name;
-  std::string unit;
-  double expected = 0;
-  double found = 0;
-  double error = 0;  ///< |found - expected|, over |expected| where relative
-  double bound = 0;  ///< largest error that passes; NaN: none is set, the figure is shown as it is
-  bool relative = true;
-
-  bool passed() const { return !(error > bound) && error == error; }
-};
-
-Check relative_check(std::string name, std::string unit, double expected, double found, double bound);
-Check absolute_check(std::string name, std::string unit, double expected, double found, double bound);
-
-/// What a verification case found, and the words for the manual.
+/// The figures of a verification case.
 struct Finding
 {
-  std::string title;
-  std::string text;  ///< markdown: what is compared with what, and where the expected figures come from
-  std::vector<Check> checks;
+  Checks checks;
   std::vector<std::pair<std::string, Table>> tables;  ///< caption, table
   std::vector<std::pair<std::string, Plot>> plots;    ///< file name without extension, plot; its title is the caption
-  std::string remarks;                                ///< markdown, after the figures
-  std::string skipped;                                ///< why nothing was checked; empty: it was
+  std::string skipped;                                ///< why nothing was checked; empty: the case ran
 };
 
 struct VerificationSettings
 {
-  Backend backend = "cpu";  ///< of the motions; figures of single elements come from the reference
+  Backend backend = "cpu";  ///< of the motions; figures of single elements come from the reference backend
 };
 
 struct VerificationCase
 {
   std::string name;
-  bool quick;  ///< takes at most some seconds: part of the quick share
+  bool quick;  ///< takes at most some seconds and belongs to the short set
   std::function<Finding(const VerificationSettings&)> run;
 };
 
-/// All cases, in the manual's order.
+/// All cases, in the order of the manual.
 std::vector<VerificationCase> verification_cases();
 
-/// One line a check, as `frontalis verify` prints them; `name` is the case's.
-std::string check_line(const std::string& name, const Check& check);
-
-/// Findings by name of their case, as JSON and as the manual: FOLDER/verification.md with its plots beside it in
-/// FOLDER/verification/. Throws Error where a file cannot be written or gnuplot is missing.
+/// Findings, each with the name of its case.
 using Findings = std::vector<std::pair<std::string, Finding>>;
 std::string findings_json(const Findings& findings);
+/// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/, from where it takes the texts of all
+/// cases (text.md). Throws Error where a file cannot be read or written, or gnuplot is missing.
 void write_manual(const Findings& findings, const std::string& path);
 
 }  // namespace frontalis

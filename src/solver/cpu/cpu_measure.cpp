@@ -10,7 +10,7 @@ namespace frontalis
 
 // threads take their slabs, planes are added up in their order
 template <class Real>
-Monitor CpuSolver<Real>::measure()
+Monitor CpuSolver<Real>::monitor()
 {
   const Arguments from = arguments(0, nullptr);
   CpuKernelArguments<double> g{};
@@ -74,7 +74,7 @@ Monitor CpuSolver<Real>::measure()
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(*model_, bound.node, stiffness.data()));
 }
 
-template Monitor CpuSolver<float>::measure();
-template Monitor CpuSolver<double>::measure();
+template Monitor CpuSolver<float>::monitor();
+template Monitor CpuSolver<double>::monitor();
 
 }  // namespace frontalis

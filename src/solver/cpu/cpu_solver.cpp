@@ -1,12 +1,15 @@
 #include "solver/cpu/cpu_solver.hpp"
 
-#include "solver/skin/bound_points.hpp"
-#include "frontalis/solver/backend.hpp"
 #include "frontalis/physics/viscosity.hpp"
+#include "frontalis/solver/backend.hpp"
+#include "solver/skin/bound_points.hpp"
+#include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
+#include "solver/stepping/time_stepper.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <type_traits>
 
 namespace frontalis
@@ -22,16 +25,15 @@ SlideKernel<double> slide(const CpuKernelChoice&, double) { return slide_plainly
 }  // namespace
 
 template <class Real>
-CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSettings& settings,
-                           const std::string& remark)
-    : SteppingSolver(std::move(model), settings),
+CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
+    : StepBackend(input),
       rows_(*model_, discretisation_),
       mobility_(mobility(discretisation_)),
       choice_(choose_cpu_kernel()),
       kernel_(pick(choice_, Real(0))),
       restricted_(*model_, slide(choice_, Real(0))),
       loads_(*model_, discretisation_),
-      team_(settings.threads),
+      team_(input.settings.threads),
       remark_(remark.empty() ? "" : "; " + remark)
 {
   for (const double mass : discretisation_.node_mass)
@@ -46,7 +48,7 @@ CpuSolver<Real>::CpuSolver(std::shared_ptr<const Model> model, const SolverSetti
   buffer_stride_ = largest + 2 * Tile::width;
   buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
   share_planes(rows_.plane_tiles);
-  if (wants_ledger_)
+  if (input.settings.ledger)
   {
     account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
     fibre_memory_.resize(rows_.fibres.size());
@@ -65,7 +67,7 @@ void CpuSolver<Real>::choose_passive()
 template <class Real>
 void CpuSolver<Real>::effect_switched(Effect effect)
 {
-  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  if (is_of_fibres(effect))
   {
     choose_passive();
     rows_.renew_bounds(discretisation_);
@@ -73,14 +75,14 @@ void CpuSolver<Real>::effect_switched(Effect effect)
   if (effect == Effect::viscosity)
     std::fill(relaxed_.begin(), relaxed_.end(), 0.0f);
   if (effect == Effect::sliding || effect == Effect::friction)
-    restricted_.run(effects());
-  loads_.run(effects());
+    restricted_.run(conditions_.running);
+  loads_.run(conditions_.running);
 }
 
 template <class Real>
 void CpuSolver<Real>::list_allocations(AllocationList& list) const
 {
-  rows_.list_allocations(effect_of_fibres(), list);
+  rows_.list_allocations(effect_of_fibres(*model_), list);
   list.add(Effect::elasticity, "inverse masses", inverse_mass_);
   list.add(Effect::elasticity, "inverse masses", mobility_);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -93,7 +95,7 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
   }
   for (const auto& buffer : buffers_)
     list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);
-  list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
+  list.add(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
   list.add(Effect::viscosity, "relaxed stresses", relaxed_);
   restricted_.list_allocations(list);
   loads_.list_allocations(list);
@@ -132,91 +134,51 @@ void CpuSolver<Real>::rest()
 }
 
 template <class Real>
-struct CpuSolver<Real>::Kept : SteppingSolver::Fields
-{
-  Components u, v, rounding;
-  typename RestrictedNodes<Real>::Contacts contacts;
-  std::vector<float> relaxed;
-  typename EnergyAccount<Real>::Book book;
-  std::vector<FibreMemory> fibre_memory;
-
-  void archive(ByteArchive& archive) override
-  {
-    archive(u)(v)(rounding)(relaxed)(fibre_memory);
-    contacts.archive(archive);
-    book.archive(archive);
-  }
-};
-
-template <class Real>
-void CpuSolver<Real>::save_fields(std::unique_ptr<Fields>& to) const
+void CpuSolver<Real>::save(std::unique_ptr<BackendState>& to) const
 {
   if (!to)
-    to = std::make_unique<Kept>();
-  Kept& kept = static_cast<Kept&>(*to);
-  kept.u = u_;
-  kept.v = v_;
-  kept.rounding = rounding_;
-  kept.contacts = restricted_.contacts();
-  kept.relaxed = relaxed_;
-  kept.fibre_memory = fibre_memory_;
+    to = std::make_unique<State>();
+  State& state = static_cast<State&>(*to);
+  state.arrays = std::tie(u_, v_, rounding_, relaxed_, fibre_memory_);
+  state.contacts = restricted_.contacts();
   if (account_)
-    kept.book = account_->book();
+    state.book = account_->book();
 }
 
 template <class Real>
-void CpuSolver<Real>::restore_fields(const Fields& from)
+void CpuSolver<Real>::restore(const BackendState& from)
 {
-  const Kept& kept = static_cast<const Kept&>(from);
-  u_ = kept.u;
-  v_ = kept.v;
-  rounding_ = kept.rounding;
-  restricted_.restore(kept.contacts);
-  relaxed_ = kept.relaxed;
-  fibre_memory_ = kept.fibre_memory;
+  const State& state = static_cast<const State&>(from);
+  std::tie(u_, v_, rounding_, relaxed_, fibre_memory_) = state.arrays;
+  restricted_.restore(state.contacts);
   if (account_)
-    account_->restore(kept.book);
+    account_->restore(state.book);
 }
 
 template <class Real>
-void CpuSolver<Real>::interleave(const Components& in, Vectors& out) const
+void CpuSolver<Real>::get(NodalField field, NodalVectors& out) const
 {
-  out.resize(model_->nodes.size());
-  for (std::size_t n = 0; n < out.size(); ++n)
-    out[n] = { { in[0][n], in[1][n], in[2][n] } };
+  interleave(field == NodalField::displacements ? u_ : v_, model_->nodes.size(), out);
 }
 
 template <class Real>
-void CpuSolver<Real>::separate(const Vectors& in, Components& out) const
+void CpuSolver<Real>::set(NodalField field, const NodalVectors& in)
 {
-  for (std::size_t n = 0; n < in.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      out[axis][n] = static_cast<Real>(in[n][axis]);
+  if (field == NodalField::displacements)
+    rest();
+  separate(in, field == NodalField::displacements ? u_ : v_);
 }
 
 template <class Real>
-void CpuSolver<Real>::set_displacements(const Vectors& in)
-{
-  rest();
-  separate(in, u_);
-  displacements_were_set();
-}
-
-template <class Real>
-void CpuSolver<Real>::set_velocities(const Vectors& in)
-{
-  separate(in, v_);
-  velocities_were_set();
-}
-
-template <class Real>
-std::string CpuSolver<Real>::description() const
+BackendTraits CpuSolver<Real>::traits() const
 {
   const char* const numbers = !std::is_same<Real, float>::value ? "double"
                               : rounding_[0].empty()            ? "float"
                                                                 : "float, compensated";
-  return std::string("cpu (") + numbers + ", " + choice_.name + ", " + std::to_string(team_.size()) +
-         (team_.size() == 1 ? " thread" : " threads") + remark_ + ")";
+  BackendTraits traits;
+  traits.description = fmt::format("cpu ({}, {}, {} thread{}{})", numbers, choice_.name, team_.size(),
+                                   team_.size() == 1 ? "" : "s", remark_);
+  return traits;
 }
 
 template <class Real>
@@ -234,14 +196,13 @@ namespace
 std::unique_ptr<Solver> make_cpu_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                         const std::string& remark)
 {
-  std::unique_ptr<Solver> solver;
-  if (model->precision == Precision::double_precision)
-    solver = std::make_unique<CpuSolver<double>>(std::move(model), settings, remark);
-  else
-    solver = std::make_unique<CpuSolver<float>>(std::move(model), settings, remark);
-  if (settings.ledger)
-    solver->reset();
-  return solver;
+  const auto make_backend = [&](const BackendInput& input) -> std::unique_ptr<StepBackend>
+  {
+    if (input.model.precision == Precision::double_precision)
+      return std::make_unique<CpuSolver<double>>(input, remark);
+    return std::make_unique<CpuSolver<float>>(input, remark);
+  };
+  return std::make_unique<TimeStepper>(std::move(model), settings, make_backend);
 }
 
 }  // namespace

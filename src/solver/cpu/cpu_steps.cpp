@@ -11,7 +11,7 @@ template <class Real>
 void CpuSolver<Real>::kick(Arguments& g, double seconds) const
 {
   g.kick = static_cast<Real>(seconds);
-  static_cast<physics::Kick<Real>&>(g) = physics::kick_of<Real>(damping_, seconds, gravity_);
+  static_cast<physics::Kick<Real>&>(g) = conditions_.template kick<Real>(seconds);
 }
 
 template <class Real>
@@ -60,68 +60,41 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
 }
 
 template <class Real>
-void CpuSolver<Real>::forces(const Components& at, Vectors& out)
+void CpuSolver<Real>::run_on_all(const Arguments& g, KernelTask task)
 {
-  const std::vector<float> felt = felt_activation();
-  Arguments g = arguments(0, felt.data());
+  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), task); });
+}
+
+template <class Real>
+void CpuSolver<Real>::internal_forces(const NodalVectors* displacements, NodalVectors& out)
+{
+  Arguments g = arguments(0, conditions_.activation.data());
   g.fibre_memory = nullptr;
-  for (int axis = 0; axis < 3; ++axis)
-    g.u[axis] = at[axis].data();
-  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
-  interleave(next_, out);
+  if (displacements != nullptr)
+  {
+    for (auto& component : moved_)
+      component.resize(u_[0].size());
+    separate(*displacements, moved_);
+    for (int axis = 0; axis < 3; ++axis)
+      g.u[axis] = moved_[axis].data();
+  }
+  run_on_all(g, KernelTask::forces);
+  interleave(next_, model_->nodes.size(), out);
 }
 
 template <class Real>
-void CpuSolver<Real>::forces_at(const Vectors& at, Vectors& out)
+Work CpuSolver<Real>::work(bool open)
 {
-  for (auto& component : moved_)
-    component.resize(u_[0].size());
-  separate(at, moved_);
-  forces(moved_, out);
-}
-
-template <class Real>
-void CpuSolver<Real>::external_forces(Vectors& out)
-{
-  out.assign(model_->nodes.size(), {});
-  if (loads_.idle())
-    return;
-  loads_.update(time(), constant(u_).data());
-  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-    out[loads_.nodes()[l]] = loads_.forces()[l];
-}
-
-// the account begins with what fibres and viscous stresses do now
-template <class Real>
-void CpuSolver<Real>::open_account()
-{
-  account_->open();
-  const std::vector<float> felt = felt_activation();
-  Arguments g = arguments(0, felt.data());
-  g.muscle_work = nullptr;
-  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
-}
-
-template <class Real>
-Work CpuSolver<Real>::work()
-{
-  // what fibres did in the latest step
-  const std::vector<float> felt = felt_activation();
-  const Arguments g = arguments(0, felt.data());
-  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::forces); });
-  relax(0);
+  if (open)
+    account_->open();
+  // fibres note what they did in the latest step; where the account is opened, their present stress and stretch alone
+  Arguments g = arguments(0, conditions_.activation.data());
+  if (open)
+    g.muscle_work = nullptr;
+  run_on_all(g, KernelTask::forces);
+  if (!open && relaxes())
+    run_on_all(arguments(0, nullptr), KernelTask::relax);
   return account_->work();
-}
-
-// viscous stresses relax by the time since they last did
-template <class Real>
-void CpuSolver<Real>::relax(double elapsed)
-{
-  if (!relaxes())
-    return;
-  Arguments g = arguments(0, nullptr);
-  g.viscous_elapsed = static_cast<Real>(elapsed);
-  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), KernelTask::relax); });
 }
 
 // the update is linear in the force: loads are added after it
@@ -143,7 +116,8 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
 template <class Real>
 void CpuSolver<Real>::account(int thread, const Arguments& g)
 {
-  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, damping_, double(g.dt), double(g.kick));
+  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, conditions_.damping, double(g.dt),
+                  double(g.kick));
   for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
     account_->friction(k, restricted_, g.v);
   const auto& nodes = loads_.nodes();
@@ -161,11 +135,9 @@ double CpuSolver<Real>::run(const StepPlan& plan)
   std::vector<ConstraintStep> constraint_steps;
   for (int step = 0; step < plan.steps; ++step)
   {
-    if (runs(Effect::contraction))
-      plan.activation(step, activation.data() + step * muscles);
+    plan.activation(step, activation.data() + step * muscles);
     constraint_steps.push_back(plan.constraint_step(step));
   }
-  const std::vector<double> elapsed = relaxes() ? relaxations(plan) : std::vector<double>(plan.steps, 0);
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
@@ -189,7 +161,8 @@ double CpuSolver<Real>::run(const StepPlan& plan)
               loads_.update(plan.time + step * plan.dt, g.u);
             team_.barrier();
           }
-          const auto task = plan.closely || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
+          const auto task =
+              plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
           if (!(frequency_squared <= seen[t]))
             seen[t] = frequency_squared;
@@ -208,9 +181,9 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             g.u[axis] = g.next[axis];
             g.next[axis] = old;
           }
-          if (elapsed[step] > 0)
+          if (relaxes() && plan.relaxation[step] > 0)
           {
-            g.viscous_elapsed = static_cast<Real>(elapsed[step]);
+            g.viscous_elapsed = static_cast<Real>(plan.relaxation[step]);
             kernel_(g, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
             team_.barrier();
           }

@@ -2,6 +2,8 @@
 
 #include "frontalis/error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 #if defined(__x86_64__)
@@ -13,8 +15,8 @@ namespace frontalis
 namespace
 {
 
-constexpr int spins_before_yield = 4000;
-constexpr int most_threads = 1024;
+constexpr int spins_before_yield = 4000;  // threads with equal work meet within them, without a call of the kernel
+constexpr int most_threads = 1024;        // refuses typing errors
 
 void relax()
 {
@@ -29,7 +31,7 @@ ThreadTeam::ThreadTeam(int threads)
 {
   const int count = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (count > most_threads)
-    throw Error(std::to_string(count) + " threads: allowed are 0 (one a core) to " + std::to_string(most_threads));
+    throw Error(fmt::format("{} threads: allowed are 0 (one per core) to {}", count, most_threads));
   try
   {
     for (int t = 1; t < count; ++t)
@@ -38,7 +40,7 @@ ThreadTeam::ThreadTeam(int threads)
   catch (const std::system_error& error)
   {
     stop();
-    throw Error("could not start " + std::to_string(count) + " threads: " + error.what());
+    throw Error(fmt::format("could not start {} threads: {}", count, error.what()));
   }
 }
 

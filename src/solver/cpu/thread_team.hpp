@@ -10,11 +10,12 @@
 namespace frontalis
 {
 
-/// Threads that run one task together, with a barrier cheap enough for one a time step: it spins briefly, then yields.
+/// Threads that run one task together, with a barrier that is cheap enough to be used in every step: it spins
+/// briefly, then yields.
 class ThreadTeam
 {
 public:
-  /// threads: 0 takes one a core. Throws Error where they cannot be had.
+  /// threads: 0 takes one per core. Throws Error where they cannot be had.
   explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;

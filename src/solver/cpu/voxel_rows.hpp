@@ -73,21 +73,21 @@ struct ViscousSlot
 };
 
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tile widths are the same for every
-/// instruction set; a wider or narrower batch takes a tile in one or more goes.
+/// instruction set: a narrower one takes a tile in several parts.
 struct VoxelRows
 {
   VoxelRows(const Model& model, const Discretisation& discretisation);
-  /// Bounds of stiffness anew, after what they allow for has changed.
+  /// Finds the bounds of stiffness anew after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
-  /// `of_fibres`: the effect that they are for.
+  /// `of_fibres`: the effect that fibres count for.
   void list_allocations(Effect of_fibres, AllocationList& list) const;
 
   std::int32_t planes = 0;  ///< of nodes
   std::vector<Tile> tiles;
   std::vector<std::int32_t> plane_tiles;         ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
   std::vector<std::int32_t> plane_nodes;         ///< nodes of plane k, likewise
-  std::vector<TileStiffness> stiffness;          ///< one a tile
-  std::vector<TileStabilisation> stabilisation;  ///< one a tile; empty without assumed-strain hourglass control
+  std::vector<TileStiffness> stiffness;          ///< one per tile
+  std::vector<TileStabilisation> stabilisation;  ///< one per tile; empty without assumed-strain hourglass control
   std::vector<FibreSlot> fibres;
   std::vector<LawSlot> laws;
   std::vector<ViscousSlot> viscous;

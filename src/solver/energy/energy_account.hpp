@@ -20,21 +20,21 @@ struct Work
   double viscous = 0;     ///< taken up by viscous stresses
 };
 
-/// Work up to now, plane by plane.
+/// Work up to now, per node plane.
 struct WorkBook
 {
-  std::vector<double> muscle;   ///< one a plane, filled by the backend
-  std::vector<double> viscous;  ///< two a plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
+  std::vector<double> muscle;   ///< one per plane, filled by the backend
+  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
   std::vector<Work> planes;
-  std::array<std::vector<double>, 3>
-      beside;  ///< how far constraints moved each node beside dt v in the latest step [m]
+  /// By how much constraints moved each node in the latest step, other than by dt times its velocity [m].
+  std::array<std::vector<double>, 3> beside;
 
   void archive(ByteArchive& archive) { archive(muscle)(viscous)(planes)(beside); }
 };
 
-/// Work of a step's impulses on the nodes, each along the mean of the velocities before and after the step: with that
-/// the change of kinetic energy is their sum exactly. Summed plane by plane in double, so that the result does not
-/// depend on who sums which planes. Real is the backend's number type.
+/// Keeps account of the work of each step's impulses on the nodes, along the mean of the velocities before and after
+/// the step: the sum is exactly the change of kinetic energy. Each plane is summed in double precision by itself, so
+/// that the result does not depend on which thread sums it. Real is the backend's number type.
 template <class Real>
 class EnergyAccount : public WorkBook
 {
@@ -48,10 +48,9 @@ public:
   void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }
   /// The same after the update and the loads, before constraints.
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
-  /// Adds the step's work in planes [first, last); damping [1/s], dt [s], kick: for how long forces changed velocities
-  /// [s]; u_before and u are the displacements before
-  /// and after it [m]. Where constraints moved a node by d other than dt v says, the other forces worked along d too,
-  /// by the mean of those of this step and the next, and the constraints took that away.
+  /// Adds the step's work in planes [first, last). damping [1/s], dt [s]; kick: for how long forces changed velocities
+  /// [s]; u_before, u: displacements before and after the step [m]. Where constraints moved a node by d beside dt v,
+  /// the other forces worked along d too, by the mean of this step's and the next, and the constraints took that away.
   void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
              const Real* const v[3], double damping, double dt, double kick);
   /// Adds what friction took in plane k; restricted: RestrictedNodes<Real>.

@@ -8,20 +8,20 @@
 namespace frontalis
 {
 
-/// Bounds what a motion's energy can have become: see Guard.
+/// Bound of the energy that a motion can have: see Guard.
 class EnergyBound
 {
 public:
   explicit EnergyBound(const Model& model);
 
-  /// Since when, and what may have driven the motion since.
+  /// A part of the motion, and what may have driven it.
   struct Interval
   {
     double energy = 0;              ///< at its begin [J]
     double begin = 0, end = 0;      ///< [s]
     std::vector<float> activation;  ///< largest of each muscle
-    std::vector<double> bone_way;   ///< gone by each [m]
-    double largest_internal = 0;    ///< up to its begin [J]
+    std::vector<double> bone_way;   ///< length of each bone's path [m]
+    double largest_internal = 0;    ///< internal energy up to its begin [J]
   };
   double most(const Interval& interval) const;  ///< [J]
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
@@ -38,7 +38,7 @@ private:
   double push_ = 0;  // root of the sum of f^2 / (2 m) [W / sqrt(J)]
   double floor_ = 0;
   bool viscous_ = false;
-  std::vector<double> fibres_;  // one a muscle: tension times volume [J]
+  std::vector<double> fibres_;  // one per muscle: tension times volume [J]
   std::vector<Driven> bones_, prescribed_;
 };
 

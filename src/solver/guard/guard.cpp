@@ -6,6 +6,8 @@
 #include "frontalis/solver/rigid_motion.hpp"
 #include "solver/guard/instability_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,16 +18,22 @@ namespace frontalis
 namespace
 {
 
-// the bound on the time step is renewed every few dozen steps and is on the safe side
+// Latest step over the critical one: the controller renews its bound only every few dozen steps, and the bound is on
+// the safe side.
 constexpr double step_share_allowed = 1.1;
-// of the largest term of the ledger, in one interval
+// Change of the ledger's imbalance from check to check, over its largest term. Stable random scenes leave less than 0.1
+// unexplained (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
+// J below which a voxel counts as the one where the motion goes wrong, and share of the critical step of the good state
+// below which the stiffest voxel does.
+constexpr double crushed = 0.2;
+constexpr double stiffened = 0.5;
 
 }  // namespace
 
 struct Guard::Implementation
 {
-  /// A state in which nothing was found.
+  /// A state that passed a check.
   struct Good
   {
     std::unique_ptr<Snapshot> snapshot;
@@ -35,16 +43,16 @@ struct Guard::Implementation
     std::vector<RigidTransform> bone;
     std::vector<float> since;  // largest activation of each muscle since the good state before
     double largest_internal = 0;
-    bool there = false;  // else the snapshot is memory to be used again
+    bool there = false;  // false: the snapshot is only memory to be used again
   };
 
   Solver& solver;
   std::shared_ptr<const Model> model;
   GuardSettings settings;
   EnergyBound bound;
-  Good good, before;              // the latest, and the one before
+  Good good, before;              // the latest such state, and the one before it
   std::vector<float> activation;  // largest of each muscle since `good`
-  std::vector<double> bone_way;   // gone by each bone since `good`, and back [m]
+  std::vector<double> bone_way;   // length of each bone's path since `good` [m]
   std::int64_t checked_at = 0;    // steps
   int good_checks = 0;            // since the latest rollback
   int tries = 0;
@@ -112,7 +120,7 @@ Instability Guard::Implementation::check()
   return finding;
 }
 
-// what a part of a motion, which answers what it found, came to
+// the finding of a part of a motion, which returns what its check found or diverges
 template <class Part>
 Instability attempted(const Part& part)
 {
@@ -128,7 +136,7 @@ Instability attempted(const Part& part)
   }
 }
 
-// the first try begins at the latest good state, later ones earlier: what was found there may have begun before
+// The first try begins at the latest good state, later ones at the state before: what went wrong may have begun there.
 void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
 {
   if (tries > 0 && before.there)
@@ -157,7 +165,8 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target,
   bone_way.assign(good.bone.size(), 0);
 }
 
-// where the motion goes wrong: numbers that are not finite spread, so the way there is gone again step by step
+// Finds where the motion goes wrong. Numbers that are not finite spread at once over many voxels, so the motion is
+// repeated step by step from the good state, to see the voxel where they begin.
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
 {
   std::vector<bool> moved;
@@ -165,7 +174,6 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
     moved.push_back(target.bone[b].rotation != good.bone[b].rotation ||
                     target.bone[b].translation != good.bone[b].translation);
   const double time = solver.time();
-  constexpr double crushed = 0.2;
   Monitor worst = solver.monitor();
   if (!worst.finite)
   {
@@ -187,14 +195,14 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
       }
       const Monitor now = solver.monitor();
       const bool shows =
-          worst.worst_jacobian < crushed || worst.critical_time_step < 0.5 * good.monitor.critical_time_step;
+          worst.worst_jacobian < crushed || worst.critical_time_step < stiffened * good.monitor.critical_time_step;
       if (now.finite || !shows)
         worst = now;
       if (!now.finite || diverged)
         break;
     }
   }
-  // crushed or no number, or else stretched until it is stiffer than all others
+  // a voxel that is crushed or has no numbers, or else one that is stretched until it is stiffer than all others
   const std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
@@ -206,7 +214,7 @@ Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSett
   self_.reset(new Implementation{
       solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, {}, 0, 0, 0, false, {} });
   const auto refuse = [](const char* what, double value, const char* allowed)
-  { throw Error(std::string("guard's ") + what + " is " + std::to_string(value) + "; allowed is " + allowed); };
+  { throw Error(fmt::format("guard's {} is {:g}; allowed is {}", what, value, allowed)); };
   if (settings.interval < 0)
     refuse("interval", settings.interval, "0 (the solver's) or more steps");
   if (!(settings.slower > 0 && settings.slower < 1))
@@ -218,7 +226,7 @@ Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSett
   if (!(settings.inverted_share >= 0 && settings.inverted_share <= 1))
     refuse("share of inverted voxels", settings.inverted_share, "0 to 1");
   if (settings.interval == 0)
-    self_->settings.interval = solver.steps_a_check();
+    self_->settings.interval = solver.steps_per_check();
   restart();
 }
 
@@ -288,7 +296,7 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   Equilibrium result;
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
-    // muscles are at once where they are to be
+    // muscles take their activations at once
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
     for (std::size_t b = 0; b < target.bone.size(); ++b)

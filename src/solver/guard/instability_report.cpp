@@ -1,7 +1,8 @@
 #include "solver/guard/instability_report.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <sstream>
 
 namespace frontalis
 {
@@ -92,39 +93,20 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
 
 std::string place(const std::array<double, 3>& at)
 {
-  std::ostringstream text;
-  text.precision(1);
-  text << std::fixed << "(" << 1e3 * at[0] << ", " << 1e3 * at[1] << ", " << 1e3 * at[2] << ") mm";
-  return text.str();
-}
-
-std::string joined(const std::vector<std::string>& names)
-{
-  std::string text;
-  for (const auto& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
+  return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", 1e3 * at[0], 1e3 * at[1], 1e3 * at[2]);
 }
 
 }  // namespace
 
 std::string words_for(Instability instability)
 {
-  switch (instability)
-  {
-    case Instability::not_finite:
-      return "displacements are no longer finite";
-    case Instability::energy:
-      return "energy grows without a cause";
-    case Instability::hourglass:
-      return "hourglass energy grows without a cause";
-    case Instability::inverted:
-      return "voxels turn inside out";
-    case Instability::time_step:
-      return "the time step is longer than critical";
-    default:
-      return "nothing was found";
-  }
+  constexpr const char* words[] = { "nothing was found",
+                                    "displacements are no longer finite",
+                                    "energy grows without a cause",
+                                    "hourglass energy grows without a cause",
+                                    "voxels turn inside out",
+                                    "the time step is longer than critical" };
+  return words[static_cast<int>(instability)];
 }
 
 InstabilityReport describe(const Model& model, Instability kind, double time, std::int32_t voxel, double jacobian,
@@ -161,13 +143,11 @@ InstabilityReport describe(const Model& model, Instability kind, double time, st
 
 std::string InstabilityReport::text() const
 {
-  std::ostringstream text;
-  text << "the motion is unstable at " << time << " s: " << words_for(kind)
-       << ", with shorter time steps too. Worst is voxel " << voxel << " at " << place(scene) << " in the scene, "
-       << place(face) << " in the face frame (J " << jacobian << ", material " << joined(material)
-       << (muscle.empty() ? "" : ", muscle " + joined(muscle)) << "). Most likely at fault is " << effect << ": "
-       << advice;
-  return text.str();
+  return fmt::format(
+      "the motion is unstable at {:g} s: {}, with shorter time steps too. Worst is voxel {} at {} in the scene, "
+      "{} in the face frame (J {:g}, material {}{}). Most likely at fault is {}: {}",
+      time, words_for(kind), voxel, place(scene), place(face), jacobian, fmt::join(material, ", "),
+      muscle.empty() ? "" : fmt::format(", muscle {}", fmt::join(muscle, ", ")), effect, advice);
 }
 
 }  // namespace frontalis

@@ -1,9 +1,12 @@
 #include "solver/reference/reference_solver.hpp"
 
-#include "solver/skin/bound_points.hpp"
-#include "frontalis/solver/backend.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "frontalis/solver/backend.hpp"
+#include "solver/energy/voxel_monitor.hpp"
+#include "solver/skin/bound_points.hpp"
+#include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
+#include "solver/stepping/time_stepper.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +14,8 @@
 namespace frontalis
 {
 
-ReferenceSolver::ReferenceSolver(std::shared_ptr<const Model> model, const SolverSettings& settings)
-    : SteppingSolver(std::move(model), settings), restricted_(*model_), loads_(*model_, discretisation_)
+ReferenceSolver::ReferenceSolver(const BackendInput& input)
+    : StepBackend(input), restricted_(*model_), loads_(*model_, discretisation_)
 {
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());
@@ -31,12 +34,19 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Model> model, const Solve
     hourglass_shape_[2][b] = xi[1] * xi[2];
     hourglass_shape_[3][b] = xi[0] * xi[1] * xi[2];
   }
-  if (wants_ledger_)
+  if (input.settings.ledger)
   {
     account_ = std::make_unique<EnergyAccount<double>>(*model_, discretisation_);
     fibre_memory_.resize(model_->fibre_muscle.size());
   }
   rest();
+}
+
+BackendTraits ReferenceSolver::traits() const
+{
+  BackendTraits traits;
+  traits.description = "reference (double, 1 thread)";
+  return traits;
 }
 
 void ReferenceSolver::mix_voxels()
@@ -51,8 +61,8 @@ void ReferenceSolver::effect_switched(Effect effect)
   if (effect == Effect::viscosity)
     std::fill(relaxed_.begin(), relaxed_.end(), std::array<physics::Symmetric3<double>, 2>{});
   if (effect == Effect::sliding || effect == Effect::friction)
-    restricted_.run(effects());
-  loads_.run(effects());
+    restricted_.run(conditions_.running);
+  loads_.run(conditions_.running);
 }
 
 void ReferenceSolver::list_allocations(AllocationList& list) const
@@ -63,7 +73,7 @@ void ReferenceSolver::list_allocations(AllocationList& list) const
     for (const auto& component : *field)
       list.add(Effect::elasticity, "motion and forces", component);
   list.add(Effect::viscosity, "relaxed stresses", relaxed_);
-  list.add(effect_of_fibres(), "work of fibres", fibre_memory_);
+  list.add(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
   restricted_.list_allocations(list);
   loads_.list_allocations(list);
   if (account_)
@@ -81,110 +91,66 @@ void ReferenceSolver::rest()
   restricted_.reset();
 }
 
-struct ReferenceSolver::Kept : Fields
-{
-  Components u, v;
-  RestrictedNodes<double>::Contacts contacts;
-  std::vector<std::array<physics::Symmetric3<double>, 2>> relaxed;
-  EnergyAccount<double>::Book book;
-  std::vector<std::array<double, 2>> fibre_memory;
-
-  void archive(ByteArchive& archive) override
-  {
-    archive(u)(v)(relaxed)(fibre_memory);
-    contacts.archive(archive);
-    book.archive(archive);
-  }
-};
-
-void ReferenceSolver::save_fields(std::unique_ptr<Fields>& to) const
+void ReferenceSolver::save(std::unique_ptr<BackendState>& to) const
 {
   if (!to)
-    to = std::make_unique<Kept>();
-  Kept& kept = static_cast<Kept&>(*to);
-  kept.u = u_;
-  kept.v = v_;
-  kept.contacts = restricted_.contacts();
-  kept.relaxed = relaxed_;
-  kept.fibre_memory = fibre_memory_;
+    to = std::make_unique<State>();
+  State& state = static_cast<State&>(*to);
+  state.arrays = std::tie(u_, v_, relaxed_, fibre_memory_);
+  state.contacts = restricted_.contacts();
   if (account_)
-    kept.book = account_->book();
+    state.book = account_->book();
 }
 
-void ReferenceSolver::restore_fields(const Fields& from)
+void ReferenceSolver::restore(const BackendState& from)
 {
-  const Kept& kept = static_cast<const Kept&>(from);
-  u_ = kept.u;
-  v_ = kept.v;
-  restricted_.restore(kept.contacts);
-  relaxed_ = kept.relaxed;
-  fibre_memory_ = kept.fibre_memory;
+  const State& state = static_cast<const State&>(from);
+  std::tie(u_, v_, relaxed_, fibre_memory_) = state.arrays;
+  restricted_.restore(state.contacts);
   if (account_)
-    account_->restore(kept.book);
+    account_->restore(state.book);
 }
 
-void ReferenceSolver::interleave(const Components& in, Vectors& out) const
+void ReferenceSolver::get(NodalField field, NodalVectors& out) const
 {
-  out.resize(model_->nodes.size());
-  for (std::size_t n = 0; n < out.size(); ++n)
-    out[n] = { { in[0][n], in[1][n], in[2][n] } };
+  interleave(field == NodalField::displacements ? u_ : v_, model_->nodes.size(), out);
 }
 
-void ReferenceSolver::set_displacements(const Vectors& in)
+void ReferenceSolver::set(NodalField field, const NodalVectors& in)
 {
-  rest();
-  for (std::size_t n = 0; n < in.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      u_[axis][n] = in[n][axis];
-  displacements_were_set();
+  if (field == NodalField::displacements)
+    rest();
+  separate(in, field == NodalField::displacements ? u_ : v_);
 }
 
-void ReferenceSolver::set_velocities(const Vectors& in)
-{
-  for (std::size_t n = 0; n < in.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      v_[axis][n] = in[n][axis];
-  velocities_were_set();
-}
-
-void ReferenceSolver::forces_at_components(const Components& u, Vectors& out)
+void ReferenceSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
 {
   accounting_ = false;
-  forces(u, felt_activation());
-  interleave(f_, out);
+  Components at = u_;
+  if (displacements != nullptr)
+    separate(*displacements, at);
+  forces(at, conditions_.activation);
+  interleave(f_, model_->nodes.size(), out);
 }
 
-void ReferenceSolver::forces_at(const Vectors& at, Vectors& out)
+Monitor ReferenceSolver::monitor()
 {
-  Components moved = u_;
-  for (std::size_t n = 0; n < at.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      moved[axis][n] = at[n][axis];
-  forces_at_components(moved, out);
+  NodalVectors u, v;
+  get(NodalField::displacements, u);
+  get(NodalField::velocities, v);
+  return monitor_voxels(*model_, discretisation_, u, v);
 }
 
-void ReferenceSolver::external_forces(Vectors& out)
+Work ReferenceSolver::work(bool open)
 {
-  out.assign(model_->nodes.size(), {});
-  loads_.update(time(), u_pointers().data());
-  for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-    out[loads_.nodes()[l]] = loads_.forces()[l];
-}
-
-void ReferenceSolver::open_account()
-{
-  account_->open();
-  accounting_ = true;
-  forces(u_, felt_activation());
-  std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
-}
-
-Work ReferenceSolver::work()
-{
+  if (open)
+    account_->open();
   // what fibres did in the latest step
   accounting_ = true;
-  forces(u_, felt_activation());
-  if (relaxes())
+  forces(u_, conditions_.activation);
+  if (open)
+    std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
+  else if (relaxes())
     relax(0, u_);
   return account_->work();
 }
@@ -195,13 +161,12 @@ double ReferenceSolver::run(const StepPlan& plan)
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
   const auto count = static_cast<std::int32_t>(model_->nodes.size());
-  const std::vector<double> elapsed = relaxations(plan);
   double worst = 0;
   for (int step = 0; step < plan.steps; ++step)
   {
-    const double kick = step == 0 ? plan.first_kick : plan.dt, keep = this->keep(kick), gain = this->gain(kick);
-    if (runs(Effect::contraction))
-      plan.activation(step, activation.data());
+    const double kick = step == 0 ? plan.first_kick : plan.dt;
+    const physics::Kick<double> factors = conditions_.kick<double>(kick);
+    plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
     forces(u_, activation);
     loads_.update(plan.time + step * plan.dt, u_pointers().data());
@@ -209,15 +174,15 @@ double ReferenceSolver::run(const StepPlan& plan)
       for (int axis = 0; axis < 3; ++axis)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
     const Components before = u_;
-    if (plan.closely || step + 1 == plan.steps)
+    if (plan.bound_every_step || step + 1 == plan.steps)
       worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
     if (account_)
       account_->before(0, count, v);
     for (int axis = 0; axis < 3; ++axis)
       for (std::size_t n = 0; n < model_->nodes.size(); ++n)
       {
-        const double acceleration = gravity_[axis] - f_[axis][n] / discretisation_.node_mass[n];
-        v_[axis][n] = keep * v_[axis][n] + gain * acceleration;
+        v_[axis][n] =
+            physics::kicked(factors, axis, v_[axis][n], factors.gain / discretisation_.node_mass[n], f_[axis][n]);
         u_[axis][n] += plan.dt * v_[axis][n];
       }
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
@@ -226,14 +191,14 @@ double ReferenceSolver::run(const StepPlan& plan)
     restricted_.apply(0, count, u, v, old, plan.constraint_step(step));
     if (account_)
     {
-      account_->after(0, model_->size[2] + 1, old, u, v, damping_, plan.dt, kick);
+      account_->after(0, model_->size[2] + 1, old, u, v, conditions_.damping, plan.dt, kick);
       for (std::int32_t k = 0; k <= model_->size[2]; ++k)
         account_->friction(k, restricted_, v);
       for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
         account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, kick);
     }
-    if (relaxes() && elapsed[step] > 0)
-      relax(elapsed[step], before);
+    if (relaxes() && plan.relaxation[step] > 0)
+      relax(plan.relaxation[step], before);
   }
   return worst;
 }
@@ -244,10 +209,8 @@ namespace
 std::unique_ptr<Solver> make_reference_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                               const std::string& /*remark*/)
 {
-  auto solver = std::make_unique<ReferenceSolver>(std::move(model), settings);
-  if (settings.ledger)
-    solver->reset();
-  return solver;
+  return std::make_unique<TimeStepper>(
+      std::move(model), settings, [](const BackendInput& input) { return std::make_unique<ReferenceSolver>(input); });
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ private:
   std::vector<std::int32_t> nodes_;                  // of the voxels that vertices are bound to, ascending
   std::vector<std::int32_t> voxels_;                 // with one of these nodes, ascending
   std::vector<std::array<std::int32_t, 8>> corner_;  // of each voxel: rank of the node; -1: not of the skin
-  std::vector<double> sum_, weight_;                 // one a node
+  std::vector<double> sum_, weight_;                 // one per node
 };
 
 }  // namespace frontalis

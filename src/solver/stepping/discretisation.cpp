@@ -9,6 +9,8 @@
 #include "solver/material_laws.hpp"
 #include "solver/stepping/step_bound.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -216,7 +218,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     shear += part.weight * part.stiffness_at_rest;
   }
   if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
-    throw Error("voxel " + std::to_string(e) + ": shear modulus, bulk modulus, density and fill must be positive");
+    throw Error(fmt::format("voxel {}: shear modulus, bulk modulus, density and fill must be positive", e));
   out.tissue_volume = volume * model.fill[e];
   const double shortest = std::min({ h[0], h[1], h[2] });
   for (auto& part : out.laws)

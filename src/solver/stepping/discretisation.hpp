@@ -10,8 +10,8 @@
 namespace frontalis
 {
 
-/// Share of a voxel that has another law than neo-Hookean: one a material, but materials of laws whose parameters are
-/// moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
+/// The part of a voxel that has a law other than neo-Hookean. Each material has a part of its own, but materials of a
+/// law whose parameters are moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
 struct LawPart
 {
   Law law;
@@ -39,8 +39,8 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
-/// What every backend needs of a model, in double. Voxels are mixed when asked for, so that what a backend keeps is its
-/// own.
+/// What every backend needs of a model, in double precision. A voxel's properties are mixed when they are asked for,
+/// and not stored: each backend keeps what it needs of them.
 class Discretisation
 {
 public:
@@ -48,7 +48,7 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// Bounds of stiffness allow for the fibre effects of this set from now on; mass stays as it is scaled.
+  /// From now on bounds of stiffness allow for the fibre effects of this set. Masses stay as they are.
   void bound(EffectSet running);
   void list_allocations(AllocationList& list) const;
 
@@ -72,7 +72,7 @@ private:
 
   const Model* model_;
   EffectSet running_;
-  std::vector<float> mass_factor_;  // one a voxel; empty without mass scaling
+  std::vector<float> mass_factor_;  // one per voxel; empty without mass scaling
 };
 
 /// The corner of the grid opposite to the origin [m].

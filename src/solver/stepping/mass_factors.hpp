@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// What mass scaling knows of a voxel.
+/// What mass scaling needs of a voxel.
 struct ScaledVoxel
 {
   double stiffness;  ///< bound [N/m]
@@ -15,9 +15,9 @@ struct ScaledVoxel
   bool chosen;       ///< may get mass
 };
 
-/// How much more mass each voxel gets so that the chosen ones allow the time step that the others allow by
-/// themselves, or the one that is wanted; empty: none gets any. A chosen voxel brings to each of its nodes the
-/// mass that its own stiffness needs there (physics/time_step.hpp). held: Discretisation's.
+/// Factor on each voxel's mass with which the chosen voxels allow the time step that the others allow by themselves, or
+/// the one that is wanted; empty: none is scaled. A chosen voxel brings to each of its nodes the mass that its own
+/// stiffness needs there (physics/time_step.hpp). held: Discretisation::held.
 std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
                                           const std::vector<std::int32_t>& held);
 

@@ -25,12 +25,12 @@ struct IndexRange
   std::int32_t first, last;
 };
 
-/// Of some nodes, from the stiffness bound [N/m] of every voxel. `voxels`: those that can touch the nodes, and more;
-/// sum: room for a number a node of the model, of which these nodes' are used.
+/// Bound of some nodes, from the stiffness bound [N/m] of every voxel. `voxels`: at least those that touch the nodes;
+/// `sum`: room for one number per node of the model, of which those of these nodes are used.
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
                          IndexRange voxels, IndexRange nodes, double* sum);
 
-/// Of the whole model.
+/// Bound of the whole model.
 StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
 
 /// The stiffest of the voxels at a node; -1 for node -1.

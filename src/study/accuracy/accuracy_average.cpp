@@ -12,7 +12,7 @@ using Point = std::array<float, 3>;
 
 constexpr double reach = 3;  // standard deviations
 
-// vertices by the cubes of an edge that they are in
+// vertices sorted into cubes, to find neighbours
 class Cubes
 {
 public:
@@ -22,7 +22,7 @@ public:
       members_[key(cube(points[v]))].push_back(v);
   }
 
-  // those in the cube of a point and in the 26 around it
+  // visits the vertices in the cube of a point and in the 26 cubes around it
   template <class Visit>
   void visit_near(const Point& point, Visit&& visit) const
   {
@@ -43,7 +43,7 @@ private:
     const auto place = [this](float x) { return static_cast<std::int64_t>(std::floor(x / edge_)); };
     return { { place(p[0]), place(p[1]), place(p[2]) } };
   }
-  // one to one within half a million cubes of the origin
+  // unique within half a million cubes of the origin
   static std::int64_t key(const std::array<std::int64_t, 3>& c)
   {
     constexpr std::int64_t stride = 1 << 20;

@@ -8,21 +8,22 @@
 namespace frontalis
 {
 
-/// Displacements of a skin averaged over its neighbourhood at rest: what is left of errors when one looks away from
+/// Averages displacements of a skin over the neighbourhood at rest, so that errors are compared without those of single
 /// folds.
 class SkinAverage
 {
 public:
-  /// Of skins that rest as the reference's; weights are those of a Gaussian of so much [m], times the area.
+  /// For skins with the reference's rest positions. Weights are those of a Gaussian of this standard deviation [m],
+  /// times the area.
   SkinAverage(const VariantMotion& reference, double deviation);
 
-  /// Its phases with averaged displacements; landmarks stay.
+  /// The motion with averaged displacements; landmarks stay as they are.
   VariantMotion of(const VariantMotion& motion) const;
-  /// Beside the averaged reference, in the worst phase. Throws Error as skin_errors().
+  /// Against the averaged reference, in the worst phase. Throws Error as skin_errors().
   SkinError error(const VariantMotion& motion) const;
 
 private:
-  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // of each vertex
+  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex
   VariantMotion reference_;                                          // averaged
 };
 

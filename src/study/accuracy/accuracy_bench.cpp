@@ -4,12 +4,14 @@
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/study/step_time.hpp"
 
+#include <fmt/core.h>
+
 namespace frontalis
 {
 namespace
 {
 
-constexpr double with_settling = 1.5;  // times the wall time of the history
+constexpr double with_settling = 1.5;  // wall time of history and settling over that of the history, for estimates
 
 }  // namespace
 
@@ -28,12 +30,12 @@ std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend
 {
   std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)
-    text += " " + std::to_string(activation);
-  return content_hash(text + " " + std::to_string(plan_.history.ramp) + " " + std::to_string(plan_.history.hold));
+    text += fmt::format(" {:.6f}", activation);
+  return content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// where a folder comes from a faster machine, its motions serve too; a GPU computes in single precision whatever is
-// asked for
+// Motions that another backend computed serve too, so that a folder may come from a faster machine. A GPU computes in
+// single precision whatever the setting says, so that only settings in single precision have such motions.
 std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
@@ -66,13 +68,13 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
-// the reference's time says nothing and takes long
+// the reference is not timed: it is no setting to choose, and takes long
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
 }
 
-// what a variant takes to be played, for those to come
+// takes the wall time of a variant into the estimate for further ones
 void VariantBench::learn(const AccuracySetting& setting, double wall)
 {
   const double relative = relative_time(setting);
@@ -136,7 +138,8 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      // a ledger says nothing of the reference, and a GPU takes twice as long with one
+      // without a ledger for the reference, whose balance of energies is not reported: a GPU takes twice as long with
+      // one
       motion =
           play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
                        { store_.checkpoint(key), [&](const VariantCheckpoint& c) { store_.keep(key, c); } }, go_on);

@@ -10,7 +10,7 @@
 namespace frontalis
 {
 
-/// Thrown where the caller of a study does not want to go on.
+/// Thrown where the progress function of a study interrupts it.
 struct StudyInterrupted
 {
 };
@@ -19,33 +19,34 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< another than the setting's where the folder has it of another machine
+  Backend played_by;  ///< not the setting's where the folder has the motion from another machine
   VariantMotion motion;
   VariantCost cost;
 };
 
-/// Measures variants one by one; what a folder keeps from earlier is taken from there.
+/// Measures variants one by one, and takes from the study's folder what was measured before.
 class VariantBench
 {
 public:
-  /// All are kept by reference. Throws Error where the folder cannot be made or the standard setting has no model.
+  /// Keeps references to its arguments. Throws Error where the folder cannot be made or the standard setting has no
+  /// model.
   VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
   /// Index in done(). Throws Error, StudyInterrupted.
   std::size_t measure(const AccuracySetting& setting, const std::string& name = {});
-  /// Where it was measured in this study, else nothing.
+  /// Null where the setting was not measured in this study.
   const MeasuredVariant* find(const AccuracySetting& setting) const;
   const std::vector<MeasuredVariant>& done() const { return done_; }
 
-  /// Wall seconds that it takes, about; 0 where it is kept.
+  /// Estimated wall seconds for a setting; 0 where the folder has it.
   double predicted(const AccuracySetting& setting) const;
-  /// Whether the budget has time for it; counts those that it has none for.
+  /// Whether the budget has time for a setting; counts those that it has no time for.
   bool fits(const AccuracySetting& setting);
   int left_out() const { return left_out_; }
-  /// What is still to come, for the estimate of the time left.
+  /// The settings that follow, for the estimate of the time that is left.
   void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
 
-  /// Not timed.
+  /// Names the setting that is not timed.
   void set_reference(const AccuracySetting& setting) { reference_ = setting; }
   /// Time step of the standard setting with `time_step: element`, without scaled mass [s].
   double critical_time_step() const { return critical_; }
@@ -73,7 +74,7 @@ private:
   std::vector<MeasuredVariant> done_;
   std::map<std::string, std::size_t> index_;  // by key
   std::vector<AccuracySetting> pending_;
-  // wall seconds: of any variant, for a unit of relative_time(), of what is only timed
+  // estimates of wall seconds: of the shortest variant, per unit of relative_time(), of timing a variant
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };

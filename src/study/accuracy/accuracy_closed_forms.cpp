@@ -1,9 +1,9 @@
-// bodies with a closed form, for studies of accuracy
+// bodies for studies of accuracy whose deformation is known in closed form
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/closed_form.hpp"
 #include "frontalis/study/voxel_model.hpp"
-#include "study/verification/shape_model.hpp"
+#include "study/models/shape_model.hpp"
 
 #include <cmath>
 
@@ -18,7 +18,8 @@ constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
 constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
 
-// a box of whole voxels with its upper face and the side beside it as skin, at places that are the same for all edges
+// A box of whole voxels. Its skin is the upper face and the side y = size, with vertices that do not depend on the
+// edge.
 Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 {
   const AccuracyProfile& profile = setting.profile;
@@ -54,14 +55,6 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
   return model;
 }
 
-// faces through the origin keep to their planes
-void hold_in_planes(Model& model)
-{
-  for (int axis = 0; axis < 3; ++axis)
-    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
-              { { axis == 0, axis == 1, axis == 2 } });
-}
-
 // first Piola-Kirchhoff stress [Pa] along the axis of stretch `a`, the others being `b` and `c`
 double principal_stress(double a, double b, double c)
 {
@@ -70,7 +63,7 @@ double principal_stress(double a, double b, double c)
   return mu * std::pow(J, -2.0 / 3) * (a - I1 / (3 * a)) + kappa * (J - 1) * J / a;
 }
 
-// zero of a function that grows
+// zero of an increasing function
 double zero(double low, double high, const std::function<double(double)>& f)
 {
   for (int halving = 0; halving < 60; ++halving)
@@ -83,10 +76,10 @@ double lateral_stretch(double along)
   return zero(0.3, 3, [=](double side) { return principal_stress(side, along, side); });
 }
 
-ClosedForm of(const std::string& name, const std::string& title, std::vector<double> edges,
+ClosedForm of(const std::string& name, std::vector<double> edges,
               const std::function<Model(const AccuracySetting&)>& make, const std::function<Point(const Point&)>& exact)
 {
-  ClosedForm form{ name, title, {}, {} };
+  ClosedForm form{ name, {}, {} };
   AccuracyPlan& plan = form.plan;
   plan.exact = exact;
   plan.edges = std::move(edges);
@@ -104,16 +97,15 @@ ClosedForm of(const std::string& name, const std::string& title, std::vector<dou
   return form;
 }
 
-ClosedForm uniform(const std::string& name, const std::string& title, double along,
-                   const std::function<void(Model&)>& drive)
+ClosedForm uniform(const std::string& name, double along, const std::function<void(Model&)>& drive)
 {
   const double side = lateral_stretch(along);
   return of(
-      name, title, { 4e-3, 2e-3, 1e-3 },
+      name, { 4e-3, 2e-3, 1e-3 },
       [drive](const AccuracySetting& setting)
       {
         Model model = box_model(setting, block_size, block_poisson);
-        hold_in_planes(model);
+        hold_mirror_planes(model);
         drive(model);
         return model;
       },
@@ -122,7 +114,8 @@ ClosedForm uniform(const std::string& name, const std::string& title, double alo
       });
 }
 
-// plane strain in x and z; shear and bending of a force that takes the end down by a thousandth of the length
+// displacement of a beam in plane strain (x, z) under a shear force that takes its end down by a thousandth of its
+// length
 Point beam(const Point& p)
 {
   const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);
@@ -152,7 +145,7 @@ std::vector<ClosedForm> closed_forms()
       zero(0.5, 1,
            [=](double along)
            { return principal_stress(along, lateral_stretch(along), lateral_stretch(along)) + active * along; });
-  ClosedForm bar = uniform("active_bar", "active bar", contracted,
+  ClosedForm bar = uniform("active_bar", contracted,
                            [=](Model& model)
                            {
                              add_muscle(model, Muscle{ "bar", active, false, false },
@@ -161,8 +154,8 @@ std::vector<ClosedForm> closed_forms()
                                         });
                            });
   bar.plan.history.activation = { 1 };
-  return { of("cantilever", "cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
-           uniform("stretched_block", "stretched block", drawn,
+  return { of("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
+           uniform("stretched_block", drawn,
                    [](Model& model)
                    {
                      const auto end = [&](const auto& p) { return p[0] > block_size[0] - 0.5 * model.spacing[0]; };

@@ -1,10 +1,11 @@
-// variants beside what they are compared with
+// the errors of variants against the reference or a closed form
 
 #include "study/accuracy/accuracy_comparison.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/study/table.hpp"
-#include "study/verification/verification_cases.hpp"
+#include "frontalis/study/check.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,8 @@ namespace frontalis
 namespace
 {
 
-constexpr double exactly_represented = 1e-3;  // error over motion
+// below this ratio of error and motion only settling and rounding are left, and no order can be observed
+constexpr double exactly_represented = 1e-3;
 
 }  // namespace
 
@@ -68,8 +70,8 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
         known != nullptr && known->motion.fault.empty())
       levels.push_back(known);
   if (levels.size() < 2)
-    throw Error("no voxels but the reference's, " + millimetres(plan.edges.back()) +
-                ", gave a motion to compare it with");
+    throw Error("only the reference's voxels, " + millimetres(plan.edges.back()) +
+                ", gave a motion; at least one coarser level must give one to compare it with");
   const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
   const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
   const auto apart = [&](std::size_t back)
@@ -91,12 +93,13 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
     plain += comma + readable(1e3 * apart(back), 3);
     averaged += comma + readable(1e3 * worst(skin_errors(average.of(coarse), average.of(fine))).rms, 3);
   }
-  findings.notes.push_back("From level to level of its voxels the reference's form moves the skin by " + plain +
-                           " mm RMS, averaged by " + averaged + " mm.");
+  findings.notes.push_back(
+      fmt::format("From each level of voxels to the next the skin of the reference's form moves by {} mm "
+                  "RMS, the averaged skin by {} mm.",
+                  plain, averaged));
 }
 
-// in the voxel edge, of the standard setting's form and of the reference's
-void tell_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings)
+void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings)
 {
   const auto& done = bench.done();
   const auto sound = std::find_if(done.begin(), done.end(), [](const auto& v) { return v.motion.fault.empty(); });
@@ -122,11 +125,12 @@ void tell_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
     const double most = *std::max_element(errors.begin(), errors.end());
     if (most < exactly_represented * findings.motion)
       findings.notes.push_back(
-          form + ": at most " + readable(1e6 * most, 2) +
-          " µm at any edge, what settling and rounding leave: voxels represent this deformation exactly.");
+          fmt::format("{}: the error is at most {:.2g} µm at any edge, which settling and rounding leave: "
+                      "voxels represent this deformation exactly.",
+                      form, 1e6 * most));
     else
-      findings.notes.push_back(form + ": the error falls with the voxel edge to the power " +
-                               readable(slope(edges, errors), 3) + ".");
+      findings.notes.push_back(
+          fmt::format("{}: the error falls with the voxel edge to the power {:.3g}.", form, slope(edges, errors)));
   }
 }
 

@@ -1,8 +1,10 @@
-// how far skins are apart, and how the distance falls with the voxel edge
+// distances between skins, and how they fall with the voxel edge
 
 #include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/error.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +14,16 @@ namespace frontalis
 namespace
 {
 
-// distance between displacements from rest
-double apart(const SkinPhase& a, const SkinPhase& a_rest, const SkinPhase& b, const SkinPhase& b_rest, std::size_t v)
+using Points = std::vector<std::array<float, 3>>;
+
+// distance between the displacements of two points from their rest
+double apart(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest, std::size_t p)
 {
   double square = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double d = (static_cast<double>(a.vertices[v][axis]) - a_rest.vertices[v][axis]) -
-                     (static_cast<double>(b.vertices[v][axis]) - b_rest.vertices[v][axis]);
+    const double d =
+        (static_cast<double>(a[p][axis]) - a_rest[p][axis]) - (static_cast<double>(b[p][axis]) - b_rest[p][axis]);
     square += d * d;
   }
   return std::sqrt(square);
@@ -30,15 +34,18 @@ double apart(const SkinPhase& a, const SkinPhase& a_rest, const SkinPhase& b, co
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact)
 {
   if (found.area.size() != exact.area.size() || found.phases.size() != exact.phases.size())
-    throw Error("its skin has " + std::to_string(found.area.size()) + " vertices, that of the reference " +
-                std::to_string(exact.area.size()) + ": crop the skin to where every setting has voxels");
+    throw Error(
+        fmt::format("its skin has {} vertices, that of the reference {}: crop the skin to where every setting has "
+                    "voxels",
+                    found.area.size(), exact.area.size()));
   std::vector<SkinError> errors;
   for (std::size_t p = 0; p < found.phases.size(); ++p)
   {
     double sum = 0, area = 0, largest = 0;
     for (std::size_t v = 0; v < found.area.size(); ++v)
     {
-      const double d = apart(found.phases[p], found.phases[0], exact.phases[p], exact.phases[0], v);
+      const double d = apart(found.phases[p].vertices, found.phases[0].vertices, exact.phases[p].vertices,
+                             exact.phases[0].vertices, v);
       sum += exact.area[v] * d * d;
       area += exact.area[v];
       largest = std::max(largest, d);
@@ -63,16 +70,8 @@ double landmark_error(const VariantMotion& found, const VariantMotion& exact)
   double largest = 0;
   for (std::size_t p = 0; p < found.phases.size(); ++p)
     for (std::size_t l = 0; l < found.phases[p].landmarks.size(); ++l)
-    {
-      double square = 0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double d = static_cast<double>(found.phases[p].landmarks[l][axis]) - found.phases[0].landmarks[l][axis] -
-                         (static_cast<double>(exact.phases[p].landmarks[l][axis]) - exact.phases[0].landmarks[l][axis]);
-        square += d * d;
-      }
-      largest = std::max(largest, std::sqrt(square));
-    }
+      largest = std::max(largest, apart(found.phases[p].landmarks, found.phases[0].landmarks, exact.phases[p].landmarks,
+                                        exact.phases[0].landmarks, l));
   return largest;
 }
 

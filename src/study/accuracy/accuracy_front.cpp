@@ -1,9 +1,11 @@
-// the settings that no other beats, and the choice among them
+// the Pareto front, and the choice of a setting from it
 
 #include "study/accuracy/accuracy_front.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -15,7 +17,7 @@ namespace
 const AccuracyRow& last_of_front(const AccuracyFindings& findings)
 {
   if (findings.front.empty())
-    throw Error("no setting could be measured: the table says why");
+    throw Error("no setting could be measured; the table says why");
   return findings.rows[findings.front.back()];
 }
 
@@ -41,14 +43,17 @@ const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tole
 {
   const AccuracyRow& best = last_of_front(findings);
   if (tolerance < findings.reference_error)
-    throw Error("a tolerance of " + millimetres(tolerance) + " is below the error of the reference itself, " +
-                millimetres(findings.reference_error) + ": nothing is claimed below it; take a finer reference");
+    throw Error(
+        fmt::format("a tolerance of {} is below the error of the reference itself, {}: nothing is claimed below it; "
+                    "take a finer reference",
+                    millimetres(tolerance), millimetres(findings.reference_error)));
   for (const std::size_t r : findings.front)
     if (findings.rows[r].error.rms <= tolerance)
       return findings.rows[r];
-  throw Error("no setting that was measured has an error of at most " + millimetres(tolerance) +
-              "; the most accurate, " + best.name + ", has " + millimetres(best.error.rms) + " at " +
-              readable(best.cost, 3) + " s a simulated second");
+  throw Error(
+      fmt::format("no setting that was measured has an error of at most {}; the most accurate, {}, has {} at "
+                  "{:.3g} s per simulated second",
+                  millimetres(tolerance), best.name, millimetres(best.error.rms), best.cost));
 }
 
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds)
@@ -60,9 +65,10 @@ const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double
     if (findings.rows[r].cost <= seconds)
       best = &findings.rows[r];
   if (best == nullptr)
-    throw Error("no setting that was measured takes at most " + readable(seconds, 3) +
-                " s a simulated second; the cheapest, " + cheapest.name + ", takes " + readable(cheapest.cost, 3) +
-                " s with an error of " + millimetres(cheapest.error.rms));
+    throw Error(
+        fmt::format("no setting that was measured takes at most {:.3g} s per simulated second; the cheapest, {}, "
+                    "takes {:.3g} s with an error of {}",
+                    seconds, cheapest.name, cheapest.cost, millimetres(cheapest.error.rms)));
   return *best;
 }
 

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Rows that a profile can say and that no other such row beats in both error and cost, cheapest first. Errors below
-/// `floor` [m] count as that, and a dearer row must be better by a twentieth.
+/// The rows that a scene's profile can express and that no other such row beats in both error and cost, cheapest first.
+/// Errors below `floor` [m] count as equal, and a dearer row must have an error that is smaller by a twentieth.
 std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
                                       double floor);
 

@@ -1,6 +1,8 @@
-// findings as a table, a plot, words and profiles
+// the findings of a study of accuracy as a table, a plot, a text and profiles
 
 #include "frontalis/study/accuracy.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +17,7 @@ namespace
 
 double mm(double metres) { return 1e3 * metres; }
 
-// a knob as a reader knows it
+// the name of a knob in the plot
 std::string knob_words(const std::string& knob)
 {
   static const std::map<std::string, std::string> words = {
@@ -43,10 +45,7 @@ Plot::Curve curve_of(const AccuracyFindings& findings, const std::vector<std::si
   Plot::Curve curve;
   curve.name = name;
   for (const std::size_t r : by_cost(findings, rows))
-  {
-    curve.x.push_back(findings.rows[r].cost);
-    curve.y.push_back(mm(findings.rows[r].error.rms));
-  }
+    curve.add(findings.rows[r].cost, mm(findings.rows[r].error.rms));
   return curve;
 }
 
@@ -54,16 +53,17 @@ std::string reference_words(const AccuracyFindings& f)
 {
   if (f.closed_form)
     return "Settled skins are compared with the closed form.";
-  std::string text = "The reference has voxels of " + millimetres(f.reference.profile.voxel[0], 2) +
-                     ", assumed-strain hourglass control and no scaled mass. Its own error is about " +
-                     millimetres(f.reference_error, 2) + ", nothing below which is claimed: ";
+  const std::string text = fmt::format(
+      "The reference has voxels of {}, assumed-strain hourglass control and no scaled mass. Its own error is "
+      "about {}, and nothing below that is claimed. This estimate is ",
+      millimetres(f.reference.profile.voxel[0], 2), millimetres(f.reference_error, 2));
   if (f.extrapolated)
-    return text + "Richardson's extrapolation with the observed order of " + readable(f.order, 2) + ".";
-  text += "the difference of the two finest solutions, ";
-  if (std::isnan(f.order))
-    return text + "since they do not approach each other steadily (boundaries that are staircases converge unevenly).";
-  return text + "since the observed order of " + readable(f.order, 2) +
-         " is outside 0.5 to 2.5 (boundaries that are staircases converge unevenly).";
+    return text + fmt::format("Richardson's extrapolation with the observed order of {:.2g}.", f.order);
+  const std::string why = std::isnan(f.order)
+                              ? "the finest three solutions show no order of convergence"
+                              : fmt::format("the observed order of {:.2g} is outside 0.5 to 2.5", f.order);
+  return text + "the difference of the two finest solutions, since " + why +
+         " (boundaries that are staircases converge unevenly).";
 }
 
 }  // namespace
@@ -89,10 +89,7 @@ Table accuracy_table(const AccuracyFindings& findings)
 
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
 {
-  Plot plot;
-  plot.title = title + "\n" + findings.machine;
-  plot.x_label = "wall seconds a simulated second";
-  plot.y_label = "error of the skin, RMS [mm]";
+  Plot plot{ title + "\n" + findings.machine, "wall seconds per simulated second", "error of the skin, RMS [mm]" };
   plot.x_log = plot.y_log = true;
   plot.width = 900;
   plot.height = 680;
@@ -108,23 +105,21 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   if (most == 0)
     return plot;
   const double own = mm(findings.reference_error);
-  plot.x_from = std::min(least / 1.6, 0.7);
-  plot.x_to = std::max(most * 1.6, 1.5);
-  plot.y_from = (own > 0 ? std::min(low, own) : low) / 1.3;
-  plot.y_to = high * 1.3;
+  plot.x_range = { std::min(least / 1.6, 0.7), std::max(most * 1.6, 1.5) };
+  plot.y_range = { (own > 0 ? std::min(low, own) : low) / 1.3, high * 1.3 };
   plot.shaded_below = own;
   for (double decade = 1e-6; decade < 1e6; decade *= 10)
     for (const double step : { 1.0, 1.5, 2.0, 3.0, 5.0, 7.0 })
     {
       const double tick = decade * step;
-      if (tick >= plot.y_from && tick <= plot.y_to)
+      if (tick >= plot.y_range[0] && tick <= plot.y_range[1])
         plot.y_ticks.push_back(tick);
-      if (tick >= plot.x_from && tick <= plot.x_to && (step == 1 || step == 2 || step == 5))
+      if (tick >= plot.x_range[0] && tick <= plot.x_range[1] && (step == 1 || step == 2 || step == 5))
         plot.x_ticks.push_back(tick);
     }
   std::vector<std::size_t> all(findings.rows.size());
   std::iota(all.begin(), all.end(), 0);
-  plot.curves.push_back(curve_of(findings, all, "all that was measured"));
+  plot.curves.push_back(curve_of(findings, all, "all settings"));
   plot.curves.back().style = Plot::Style::faint;
   for (const KnobLine& line : findings.knobs)
   {
@@ -141,11 +136,11 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   }
   plot.curves.push_back(curve_of(findings, findings.front, "Pareto front"));
   plot.curves.back().style = Plot::Style::strong;
-  // its points have numbers, their names stand in the legend
+  // the points have numbers; the legend says which settings they are
   for (std::size_t p = 0; p < findings.front.size(); ++p)
   {
     const AccuracyRow& row = findings.rows[findings.front[p]];
-    const std::string number = std::to_string(p + 1);
+    const std::string number = fmt::to_string(p + 1);
     plot.curves.push_back({ number + ": " + row.name,
                             { row.cost },
                             { mm(row.error.rms) },
@@ -155,46 +150,46 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   }
   if (own > 0)
     plot.curves.push_back({ "",
-                            { plot.x_from, plot.x_to },
+                            { plot.x_range[0], plot.x_range[1] },
                             { own, own },
                             Plot::Style::guide,
                             { "error of the reference" },
                             "left offset 0.7,-0.7" });
-  plot.curves.push_back({ "", { 1, 1 }, { plot.y_from, plot.y_to }, Plot::Style::guide, { "real time" } });
+  plot.curves.push_back({ "", { 1, 1 }, { plot.y_range[0], plot.y_range[1] }, Plot::Style::guide, { "real time" } });
   std::size_t longest = 0;
   for (const Plot::Curve& curve : plot.curves)
     longest = std::max(longest, curve.name.size());
-  // gnuplot takes letters for wider than they are
-  plot.key = "below Left reverse maxrows 10 maxcols 3 width -" + std::to_string(longest > 24 ? 8 : 4) + " font ',12'";
+  // gnuplot reserves more width for letters than they take
+  plot.key = fmt::format("below Left reverse maxrows 10 maxcols 3 width {} font ',12'", longest > 24 ? -8 : -4);
   return plot;
 }
 
 std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
 {
   const std::string phases =
-      f.closed_form ? "*error* is that of the skin once settled, "
-                    : "*error* is that of the skin in the worst phase of the history (half of the ramp, its end, "
-                      "the end of the history, settled), *settled* at rest alone, *averaged* that of displacements "
-                      "averaged over a "
-                      "Gaussian of " +
-                          millimetres(f.averaged_over, 2) + " on the skin, from which folds are gone, ";
+      f.closed_form
+          ? "*error* is the error of the settled skin. "
+          : "*error* is the error of the skin in the worst phase of the history (half of the ramp, its end, the "
+            "end of the history, settled), and *settled* that of the settled skin alone. *averaged* is the "
+            "error of displacements averaged by a Gaussian of " +
+                millimetres(f.averaged_over, 2) + " on the skin, which takes folds out. ";
   std::string out =
       "# " + title + "\n\n" + reference_words(f) + " The skin moves by " + millimetres(f.motion, 2) + " RMS. " +
       phases +
-      "*landmark* that of the worst landmark; "
-      "*energy* is what the ledger of energies leaves unexplained. *cost* is wall seconds a simulated "
-      "second, from the median of repeated timings; *spread* is the distance of their quartiles. Stars make "
-      "the Pareto front: no other setting is both cheaper and more accurate. Machine: " +
+      "*landmark* is the error of the worst landmark, and *energy* the imbalance of the energy ledger. "
+      "*cost* is wall seconds per simulated second, from the median of repeated timings, and *spread* the "
+      "distance of their quartiles. Stars mark the Pareto front: no other setting is both cheaper and more "
+      "accurate. Machine: " +
       f.machine + ".\n";
   for (const std::string& note : f.notes)
     out += "\n- " + note;
   const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy; });
   if (noisy > 0)
-    out +=
-        "\n- The machine was disturbed while " + std::to_string(noisy) +
-        " settings were timed (spread above 20 %, or other programs took a fifth of the processors): those times are "
-        "marked noisy. The same command times them again.";
-  return out + "\n\n" + accuracy_table(f).markdown();
+    out += fmt::format(
+        "\n- The machine was disturbed while {} settings were timed (spread above 20 %, or other programs "
+        "took a fifth of the processors). Those are marked noisy; the same command times them again.",
+        noisy);
+  return wrapped(out + "\n\n" + accuracy_table(f).markdown());
 }
 
 std::string profile_text(const AccuracyRow& row, const std::string& name, const std::string& machine)
@@ -206,7 +201,7 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
     voxel = "[" + voxel + ", " + readable(mm(p.voxel[1]), 6) + " mm, " + readable(mm(p.voxel[2]), 6) + " mm]";
   std::string text = name + ": {voxel: " + voxel;
   const auto add = [&text](bool differs, const std::string& entry) { text += differs ? ", " + entry : ""; };
-  add(p.samples != defaults.samples, "samples: " + std::to_string(p.samples));
+  add(p.samples != defaults.samples, fmt::format("samples: {}", p.samples));
   add(p.fill_min != defaults.fill_min, "fill_min: " + readable(p.fill_min));
   add(p.time_step_share != defaults.time_step_share, "time_step_share: " + readable(p.time_step_share));
   add(p.time_step != defaults.time_step, "time_step: " + p.time_step);
@@ -218,13 +213,12 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
     text += ", mass_scaling: {uniform: " + readable(mass.factor) + "}";
   else if (mass.kind == MassScaling::Kind::selective)
   {
-    std::string entries;
-    for (const std::string& material : mass.materials)
-      entries += (entries.empty() ? "selective: [" : ", ") + material;
-    entries += entries.empty() ? "" : "]";
+    std::vector<std::string> entries;
+    if (!mass.materials.empty())
+      entries.push_back(fmt::format("selective: [{}]", fmt::join(mass.materials, ", ")));
     if (mass.time_step > 0)
-      entries += (entries.empty() ? "" : ", ") + ("time_step: " + readable(1e6 * mass.time_step)) + " us";
-    text += ", mass_scaling: {" + entries + "}";
+      entries.push_back("time_step: " + readable(1e6 * mass.time_step) + " us");
+    text += fmt::format(", mass_scaling: {{{}}}", fmt::join(entries, ", "));
   }
   return text + ", measured: {error: " + readable(mm(row.error.rms), 3) + " mm, cost: " + readable(row.cost, 3) +
          ", machine: \"" + machine + "\"}}";

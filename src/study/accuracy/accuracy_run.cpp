@@ -1,4 +1,4 @@
-// one variant: its motion, and what a step of it costs
+// the motion of one variant, and the cost of its steps
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -23,8 +23,9 @@ namespace
 {
 
 constexpr int repetitions = 9;
-constexpr double seconds_a_checkpoint = 60;        // at least
-constexpr double share_of_checkpoints = 1 / 40.0;  // of the wall time, at most
+constexpr double seconds_per_checkpoint = 60;  // at least
+constexpr double share_of_checkpoints =
+    1 / 40.0;  // of the wall time, at most; checkpoints of large models take seconds
 
 int thread_count(int threads)
 {
@@ -51,7 +52,7 @@ SkinPhase look(Solver& solver, const Model& model)
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
 
-// a motion that has left the model behind cannot be trusted, finite or not
+// a motion by more than the size of the model diverges, even where it is finite
 void check_size(const VariantMotion& motion, const Model& model)
 {
   double size = 0;
@@ -80,7 +81,7 @@ std::vector<float> vertex_areas(const Model& model)
   return areas;
 }
 
-// false: nothing can be done with it
+// resumes a motion; false where the checkpoint does not fit the solver
 bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
 {
   try
@@ -110,7 +111,7 @@ std::string machine_of(const Solver& solver, int threads)
   return solver.description() + ", " + processor + ", " + std::to_string(thread_count(threads)) + " threads";
 }
 
-// glibc counts every arena in malloc_info alone: what it has of the system and mapped, less what is free
+// only malloc_info() of glibc counts all arenas: memory from the system and mapped memory, less what is free
 double heap_bytes()
 {
   char* text = nullptr;
@@ -122,7 +123,7 @@ double heap_bytes()
   std::fclose(stream);
   const std::string info(text, size);
   std::free(text);
-  // the last of each is the sum over arenas
+  // the last entry of each kind is the sum over arenas
   const auto bytes = [&info](const std::string& begin)
   {
     const std::size_t at = info.rfind(begin), number = info.find("size=\"", at);
@@ -150,16 +151,16 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
       motion.phases.push_back(look(*solver, *model));
     const double steps_before = motion.steps;
-    double next_checkpoint = wall_seconds() + seconds_a_checkpoint;
+    double next_checkpoint = wall_seconds() + seconds_per_checkpoint;
     const auto keep = [&]
     {
       const double begin = wall_seconds();
       state.solver = solver->pack();
       checkpoints.keep(state);
       const double end = wall_seconds();
-      next_checkpoint = end + std::max(seconds_a_checkpoint, (end - begin) / share_of_checkpoints);
+      next_checkpoint = end + std::max(seconds_per_checkpoint, (end - begin) / share_of_checkpoints);
     };
-    // where steps are long there are more slices, so that an interruption does not wait for long
+    // large models have more slices, so that an interruption does not wait for long
     const std::int64_t slices_a_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
     const double length = history.ramp + history.hold;
     const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
@@ -187,21 +188,21 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       if (interrupted)
         return std::nullopt;
     }
-    // what settles has no checkpoints of its own
+    // settling has no checkpoints; it begins anew from here
     state.solver = solver->pack();
     const VariantCheckpoint played = state;
     motion.steps /= length;
     const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
     motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
 
-    // it is at rest for a viewer when the skin no longer moves, whatever noise the nodes inside have
+    // the model is settled when the skin no longer moves, even if nodes inside it do
     VariantMotion last;
     last.area = motion.area;
     last.phases = { motion.phases[0], motion.phases.back() };
     double looked = 0;
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
-    // the guard may go back, and what settles begins anew
+    // the guard may go back, so that settling begins anew
     Guard guard(*solver, model);
     const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
                                            [&](const Equilibrium& equilibrium)
@@ -226,7 +227,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     motion.phases.push_back(look(*solver, *model));
     check_size(motion, *model);
   }
-  // what else goes wrong is the machine's, and not kept with the setting
+  // other errors are the machine's, and are not kept as faults of the setting
   catch (const Diverged& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
@@ -250,17 +251,15 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
-  // what others take from one thread can be told, from several not
-  const bool alone = is_alone(settings);
+  // the time that other programs take can be told for one thread only
+  const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();
-  // the search for an assembled time step is dear while muscles begin to pull, and would pass for the steps' cost
+  // while muscles begin to pull the assembled time step is searched for often, which is no cost of the steps
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;
   cost.memory = heap_bytes() - heap;
-  std::vector<double> steps, skins;
-  for (const auto& turn : turns)
-    steps.push_back(turn[0]);
+  std::vector<double> skins;
   SkinState skin;
   for (int repetition = 0; repetition < repetitions; ++repetition)
   {
@@ -268,7 +267,7 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
     solver->skin(skin);
     skins.push_back(wall_seconds() - start);
   }
-  const Spread step = spread_of(steps);
+  const Spread step = spread_of(turns, 0);
   cost.step = step.median;
   cost.spread = 2 * step.half / step.median;
   cost.skin = spread_of(skins).median;

@@ -11,97 +11,98 @@
 namespace frontalis
 {
 
-/// Where a skin and its landmarks stand, in the face frame [m].
+/// Positions of a skin and its landmarks in the face frame [m].
 struct SkinPhase
 {
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<float, 3>> landmarks;
 };
 
-/// What the motion of one variant was: the same on every run.
+/// The motion of one variant, which is the same on every run.
 struct VariantMotion
 {
-  std::string fault;              ///< empty: it can be trusted
+  std::string fault;              ///< why the motion cannot be used; empty: it can
   std::vector<SkinPhase> phases;  ///< at rest, half of the ramp, its end, the end of the history, settled
   std::vector<float> area;        ///< of the skin at rest that belongs to each vertex [m2]
-  double steps = 0;               ///< a second of the activations' clock
-  double energy = 0;              ///< what the ledger leaves unexplained, over its largest term
-  double residual = 0;            ///< of equilibrium, as Solver::settle tells it
+  double steps = 0;               ///< per second of the activations' clock
+  double energy = 0;              ///< imbalance of the energy ledger over its largest term
+  double residual = 0;            ///< of the equilibrium, as Solver::settle returns it
   double voxels = 0;
 
   void archive(ByteArchive& archive);
 };
 
-/// What it cost: of one machine and one run.
+/// The cost of one variant on one machine, measured in one run.
 struct VariantCost
 {
-  std::string machine;  ///< empty: not measured yet
-  double step = 0;      ///< [s], median of the repetitions
-  double spread = 0;
-  double processors = 1;
-  double skin = 0;  ///< one published skin [s]
-  double memory = 0;
-  double build = 0;  ///< [s]
+  std::string machine;    ///< empty: not measured yet
+  double step = 0;        ///< time per step, median of the repetitions [s]
+  double spread = 0;      ///< distance of the quartiles over the median
+  double processors = 1;  ///< share of its processors that the study got
+  double skin = 0;        ///< time per published skin [s]
+  double memory = 0;      ///< of model and solver [bytes]
+  double build = 0;       ///< time to make the model [s]
 
   bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
   void archive(ByteArchive& archive);
 };
 
-/// A motion under way.
+/// A motion that is not finished.
 struct VariantCheckpoint
 {
-  VariantMotion motion;     ///< as far as it is known; its steps are a number
-  std::int64_t slices = 0;  ///< of the history that were played
+  VariantMotion motion;     ///< as far as it is known; `steps` is their number until now
+  std::int64_t slices = 0;  ///< of the history that have been played
   std::string solver;       ///< Solver::pack()
 
   void archive(ByteArchive& archive);
 };
 
-/// The machine that figures of cost belong to: processor or device and number of threads.
+/// The machine that costs are of: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
 using GoOn = std::function<bool(double done)>;
 
-/// Where a motion goes on from, and what becomes of the states on its way: one about each minute of wall time and one
-/// where it is interrupted.
+/// The checkpoint that a motion is resumed from, and what keeps further ones: one about every minute of wall time, and
+/// one where the motion is interrupted.
 struct Checkpoints
 {
   std::optional<VariantCheckpoint> last;
   std::function<void(const VariantCheckpoint&)> keep;
 };
 
-/// Plays the history and settles. nullopt where `go_on` ended it; faults of the motion are told in the result. Without
-/// `ledger` its energy is NaN. Interrupted and resumed it is the same, bit for bit.
+/// Plays the history and settles. Returns nothing where `go_on` ended the motion; a motion that fails is returned with
+/// its fault. Without `ledger` its energy is NaN. A motion that is interrupted and resumed has the same bits.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
                                           const Checkpoints& checkpoints, const GoOn& go_on);
 
-/// Times steps with the history's activations reached, for about so many wall seconds.
+/// Times steps for about so many wall seconds after the history's activations are reached.
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                          const ActivationHistory& history, int threads, double seconds);
 
-/// Bytes that the program has on its heap.
+/// Bytes on the heap of this program.
 double heap_bytes();
 
-/// Between two motions of the same skin, phase by phase; the first phase is rest, and displacements are compared.
+/// Distance between the displacements of two motions of the same skin, phase by phase, of which the first is rest.
 /// Throws Error where the skins are not the same.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
-/// Rest and settled alone of a motion; the same of a body whose settled displacements [m] are known at all places [m].
+/// The phases at rest and settled of a motion, and the same of a body whose settled displacements [m] are known for all
+/// positions [m].
 VariantMotion settled_part(const VariantMotion& motion);
 VariantMotion exact_motion(const VariantMotion& like,
                            const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
-/// Root mean square displacement [m], the largest of the phases.
+/// Root mean square displacement [m] of the phase where it is largest.
 double motion_size(const VariantMotion& motion);
 
-/// Order p for which errors C h^p leave these differences between solutions at three edges, coarse to fine:
+/// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
 /// `coarse` between the first and the second, `fine` between the second and the third. NaN where there is none in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
-/// The error that is left at the finest edge (Richardson): of `difference` to the solution at the edge before.
+/// Richardson's estimate of the error at the finest edge, from the difference to the solution at the edge before.
 double richardson(double before, double finest, double difference, double order);
 
-/// Finished variants, one file each, written whole or not at all.
+/// Variants on disk, each in files of its own that are written whole or not at all.
 class VariantStore
 {
 public:
@@ -113,31 +114,31 @@ public:
   std::optional<VariantCost> cost(const std::string& key) const;
   void keep(const std::string& key, const VariantMotion& motion) const;
   void keep(const std::string& key, const VariantCost& cost) const;
-  /// Gone when the variant's motion is kept.
-  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;
+  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;  ///< removed once the motion is kept
   void keep(const std::string& key, const VariantCheckpoint& checkpoint) const;
 
 private:
-  std::string checkpoint_path(const std::string& key) const;
+  std::string path(const std::string& key, const char* extension) const;
 
   std::string folder_;
 };
 
-/// Positions of the knobs. `critical` is the time step of the standard setting without scaled mass [s].
+/// The settings of one knob, all others as in the standard setting.
 struct Sweep
 {
   std::string knob;
   std::vector<AccuracySetting> settings;
 };
+/// `critical`: time step of the standard setting without scaled mass [s].
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical);
-/// What the Pareto front may be made of at one voxel edge.
+/// The combinations of settings that are tried at one voxel edge.
 std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge, double critical);
-/// As accurate as the solver can be at an edge: assumed strain, no mass scaled; steps as long as the assembled model
-/// allows, since halving them is checked.
+/// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its steps are as long as the assembled
+/// model allows; the study checks what halving them changes.
 AccuracySetting reference_setting(const AccuracySetting& standard, double edge);
-/// What a setting differs in from the standard one, in words; "standard" where in nothing.
+/// The differences of a setting from the standard one in words; "standard" where there are none.
 std::string name_of(const AccuracySetting& setting, const AccuracySetting& standard);
-/// Wall time relative to the same motion by one-point float elements of edge 1 [m]: what a plan's time is estimated by.
+/// Wall time over that of the same motion with one-point single-precision elements of an edge of 1 m, for estimates.
 double relative_time(const AccuracySetting& setting);
 
 }  // namespace frontalis

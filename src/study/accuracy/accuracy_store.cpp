@@ -1,4 +1,5 @@
-// finished variants on disk: signature, which tells the solver's generation, hash of the rest, the rest as bytes
+// Finished variants on disk. A file has a signature with the generation of the solver's motions, a hash of its content,
+// and the content as bytes.
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -6,29 +7,29 @@
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/study/table.hpp"
 
+#include <fmt/core.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
 namespace frontalis
 {
 namespace
 {
 
-const std::string signature = "frontalis accuracy 2, motions of generation " + std::to_string(motion_generation) + "\n";
+const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
 
-void write(const std::string& path, const std::string& content)
+template <class T>
+void write(const std::string& path, T value)
 {
-  const std::string next = path + ".part";
-  write_text(next, signature + content_hash(content) + content);
-  std::error_code failed;
-  std::filesystem::rename(next, path, failed);
-  if (failed)
-    throw Error(path + ": cannot be written: " + failed.message());
+  ByteArchive out;
+  value.archive(out);
+  const std::string content = out.bytes();
+  write_text(path, signature + content_hash(content) + content);
 }
 
-// nothing where there is no whole file
+// the content of a file; nothing where the file is missing or not whole
 std::optional<ByteArchive> read(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);
@@ -74,56 +75,41 @@ void VariantCheckpoint::archive(ByteArchive& archive)
   archive(slices)(solver);
 }
 
-VariantStore::VariantStore(std::string folder) : folder_(std::move(folder))
-{
-  std::error_code failed;
-  std::filesystem::create_directories(folder_, failed);
-  if (failed)
-    throw Error(folder_ + ": cannot be made: " + failed.message());
-}
+VariantStore::VariantStore(std::string folder) : folder_(std::move(folder)) { make_folder(folder_); }
 
-void VariantStore::keep(const std::string& key, const VariantMotion& motion) const
-{
-  ByteArchive out;
-  VariantMotion(motion).archive(out);
-  write(folder_ + "/" + key + ".motion", out.bytes());
-  std::filesystem::remove(checkpoint_path(key));
-}
-
-bool VariantStore::has_motion(const std::string& key) const
-{
-  return std::filesystem::exists(folder_ + "/" + key + ".motion");
-}
+bool VariantStore::has_motion(const std::string& key) const { return std::filesystem::exists(path(key, "motion")); }
 
 std::optional<VariantMotion> VariantStore::motion(const std::string& key) const
 {
-  return archived<VariantMotion>(folder_ + "/" + key + ".motion");
-}
-
-void VariantStore::keep(const std::string& key, const VariantCost& cost) const
-{
-  ByteArchive out;
-  VariantCost(cost).archive(out);
-  write(folder_ + "/" + key + ".cost", out.bytes());
+  return archived<VariantMotion>(path(key, "motion"));
 }
 
 std::optional<VariantCost> VariantStore::cost(const std::string& key) const
 {
-  return archived<VariantCost>(folder_ + "/" + key + ".cost");
-}
-
-void VariantStore::keep(const std::string& key, const VariantCheckpoint& checkpoint) const
-{
-  ByteArchive out;
-  VariantCheckpoint(checkpoint).archive(out);
-  write(checkpoint_path(key), out.bytes());
+  return archived<VariantCost>(path(key, "cost"));
 }
 
 std::optional<VariantCheckpoint> VariantStore::checkpoint(const std::string& key) const
 {
-  return archived<VariantCheckpoint>(checkpoint_path(key));
+  return archived<VariantCheckpoint>(path(key, "checkpoint"));
 }
 
-std::string VariantStore::checkpoint_path(const std::string& key) const { return folder_ + "/" + key + ".checkpoint"; }
+void VariantStore::keep(const std::string& key, const VariantMotion& motion) const
+{
+  write(path(key, "motion"), motion);
+  std::filesystem::remove(path(key, "checkpoint"));
+}
+
+void VariantStore::keep(const std::string& key, const VariantCost& cost) const { write(path(key, "cost"), cost); }
+
+void VariantStore::keep(const std::string& key, const VariantCheckpoint& checkpoint) const
+{
+  write(path(key, "checkpoint"), checkpoint);
+}
+
+std::string VariantStore::path(const std::string& key, const char* extension) const
+{
+  return folder_ + "/" + key + "." + extension;
+}
 
 }  // namespace frontalis

@@ -1,4 +1,4 @@
-// the reference, the knobs and their combinations, and what they tell
+// a study of accuracy: the reference, then each knob, then combinations of knobs
 
 #include "study/accuracy/accuracy_bench.hpp"
 #include "study/accuracy/accuracy_comparison.hpp"
@@ -6,6 +6,8 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +19,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double averaged_voxels = 1.5;  // of the standard setting
+constexpr double averaged_voxels = 1.5;  // standard deviation of the averaging, in voxels of the standard setting
 
 class Study
 {
@@ -40,7 +42,7 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // edges that are variants': all but the reference's
+  // number of edges that variants may have: all but the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
@@ -59,7 +61,8 @@ private:
   AccuracyFindings findings_;
 };
 
-// coarse to fine, each level telling what the next takes; those that the budget does not allow are dropped
+// Measures the reference's form from coarse to fine. The time of each level tells how long the next one takes; levels
+// that the budget does not allow are left out.
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
@@ -76,16 +79,17 @@ void Study::choose_reference()
     const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
     if (level > 2 && share > 0.4)
     {
-      findings_.notes.push_back("Voxels of " + millimetres(edges[level]) +
-                                (level + 1 < edges.size() ? " and less" : "") + " were left out: about " +
-                                readable(takes, 2) + " s do not fit the budget.");
+      findings_.notes.push_back(fmt::format("Voxels of {}{} were left out: about {:.2g} s do not fit the budget.",
+                                            millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "",
+                                            takes));
       edges.resize(level);
       break;
     }
     if (share > 0.8)
-      throw Error("a budget of " + readable(plan_.budget, 4) + " s is too small for a comparison: the reference of " +
-                  millimetres(edges[level]) + " alone takes about " + readable(takes, 2) +
-                  " s here; allow more, or begin with larger voxels");
+      throw Error(
+          fmt::format("a budget of {:.4g} s is too small for a comparison: the reference of {} alone takes about "
+                      "{:.2g} s here; allow more, or begin with larger voxels",
+                      plan_.budget, millimetres(edges[level]), takes));
     bench_.measure(levels[level]);
   }
   if (plan_.exact)
@@ -94,7 +98,7 @@ void Study::choose_reference()
   bench_.set_reference(findings_.reference);
   reference_ = bench_.measure(findings_.reference);
   if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
-    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", is of no use: " + fault);
+    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", has no motion to compare with: " + fault);
   findings_.averaged_over = averaged_voxels * plan_.standard.profile.voxel[0];
   average_.emplace(motion_of(reference_), findings_.averaged_over);
 }
@@ -118,7 +122,7 @@ void Study::measure_knobs()
       const std::string& profile = setting.profile.name;
       if (is_too_fine(setting))
         findings_.notes.push_back("Profile '" + profile +
-                                  "' was left out: its voxels are as small as the reference's.");
+                                  "' was left out, since its voxels are as small as the reference's.");
       else if (bench_.fits(setting))
         line.rows.push_back(bench_.measure(setting, sweep.knob == "profiles" ? profile : ""));
     }
@@ -129,7 +133,7 @@ void Study::measure_knobs()
   }
 }
 
-// at each edge only what was not clearly beaten at the edge before
+// measures at each edge the combinations that were not clearly beaten at the edge before
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -158,7 +162,7 @@ void Study::measure_combinations()
   }
 }
 
-// at the coarsest edge: what double precision and half the time step change
+// notes what double precision and half the time step change at the coarsest edge
 void Study::check_reference()
 {
   if (plan_.exact)
@@ -168,7 +172,7 @@ void Study::check_reference()
   if (!motion_of(base).fault.empty())
     return;
   exact.profile.precision = "double";
-  const bool elsewhere = exact.backend == "cuda";  // which has no double precision
+  const bool elsewhere = exact.backend == "cuda";  // a GPU has no double precision
   if (elsewhere)
     exact.backend = "cpu";
   halved.profile.time_step_share *= 0.5;
@@ -180,9 +184,9 @@ void Study::check_reference()
       continue;
     const VariantMotion& other = motion_of(bench_.measure(setting));
     if (other.fault.empty())
-      findings_.notes.push_back("The reference's form with voxels of " + millimetres(plan_.edges[0]) + ": " + words +
-                                " moves the skin by " +
-                                readable(1e6 * worst(skin_errors(motion_of(base), other)).rms, 3) + " µm.");
+      findings_.notes.push_back(fmt::format("The reference's form with voxels of {}: {} moves the skin by {:.3g} µm.",
+                                            millimetres(plan_.edges[0]), words,
+                                            1e6 * worst(skin_errors(motion_of(base), other)).rms));
   }
 }
 
@@ -191,12 +195,7 @@ AccuracyFindings Study::run()
   const auto known = knob_names();
   for (const std::string& knob : plan_.knobs)
     if (std::find(known.begin(), known.end(), knob) == known.end())
-    {
-      std::string list;
-      for (const auto& name : known)
-        list += (list.empty() ? "" : ", ") + name;
-      throw Error("no knob is called '" + knob + "'; the knobs are " + list);
-    }
+      throw Error(fmt::format("no knob is called '{}'; the knobs are {}", knob, fmt::join(known, ", ")));
   if (plan_.edges.size() < 3 || !std::is_sorted(plan_.edges.rbegin(), plan_.edges.rend()) ||
       std::adjacent_find(plan_.edges.begin(), plan_.edges.end()) != plan_.edges.end())
     throw Error(
@@ -221,9 +220,9 @@ AccuracyFindings Study::run()
   }
   findings_.machine = bench_.machine();
   if (bench_.left_out() > 0)
-    findings_.notes.push_back(std::to_string(bench_.left_out()) + " settings were left out: the budget was spent.");
+    findings_.notes.push_back(fmt::format("{} settings were left out, since the budget was spent.", bench_.left_out()));
   if (plan_.exact)
-    tell_orders(plan_, bench_, findings_);
+    note_orders(plan_, bench_, findings_);
   else
     estimate_reference_error(plan_, bench_, *average_, findings_);
   std::map<Backend, int> elsewhere;
@@ -234,11 +233,11 @@ AccuracyFindings Study::run()
       ++elsewhere[measured.played_by];
   }
   for (const auto& [backend, count] : elsewhere)
-    findings_.notes.push_back(std::to_string(count) + " settings have their motions of backend " + backend +
-                              ", which the folder had.");
+    findings_.notes.push_back(
+        fmt::format("{} settings have motions of backend {}, which the folder had.", count, backend));
   if (!plan_.exact)
   {
-    // the reference is no setting among others
+    // the reference is no setting to choose: it has no error of its own
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};

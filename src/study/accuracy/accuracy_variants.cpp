@@ -1,8 +1,10 @@
-// which settings are measured, and what they are called
+// the settings that a study measures, and their names
 
 #include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/study/table.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// three digits are enough for a time step that nobody measures better
+// rounded to three digits, enough for a target of the time step
 double rounded(double value)
 {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -82,7 +84,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
   std::vector<Sweep> all;
-  // the reference's edge is no variant's
+  // no variant has the reference's edge
   all.push_back(sweep("voxel", s, Numbers(plan.edges.begin(), plan.edges.end() - (plan.exact ? 0 : 1)),
                       [](auto& setting, double edge) { setting.profile.voxel.fill(edge); }));
   all.push_back(sweep("samples", s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },
@@ -93,7 +95,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
                       [](auto& setting, const auto& form) { setting.profile.assumed_strain = form != "scalar"; }));
   all.push_back(sweep("integration", s, Names{ "one_point", "selective_reduced" },
                       [](auto& setting, const auto& form) { setting.profile.integration = form; }));
-  // the GPU computes in single precision whatever is asked for
+  // the GPU computes in single precision whatever the setting says
   all.push_back(sweep("precision", s, s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" },
                       [](auto& setting, const auto& precision) { setting.profile.precision = precision; }));
   all.push_back(sweep("share", s, quick ? Numbers{ 0.45 } : Numbers{ 0.3, 0.6, 0.95 },
@@ -154,7 +156,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
   };
   const AccuracyProfile &p = setting.profile, &s = standard.profile;
   add(p.voxel != s.voxel, edge_text(p.voxel));
-  add(p.samples != s.samples, std::to_string(p.samples) + " samples");
+  add(p.samples != s.samples, fmt::to_string(p.samples) + " samples");
   add(p.fill_min != s.fill_min, "fill from " + readable(p.fill_min, 3));
   add(p.assumed_strain != s.assumed_strain, p.assumed_strain ? "assumed strain" : "scalar hourglass");
   add(p.integration != s.integration, p.integration == "one_point" ? "one point" : "selective reduced");

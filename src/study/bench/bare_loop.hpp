@@ -12,8 +12,8 @@ struct BareLoop
   const float* u[3];
   float* next[3];
   float* v[3];
-  const float* mu;     ///< one a voxel [Pa]
-  const float* kappa;  ///< one a voxel [Pa]
+  const float* mu;     ///< one per voxel [Pa]
+  const float* kappa;  ///< one per voxel [Pa]
   float spacing, dt, keep, inverse_mass;
 };
 

@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-// written out by hand, apart from the laws in physics/: a yardstick that shares their code would hide what they cost
+// Written by hand without the laws in physics/, since a yardstick that shares their code would hide what they cost.
 template <class Architecture>
 struct BareLoopBody
 {

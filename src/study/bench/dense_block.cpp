@@ -31,7 +31,7 @@ Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z)
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     if (model.nodes[n][0] == 0)
       model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
-  // its weight shears it by about 5 %, so that blocks of any size move and none collapses
+  // gravity that shears a block of any size by about 5 %, so that all move and none collapses
   model.gravity = { { 0, 0, -0.05 * tissue.parameters[0] / (tissue.density * x * model.spacing[0]) } };
   return model;
 }

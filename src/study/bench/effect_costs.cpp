@@ -1,17 +1,14 @@
 #include "frontalis/study/effect_costs.hpp"
 
-#include "frontalis/study/step_time.hpp"
-
 #include <algorithm>
-#include <chrono>
 
 namespace frontalis
 {
 namespace
 {
 
-// steps are compared: what is spent on finding their length is left out
-Model timed(Model model)
+// only steps are compared, so the search for the length of steps is left out
+Model with_cheap_time_step(Model model)
 {
   model.time_step_estimate = TimeStepEstimate::element;
   return model;
@@ -19,7 +16,7 @@ Model timed(Model model)
 
 Model without(const Model& model, EffectSet off)
 {
-  Model less = timed(model);
+  Model less = with_cheap_time_step(model);
   switch_off(less, off.with(Effect::friction, off.has(Effect::friction) || off.has(Effect::sliding)));
   return less;
 }
@@ -35,9 +32,9 @@ double time_of_field(Solver& solver)
   std::vector<double> seconds;
   for (int repetition = 0; repetition < 9; ++repetition)
   {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_seconds();
     solver.skin_field(SkinField::stress, field);
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    seconds.push_back(wall_seconds() - start);
   }
   return spread_of(seconds).median;
 }
@@ -63,63 +60,51 @@ Model plain_model(const Model& model)
   return plain;
 }
 
-EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings, double seconds)
+EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
+                            const StepTimer& timer)
 {
-  const std::unique_ptr<Solver> whole = solver_of(timed(*model), settings),
+  const EffectSet present = effects_of(*model);
+  const std::unique_ptr<Solver> whole = solver_of(with_cheap_time_step(*model), settings),
                                 plain = solver_of(plain_model(*model), settings);
   const Controls rest = whole->controls();
-  Controls controls = rest;
-  std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
-  EffectCosts costs;
-  costs.backend = whole->description();
-  std::vector<double> steps, plain_steps;
-  for (const auto& turn :
-       time_in_turn({ { whole.get(), controls }, { plain.get(), controls } }, seconds, is_alone(settings)))
+  Controls active = rest;
+  std::fill(active.activation.begin(), active.activation.end(), 0.75f);
+
+  // what a step takes without an effect; nodes that nothing holds would fly away, so that rigid nodes are compared at
+  // rest, and without the effects that would move the others
+  const auto cost_of = [&](Effect effect) -> Spread
   {
-    steps.push_back(turn[0]);
-    plain_steps.push_back(turn[1]);
-  }
-  costs.step = spread_of(steps).median;
-  costs.plain_step = spread_of(plain_steps).median;
-  const std::vector<Allocation> allocations = whole->allocations();
-  const EffectSet present = effects_of(*model);
-  for (const Effect effect : every_effect())
-  {
-    EffectCost cost{ effect, presence_of(*model, effect), 0, 0, 0 };
-    for (const Allocation& allocation : allocations)
-      cost.bytes += allocation.effect == effect ? allocation.bytes : 0;
     if (effect == Effect::elasticity)
     {
-      EffectSet others = present.with(Effect::elasticity, false);
-      const auto alone = solver_of(without(*model, others), settings);
-      std::vector<double> alone_steps;
-      for (const auto& turn : time_in_turn({ { alone.get(), controls } }, seconds, is_alone(settings)))
-        alone_steps.push_back(turn[0]);
-      const Spread spread = spread_of(alone_steps);
-      cost.step = spread.median;
-      cost.spread = spread.half;
+      const auto alone = solver_of(without(*model, present.with(effect, false)), settings);
+      return spread_of(timer({ { alone.get(), active } }), 0);
     }
-    else if (cost.presence.present && effect != Effect::output_fields)
+    if (effect != Effect::rigid_nodes)
     {
-      // tissue that nothing holds must not be moved: it is compared at rest, and what would move it is left out
-      const bool rigid = effect == Effect::rigid_nodes;
-      const EffectSet moving = rigid ? EffectSet()
-                                           .with(Effect::gravity)
-                                           .with(Effect::surface_loads)
-                                           .with(Effect::prescribed_displacement)
-                                           .with(Effect::sliding)
-                                     : EffectSet();
-      const auto beside = rigid ? solver_of(without(*model, moving), settings) : nullptr;
-      Solver* const more = rigid ? beside.get() : whole.get();
-      const auto less = solver_of(without(*model, moving.with(effect)), settings);
-      std::vector<double> differences;
-      const Controls& at = rigid ? rest : controls;
-      for (const auto& turn : time_in_turn({ { more, at }, { less.get(), at } }, seconds, is_alone(settings)))
-        differences.push_back(turn[0] - turn[1]);
-      const Spread spread = spread_of(differences);
-      cost.step = spread.median;
-      cost.spread = spread.half;
+      const auto less = solver_of(without(*model, EffectSet().with(effect)), settings);
+      return spread_of_difference(timer({ { whole.get(), active }, { less.get(), active } }), 0, 1);
     }
+    EffectSet moving;
+    for (const Effect e : { Effect::gravity, Effect::surface_loads, Effect::prescribed_displacement, Effect::sliding })
+      moving = moving.with(e);
+    const auto held = solver_of(without(*model, moving), settings),
+               loose = solver_of(without(*model, moving.with(effect)), settings);
+    return spread_of_difference(timer({ { held.get(), rest }, { loose.get(), rest } }), 0, 1);
+  };
+
+  EffectCosts costs;
+  costs.backend = whole->description();
+  const StepTimes both = timer({ { whole.get(), active }, { plain.get(), active } });
+  costs.step = spread_of(both, 0).median;
+  costs.plain_step = spread_of(both, 1).median;
+  const std::vector<Allocation> allocations = whole->allocations();
+  for (const Effect effect : every_effect())
+  {
+    EffectCost cost{ effect, presence_of(*model, effect), 0, {} };
+    for (const Allocation& allocation : allocations)
+      cost.bytes += allocation.effect == effect ? allocation.bytes : 0;
+    if (cost.presence.present && effect != Effect::output_fields)
+      cost.step = cost_of(effect);
     costs.effects.push_back(cost);
   }
   if (present.has(Effect::output_fields))

@@ -1,7 +1,6 @@
 #include "frontalis/study/effect_presence.hpp"
 
 #include "frontalis/study/dense_block.hpp"
-#include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@ namespace
 
 constexpr std::int32_t length = 64, depth = 40;
 
+// gives an effect to a share of the voxels, or of the nodes of the face z = 0
 void give(Model& model, Effect effect, double share)
 {
   const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
@@ -45,7 +45,7 @@ void give(Model& model, Effect effect, double share)
   }
   if (effect == Effect::sliding || effect == Effect::friction)
   {
-    // where friction is measured all slide
+    // the cost of friction is what it adds to sliding, so that all nodes of the face slide
     const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
     ConstraintSurface floor;
     floor.name = "smooth floor";
@@ -67,17 +67,19 @@ void give(Model& model, Effect effect, double share)
 
 }  // namespace
 
+std::vector<double> presence_shares() { return { 0, 0.1, 0.5, 1 }; }
+
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
 {
-  // solvers are made anew a few times: where their arrays come to lie changes a step by a percent
+  // where the arrays of a solver lie in memory changes its step by a percent, so solvers are made anew a few times
   constexpr int rounds = 4;
-  const std::vector<double> shares{ 0, 0.1, 0.5, 1 };
+  const StepTimer timer = step_timer(settings, seconds / rounds);
+  const std::vector<double> shares = presence_shares();
   std::vector<PresenceCost> costs;
   for (const Effect effect :
        { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding, Effect::friction })
   {
-    std::vector<double> base;
-    std::vector<std::vector<double>> more(shares.size());
+    StepTimes times;
     for (int round = 0; round < rounds; ++round)
     {
       std::vector<std::unique_ptr<Solver>> solvers;
@@ -92,37 +94,24 @@ std::vector<PresenceCost> measure_presence(const SolverSettings& settings, doubl
         std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
         timed.push_back({ solvers.back().get(), controls });
       }
-      for (const auto& turn : time_in_turn(timed, seconds / rounds, is_alone(settings)))
-      {
-        base.push_back(turn[0]);
-        for (std::size_t s = 0; s < shares.size(); ++s)
-          more[s].push_back(turn[s] - turn[0]);
-      }
+      const StepTimes more = timer(timed);
+      times.insert(times.end(), more.begin(), more.end());
     }
     for (std::size_t s = 0; s < shares.size(); ++s)
-    {
-      const Spread spread = spread_of(more[s]);
-      costs.push_back({ effect, shares[s], spread.median, spread.half, spread_of(base).median });
-    }
+      costs.push_back({ effect, shares[s], spread_of_difference(times, s, 0), spread_of(times, 0).median });
   }
   return costs;
 }
 
 ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
-                                  double seconds)
+                                  const StepTimer& timer)
 {
   const auto one = make_solver(model, settings), all = make_solver(model, settings);
   Controls of_one = one->controls(), of_all = all->controls();
   of_one.activation.at(0) = 0.75f;
   std::fill(of_all.activation.begin(), of_all.activation.end(), 0.75f);
-  std::vector<double> ones, alls, differences;
-  for (const auto& turn : time_in_turn({ { one.get(), of_one }, { all.get(), of_all } }, seconds, is_alone(settings)))
-  {
-    ones.push_back(turn[0]);
-    alls.push_back(turn[1]);
-    differences.push_back(turn[1] - turn[0]);
-  }
-  return { spread_of(ones).median, spread_of(alls).median, spread_of(differences).half };
+  const StepTimes times = timer({ { one.get(), of_one }, { all.get(), of_all } });
+  return { spread_of(times, 0).median, spread_of(times, 1).median, spread_of_difference(times, 1, 0).half };
 }
 
 }  // namespace frontalis

@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-// seconds a step, over about so many steps; a GPU solver queues some, so that its skin is waited for
+// seconds per step, over about so many steps; a GPU solver queues steps, so its skin is read to wait for them
 double time_steps(Solver& solver, const Controls& controls, double steps, bool processor_time)
 {
   SkinState skin;
@@ -22,8 +22,20 @@ double time_steps(Solver& solver, const Controls& controls, double steps, bool p
   return (now() - start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
-// to where it has come of the way to its controls after so many wall seconds
-void bring(TimedSolver& timed, double seconds)
+// steps that take about `seconds`; as many as the clock needs to show half of that are tried, since a coarse clock
+// shows no time at all for a few
+double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
+{
+  for (double steps = 64;; steps *= 2)
+  {
+    const double taken = steps * time_steps(*timed.solver, timed.controls, steps, processor_time);
+    if (taken >= seconds / 2)
+      return std::max(32.0, steps * seconds / taken);
+  }
+}
+
+// goes to the controls, or as far as it comes in so many wall seconds
+void approach_controls(TimedSolver& timed, double seconds)
 {
   Solver& solver = *timed.solver;
   constexpr double ramp = 0.1;
@@ -52,18 +64,17 @@ double processor_seconds()
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wanted, double seconds,
-                                              bool processor_time, double patience)
+StepTimes time_in_turn(const std::vector<TimedSolver>& wanted, double seconds, bool processor_time, double patience)
 {
   constexpr double burst = 0.02;  // [s] of each solver in a turn
   std::vector<TimedSolver> solvers = wanted;
   std::vector<double> steps;
   for (TimedSolver& timed : solvers)
   {
-    bring(timed, patience > 0 ? patience : seconds);
-    steps.push_back(std::max(32.0, burst / time_steps(*timed.solver, timed.controls, 64, processor_time)));
+    approach_controls(timed, patience > 0 ? patience : seconds);
+    steps.push_back(steps_for(timed, burst, processor_time));
   }
-  std::vector<std::vector<double>> turns;
+  StepTimes turns;
   const double start = wall_seconds();
   while (turns.size() < 5 || wall_seconds() - start < seconds)
   {
@@ -74,7 +85,13 @@ std::vector<std::vector<double>> time_in_turn(const std::vector<TimedSolver>& wa
   return turns;
 }
 
-bool is_alone(const SolverSettings& settings)
+StepTimer step_timer(const SolverSettings& settings, double seconds)
+{
+  return [seconds, alone = works_alone(settings)](const std::vector<TimedSolver>& solvers)
+  { return time_in_turn(solvers, seconds, alone); };
+}
+
+bool works_alone(const SolverSettings& settings)
 {
   return settings.backend == "reference" || (settings.backend == "cpu" && settings.threads == 1);
 }
@@ -84,6 +101,22 @@ Spread spread_of(std::vector<double> values)
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   return { values[n / 2], 0.5 * (values[3 * n / 4] - values[n / 4]) };
+}
+
+Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less)
+{
+  std::vector<double> differences;
+  for (const std::vector<double>& turn : times)
+    differences.push_back(turn[more] - turn[less]);
+  return spread_of(std::move(differences));
+}
+
+Spread spread_of(const StepTimes& times, std::size_t column)
+{
+  std::vector<double> values;
+  for (const std::vector<double>& turn : times)
+    values.push_back(turn[column]);
+  return spread_of(std::move(values));
 }
 
 }  // namespace frontalis

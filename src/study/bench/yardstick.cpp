@@ -1,7 +1,7 @@
 #include "frontalis/study/yardstick.hpp"
 
-#include "study/bench/bare_loop.hpp"
 #include "frontalis/study/step_time.hpp"
+#include "study/bench/bare_loop.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -24,12 +24,6 @@ void on_threads(int threads, const std::function<void(int)>& task)
   task(0);
   for (auto& thread : team)
     thread.join();
-}
-
-double median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 BareLoopKernel widest_kernel()
@@ -64,7 +58,7 @@ double copy_bandwidth(int threads)
         { std::memcpy(to[static_cast<std::size_t>(t)].data(), from[static_cast<std::size_t>(t)].data(), bytes); });
     rates.push_back(2.0 * static_cast<double>(bytes) * threads / (wall_seconds() - start));
   }
-  return median(rates);
+  return spread_of(rates).median;
 }
 
 double bare_loop(int edge, int threads, double seconds)
@@ -97,7 +91,7 @@ double bare_loop(int edge, int threads, double seconds)
   for (auto& s : scratch)
     s.assign(6 * (static_cast<std::size_t>(n) * n + 64), 0);
 
-  // threads meet at a spinning barrier after every step, as the solver's do
+  // like the solver's threads, these wait for each other in a spinning barrier after every step
   const auto run = [&](int steps)
   {
     std::atomic<int> arrived{ 0 };
@@ -132,7 +126,7 @@ double bare_loop(int edge, int threads, double seconds)
     run(steps);
     rates.push_back(static_cast<double>(voxels) * steps / (wall_seconds() - start));
   }
-  return median(rates);
+  return spread_of(rates).median;
 }
 
 }  // namespace frontalis

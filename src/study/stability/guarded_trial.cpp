@@ -4,6 +4,8 @@
 #include "study/stability/stability_file.hpp"
 #include "study/stability/stability_models.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +17,7 @@ GuardedTrial::GuardedTrial(const StabilitySettings& settings, Trial& trial, std:
     : settings_(settings), trial_(trial), model_(std::move(model)), wants_ledger_(ledger)
 {
   settings.model(*model_);
-  // few voxels are not worth a second thread's waiting
+  // with few voxels threads would wait for each other longer than they work
   const int threads = model_->voxels.size() < 2000 ? 1 : 0;
   SolverSettings own{ settings.backend, threads, 0 };
   own.ledger = ledger;
@@ -40,23 +42,22 @@ void GuardedTrial::advance(double seconds, const Controls& target, int looks)
 {
   for (int i = 0; i < looks; ++i)
   {
-    // controls go on from where they are: each part gets its share of the way
+    // each part takes its share of the way from the present controls
     guard_->advance(seconds / looks, interpolate(solver_->controls(), target, 1.0 / (looks - i)));
-    look();
+    record();
     settings_.watch((i + 1.0) / looks);
   }
 }
 
-void GuardedTrial::come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
-                               const std::string& picture, const std::string& title)
+void GuardedTrial::play_and_release(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                                    const std::string& picture, const std::string& title)
 {
   for (const Phase& phase : phases)
     advance(phase.seconds, phase.target, phase.looks);
   plot(picture, title);
   advance(file.seconds("in_the_end"), controls(), 20);
-  expect_balance(of, file.bound("energy", "%"));
-  trial_.checks.push_back(
-      absolute_check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm")));
+  check_balance(file, of);
+  trial_.checks.absolute("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm"));
 }
 
 void GuardedTrial::settle(const Controls& target, double tolerance, double seconds)
@@ -68,9 +69,8 @@ void GuardedTrial::settle(const Controls& target, double tolerance, double secon
                                            return true;
                                          });
   if (!end.reached)
-    throw Error("no equilibrium within " + readable(seconds) + " s: " + readable(end.residual, 3) +
-                " of the displacement is still to go");
-  look();
+    throw Error(fmt::format("no equilibrium within {:g} s: {:.3g} of the displacement is left", seconds, end.residual));
+  record();
 }
 
 void GuardedTrial::hold_or_stop(const std::function<void()>& play)
@@ -83,9 +83,9 @@ void GuardedTrial::hold_or_stop(const std::function<void()>& play)
   {
     trial_.stopped = stop.what();
     const Monitor last = solver_->monitor();
-    trial_.checks.push_back(absolute_check("stopped in a state that is not finite", "", 0, last.finite ? 0 : 1, 0));
-    trial_.checks.push_back(
-        absolute_check("report names no voxel", "", 0, stop.report.voxel < 0 || stop.report.advice.empty() ? 1 : 0, 0));
+    trial_.checks.absolute("stopped in a state that is not finite", "", 0, last.finite ? 0 : 1, 0);
+    trial_.checks.absolute("report names no voxel", "", 0, stop.report.voxel < 0 || stop.report.advice.empty() ? 1 : 0,
+                           0);
   }
 }
 
@@ -95,7 +95,7 @@ void GuardedTrial::set(const Vectors& displacements, const Vectors& velocities)
   if (!velocities.empty())
     solver_->set_velocities(velocities);
   guard_->restart();
-  look();
+  record();
 }
 
 Vectors GuardedTrial::displacements() const
@@ -105,17 +105,17 @@ Vectors GuardedTrial::displacements() const
   return u;
 }
 
-void GuardedTrial::look()
+void GuardedTrial::record()
 {
   monitor_ = solver_->monitor();
   if (!monitor_.finite)
-    throw Error("energies are no longer finite at " + readable(solver_->time()) + " s");
+    throw Error(fmt::format("energies are no longer finite at {:g} s", solver_->time()));
   trial_.worst_jacobian = std::min(trial_.worst_jacobian, monitor_.worst_jacobian);
   if (!wants_ledger_)
     return;
   ledger_ = solver_->ledger();
   if (!std::isfinite(ledger_.imbalance()))
-    throw Error("the ledger of energies is no longer finite at " + readable(solver_->time()) + " s");
+    throw Error(fmt::format("the energy ledger is no longer finite at {:g} s", solver_->time()));
   worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
   largest_ = std::max(largest_, ledger_.largest);
   most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
@@ -123,20 +123,20 @@ void GuardedTrial::look()
                        monitor_.worst_jacobian });
 }
 
-void GuardedTrial::expect_balance(const std::string& of, double percent)
+void GuardedTrial::check_balance(const CaseFile& file, const std::string& of, const std::string& picture,
+                                 const std::string& title)
 {
   const double error = worst_imbalance_ / largest_;
   trial_.energy_error = std::fmax(trial_.energy_error, error);
   trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
-  trial_.checks.push_back(absolute_check("energy unexplained, " + of, "%", 0, 100 * error, percent));
+  trial_.checks.absolute("energy unexplained, " + of, "%", 0, 100 * error, file.bound("energy", "%"));
+  if (!picture.empty())
+    plot(picture, title);
 }
 
 void GuardedTrial::plot(const std::string& file, const std::string& title)
 {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = "time [s]";
-  plot.y_label = "energies over the largest, smallest J [1]";
+  Plot plot{ title, "time [s]", "energies over the largest, smallest J [1]" };
   plot.key = "below";
   plot.curves = { { "kinetic energy", {}, {}, Plot::Style::line },
                   { "stored energy", {}, {}, Plot::Style::line },
@@ -147,10 +147,7 @@ void GuardedTrial::plot(const std::string& file, const std::string& title)
     const std::array<double, 4> y{ { m.kinetic / largest_, m.stored / largest_, m.unexplained / largest_,
                                      m.jacobian } };
     for (std::size_t c = 0; c < y.size(); ++c)
-    {
-      plot.curves[c].x.push_back(m.time);
-      plot.curves[c].y.push_back(y[c]);
-    }
+      plot.curves[c].add(m.time, y[c]);
   }
   trial_.plots.emplace_back(file, plot);
 }

@@ -13,8 +13,7 @@ namespace frontalis
 
 class CaseFile;
 
-/// A guarded motion that is looked at as it goes on: energies, worst voxel, hourglass share. What it finds goes into
-/// its trial.
+/// A motion under the guard whose energies, worst voxel and hourglass share are recorded in a Trial.
 class GuardedTrial
 {
 public:
@@ -31,10 +30,10 @@ public:
   Solver& solver() { return *solver_; }
   const Model& model() const { return *model_; }
 
-  /// Every muscle at an activation, every bone at a pose.
+  /// Controls with every muscle at an activation and every bone at a pose.
   Controls controls(float activation = 0, const RigidTransform& pose = {}) const;
 
-  /// Advances in equal parts and looks after each.
+  /// Advances in equal parts and records energies after each.
   void advance(double seconds, const Controls& target, int looks = 1);
   struct Phase
   {
@@ -42,24 +41,26 @@ public:
     Controls target;
     int looks;
   };
-  /// Plays phases, plots them and leaves the model alone for a while (the case's in_the_end): energy must be explained
-  /// throughout to a share (bounds.energy), and no node be farther from where it rests in the end than bounds.left.
-  void come_and_go(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
-                   const std::string& picture, const std::string& title);
+  /// Plays phases, plots them and then releases the model for a while (the case's in_the_end). Checks that energy was
+  /// explained throughout to a share (bounds.energy) and that no node is farther from its rest than bounds.left.
+  void play_and_release(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
+                        const std::string& picture, const std::string& title);
   /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.
   void settle(const Controls& target, double tolerance, double seconds);
-  /// Plays a motion that may be too much: where the guard stops it, the trial has its report, and that the state is a
-  /// good one is checked.
+  /// Plays a motion that the guard may stop. Where it does, the trial gets the report, and the state is checked to be
+  /// good.
   void hold_or_stop(const std::function<void()>& play);
   /// Sets displacements [m] and, unless empty, velocities [m/s]; the ledger opens anew.
   void set(const Vectors& displacements, const Vectors& velocities = {});
 
   Vectors displacements() const;
-  const Monitor& monitor() const { return monitor_; }       ///< at the latest look
-  const EnergyLedger& energies() const { return ledger_; }  ///< the same
+  const Monitor& monitor() const { return monitor_; }       ///< when they were recorded last
+  const EnergyLedger& energies() const { return ledger_; }  ///< when they were recorded last
 
-  /// Checks that what the ledger left unexplained stayed within so many percent of its largest term.
-  void expect_balance(const std::string& of, double percent);
+  /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
+  /// motion to `picture` where that is not empty.
+  void check_balance(const CaseFile& file, const std::string& of, const std::string& picture = {},
+                     const std::string& title = {});
   /// Energies over time and the smallest J, as a picture.
   void plot(const std::string& file, const std::string& title);
 
@@ -69,7 +70,7 @@ private:
     double time, kinetic, stored, unexplained, jacobian;
   };
 
-  void look();
+  void record();
 
   const StabilitySettings& settings_;
   Trial& trial_;
@@ -79,8 +80,8 @@ private:
   bool wants_ledger_;
   Monitor monitor_;
   EnergyLedger ledger_;
-  double worst_imbalance_ = 0, most_hourglass_ = 0,
-         largest_ = 0;  // [J]; the ledger of a guarded motion goes back, these do not
+  // [J]; kept here, since the guard may take the ledger back to an earlier state
+  double worst_imbalance_ = 0, most_hourglass_ = 0, largest_ = 0;
   std::vector<Moment> moments_;
 };
 

@@ -1,16 +1,23 @@
 #include "frontalis/study/stability.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/study/step_time.hpp"
 #include "study/stability/stability_cases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 namespace frontalis
 {
+namespace
+{
+
+constexpr const char* line_format = "{:<20} {:<52} {:>18} {:>8} {:>9} {:>9} {:>8}  {}";
+
+}  // namespace
 
 bool Trial::passed() const
 {
@@ -27,8 +34,8 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
       const auto run = [file, play = play](const StabilitySettings& settings, Trial& trial)
       {
         play(settings, file, trial);
-        for (const std::string& key : file.idle())
-          trial.failure += (trial.failure.empty() ? "" : "; ") + key + " of its file is of no use";
+        if (const auto unused = file.unused(); !unused.empty())
+          trial.failure = fmt::format("the case does not use {} of its file", fmt::join(unused, ", "));
       };
       all.push_back({ name, true, file.hard(), file.text(), run });
     }
@@ -38,7 +45,7 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
 Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings)
 {
   Trial trial;
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_seconds();
   try
   {
     hard_case.run(settings, trial);
@@ -51,16 +58,14 @@ Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings
   {
     trial.failure = error.what();
   }
-  trial.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  trial.seconds = wall_seconds() - start;
   return trial;
 }
 
 std::string trial_heading()
 {
-  char line[300];
-  std::snprintf(line, sizeof line, "%-20s %-52s %18s %8s %9s %9s %8s  %s", "case", "what is hard", "voxels x steps",
-                "worst J", "energy", "hourglass", "seconds", "verdict");
-  return line;
+  return fmt::format(line_format, "case", "what is hard", "voxels x steps", "worst J", "energy", "hourglass", "seconds",
+                     "verdict");
 }
 
 std::string verdict_of(const Trial& trial)
@@ -72,28 +77,25 @@ std::string verdict_of(const Trial& trial)
   std::string failed;
   for (const Check& check : trial.checks)
     if (!check.passed())
-      failed += (failed.empty() ? "" : "; ") + check.name + ": " + readable(check.found, 4) + " " + check.unit +
-                " and not " + readable(check.expected, 4) + " within " +
-                readable(check.relative ? 100 * check.bound : check.bound, 3) +
-                (check.relative ? " %" : " " + check.unit);
+      failed += fmt::format("{}{}: {:.4g} {} and not {:.4g} within {}{}", failed.empty() ? "" : "; ", check.name,
+                            check.found, check.unit, check.expected, check.error_text(check.bound),
+                            check.relative ? "" : " " + check.unit);
   if (!failed.empty())
     return "FAILED: " + failed;
   if (trial.stopped.empty())
-    return trial.rollbacks > 0 ? "held; the guard went back " + std::to_string(trial.rollbacks) + " times" : "held";
+    return trial.rollbacks > 0 ? fmt::format("held; the guard went back {} times", trial.rollbacks) : "held";
   return "stopped with a report: " + trial.stopped;
 }
 
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial)
 {
+  if (!trial.skipped.empty())
+    return fmt::format(line_format, hard_case.name, hard_case.hard, "-", "-", "-", "-", "-", verdict_of(trial));
   const auto percent = [](double share) { return std::isnan(share) ? "-" : readable(100 * share, 2) + " %"; };
-  const bool ran = trial.skipped.empty();
-  char line[300];
-  std::snprintf(line, sizeof line, "%-20s %-52s %18s %8s %9s %9s %8s  ", hard_case.name.c_str(), hard_case.hard.c_str(),
-                ran ? (std::to_string(trial.voxels) + " x " + std::to_string(trial.steps)).c_str() : "-",
-                ran && std::isfinite(trial.worst_jacobian) ? readable(trial.worst_jacobian, 3).c_str() : "-",
-                ran ? percent(trial.energy_error).c_str() : "-", ran ? percent(trial.hourglass_share).c_str() : "-",
-                ran ? readable(trial.seconds, 2).c_str() : "-");
-  return line + verdict_of(trial);
+  return fmt::format(line_format, hard_case.name, hard_case.hard, fmt::format("{} x {}", trial.voxels, trial.steps),
+                     std::isfinite(trial.worst_jacobian) ? readable(trial.worst_jacobian, 3) : "-",
+                     percent(trial.energy_error), percent(trial.hourglass_share), readable(trial.seconds, 2),
+                     verdict_of(trial));
 }
 
 }  // namespace frontalis

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "study/stability/stability_file.hpp"
 #include "study/stability/guarded_trial.hpp"
+#include "study/stability/stability_file.hpp"
 
 namespace frontalis
 {
 
-// one function a family, cases by name; stability.cpp puts them together with their files
+// one function per family of cases, by name; stability.cpp combines them with their files
 using CaseFunctions = std::vector<std::pair<std::string, void (*)(const StabilitySettings&, const CaseFile&, Trial&)>>;
 CaseFunctions hard_materials();
 CaseFunctions hard_shapes();

@@ -1,9 +1,11 @@
-// what constraints make hard: ridges, edges, two surfaces at once, bones that jump, a head that is turned
+// hard cases of constraints: ridges, edges, two surfaces at once, bones that jump, a head that is turned
 
 #include "frontalis/physics/closest_point.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "study/stability/stability_cases.hpp"
 #include "study/stability/stability_models.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,16 +32,16 @@ double distance_to(const TriangleMesh& mesh, const Point& p)
   return nearest;
 }
 
-// the nodes for which the condition holds slide on a surface at the distance that they have
+// lets nodes that fulfil a condition slide on a surface at the distance that they have from it
 void slide(Model& model, const TriangleMesh& mesh, const std::function<bool(const Point&)>& condition, double sign = 1)
 {
   const auto surface = static_cast<std::int32_t>(model.constraint_surfaces.size());
-  model.constraint_surfaces.push_back({ "surface " + std::to_string(surface), mesh });
+  model.constraint_surfaces.push_back({ fmt::format("surface {}", surface), mesh });
   for (const auto node : nodes_where(model, condition))
     model.sliding.push_back({ node, surface, sign * distance_to(mesh, rest_position(model, node)) });
 }
 
-// largest error of the distances that sliding nodes keep [m], and how far one has come along x
+// largest error of the distances that sliding nodes keep, and the longest way of one along x [m]
 std::pair<double, double> slid(const GuardedTrial& motion)
 {
   double worst = 0, way = 0;
@@ -72,7 +74,8 @@ TriangleMesh strip_of(const std::vector<std::array<double, 2>>& profile)
 
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
-// `looks` times a look after an equal part of the case's `drag`; activation of each
+// drags the model for the case's `drag` and looks after each of `looks` equal parts; `activation` gives that of each
+// part
 void drag(
     const CaseFile& file, Trial& trial, GuardedTrial& motion, const std::string& of, double least_way, int looks,
     const std::function<float(int)>& activation = [](int) { return 0.0F; })
@@ -86,16 +89,15 @@ void drag(
     worst = std::max(worst, error);
     way = std::max(way, come);
   }
-  motion.expect_balance(of, file.bound("energy", "%"));
-  trial.checks.push_back(
-      absolute_check("error of kept distances, " + of, "um", 0, 1e6 * worst, file.bound("kept_distance", "um")));
-  trial.checks.push_back(absolute_check("has come that far short of " + readable(least_way) + " mm", "mm", 0,
-                                        std::max(0.0, least_way - 1e3 * way), 0));
+  motion.check_balance(file, of);
+  trial.checks.absolute("error of kept distances, " + of, "um", 0, 1e6 * worst, file.bound("kept_distance", "um"));
+  trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
+                        std::max(0.0, least_way - 1e3 * way), 0);
 }
 
 void sharp_ridge(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  // a roof of 53° in the way of a soft block; its nodes start over the left slope and the ridge
+  // a ridge of 53° in the way of a soft block whose nodes start over the left slope and the ridge
   VoxelBox box;
   box.size = file.size();
   box.materials = { neo_hookean(10e3, 0.49) };
@@ -115,29 +117,24 @@ void off_the_edge(const StabilitySettings& settings, const CaseFile& file, Trial
   const std::vector<double> ways = file.numbers("least_ways", "mm", rims.size());
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
-    Model model = soft_block(file.size());
-    model.damping = file.number("damping", "1/s");
+    Model model = damped_block(file);
     slide(model, strip_of({ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } }), underside);
     model.gravity = { { file.number("pull", "m/s2"), 0, -9.81 } };
     GuardedTrial motion(settings, trial, model);
     drag(file, trial, motion, "off an edge at " + readable(rims[i]) + " mm", ways[i], 40);
-    motion.plot("off_the_edge_" + std::to_string(i + 1),
-                "A block is dragged off an edge at " + readable(rims[i]) + " mm of the surface that it slides on");
+    motion.plot(fmt::format("off_the_edge_{}", i + 1),
+                fmt::format("A block is dragged off an edge at {:g} mm of the surface that it slides on", rims[i]));
   }
 }
 
 void two_surfaces(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  // one voxel between surfaces that are 0.6 mm apart where it starts, and 0.4 mm where it is drawn to
-  Model model = soft_block(file.size());
-  model.damping = file.number("damping", "1/s");
+  // a layer of one voxel between surfaces that are 0.6 mm apart where it starts and 0.4 mm where it ends
+  Model model = damped_block(file);
   slide(model, strip_of({ { -40e-3, 0.2e-3 }, { 60e-3, 0.2e-3 } }), underside, -1);
   slide(model, strip_of({ { -40e-3, 0.8e-3 }, { 10e-3, 0.8e-3 }, { 30e-3, 0.6e-3 }, { 60e-3, 0.6e-3 } }),
         [](const Point& p) { return !underside(p); });
-  add_muscles(model, { Muscle{ "sheet", 1e3 * file.number("stress", "kPa"), false, true } },
-              [](std::size_t) -> std::vector<Fibre> {
-                return { { 0, { { 1, 0, 0 } } } };
-              });
+  add_muscle(model, Muscle{ "sheet", 1e3 * file.number("stress", "kPa"), false, true }, along_x);
   model.gravity = { { file.number("pull", "m/s2"), 0, -9.81 } };
   GuardedTrial motion(settings, trial, model);
   drag(file, trial, motion, "between two surfaces", file.number("least_way", "mm"), 40,
@@ -147,8 +144,7 @@ void two_surfaces(const StabilitySettings& settings, const CaseFile& file, Trial
 
 void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  Model model = soft_block(file.size());
-  model.damping = file.number("damping", "1/s");
+  Model model = damped_block(file);
   hold_face(model, 0, false, "bone");
   RigidTransform jumped;
   const std::vector<double> jump_by = file.numbers("jump", "mm", 3);
@@ -160,13 +156,13 @@ void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& t
     const std::string name = jump.first;
     const double seconds = jump.second;
     GuardedTrial motion(settings, trial, model);
-    // ten times as fast as sound in the tissue
+    // the bone moves ten times as fast as sound in the tissue
     const bool violent = seconds < 1e-4;
     const auto play = [&]
     {
       motion.advance(seconds, motion.controls(0, jumped), 1);
       motion.advance(file.seconds("watched"), motion.controls(0, jumped), 40);
-      motion.expect_balance("within a " + name, file.bound("energy", "%"));
+      motion.check_balance(file, "within a " + name);
     };
     if (violent)
       motion.hold_or_stop(play);
@@ -177,16 +173,15 @@ void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& t
       continue;
     motion.advance(file.seconds("rest"), motion.controls(0, jumped), 10);
     const Vectors moved(model.nodes.size(), jumped.translation);
-    trial.checks.push_back(absolute_check(std::string("off its place after a jump within a ") + name, "um", 0,
-                                          1e6 * farthest(motion.displacements(), moved), file.bound("place", "um")));
+    trial.checks.absolute(std::string("off its place after a jump within a ") + name, "um", 0,
+                          1e6 * farthest(motion.displacements(), moved), file.bound("place", "um"));
   }
 }
 
-// a bone that is turned turns gravity for what hangs on it
+// turning a bone turns gravity for the tissue that hangs on it
 void turning_gravity(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  Model model = soft_block(file.size());
-  model.damping = file.number("damping", "1/s");
+  Model model = damped_block(file);
   model.gravity = { { 0, 0, -9.81 } };
   hold_face(model, 0, false, "head");
   GuardedTrial motion(settings, trial, model);
@@ -203,12 +198,11 @@ void turning_gravity(const StabilitySettings& settings, const CaseFile& file, Tr
       x *= angle;
     motion.advance(seconds, motion.controls(0, turned_about(axis, { { 0, 2e-3, 2e-3 } })), 4);
   }
-  motion.expect_balance("turned at random", file.bound("energy", "%"));
-  motion.plot("turning_gravity", "Gravity is switched on at once, and the head turned at random every 20 ms");
+  motion.check_balance(file, "turned at random", "turning_gravity",
+                       "Gravity is switched on at once, and the head turned at random every 20 ms");
   const Controls end = motion.solver().controls();
   motion.settle(end, 1e-4, file.seconds("longest_settling"));
-  trial.checks.push_back(
-      absolute_check("smallest J at rest", "1", 1, motion.monitor().worst_jacobian, file.bound("smallest_J")));
+  trial.checks.absolute("smallest J at rest", "1", 1, motion.monitor().worst_jacobian, file.bound("smallest_J"));
 }
 
 }  // namespace

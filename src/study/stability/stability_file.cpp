@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
@@ -12,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// "0.9", "20 ms", "2 %": false where it does not begin with a finite number
+// splits "0.9", "20 ms", "2 %"; false where the text does not begin with a finite number
 bool split(const std::string& text, double& number, std::string& unit)
 {
   const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -59,13 +60,13 @@ CaseFile::CaseFile(std::string path) : path_(std::move(path))
   }
   catch (const YAML::Exception& error)
   {
-    throw Error(path_ + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    throw Error(fmt::format("{}:{}: {}", path_, error.mark.line + 1, error.msg));
   }
   if (hard_.empty())
-    fault("hard", "is missing: what is hard about the case, in a few words");
+    fault("hard", "is missing; must say in a few words what makes the case hard");
   if (text_.empty())
-    fault("text", "is missing: what the case does and has to fulfil");
-  // CMake reads these: the tests that run by default
+    fault("text", "is missing; must say what the case does and has to fulfil");
+  // CMake makes a test of the case for each of these backends
   for (const std::string& backend : values("tests"))
     if (backend != "cpu" && backend != "reference")
       fault("tests", "'" + backend + "'; allowed are cpu and reference");
@@ -76,7 +77,7 @@ CaseFile::CaseFile(std::string path) : path_(std::move(path))
       fault("text", "has a { without a }");
     const auto found = values_.find(text_.substr(open + 1, close - open - 1));
     if (found == values_.end() || found->second.size() != 1)
-      fault("text", text_.substr(open, close - open + 1) + " stands for no value");
+      fault("text", text_.substr(open, close - open + 1) + " is no key with one value");
     text_.replace(open, close - open + 1, found->second[0]);
   }
 }
@@ -105,8 +106,8 @@ std::vector<double> CaseFile::numbers(const std::string& key, const std::string&
       fault(key, "'" + text + "'; must be a number " + (unit.empty() ? "without a unit" : "in " + unit));
   }
   if (numbers.empty() || (count > 0 && numbers.size() != count))
-    fault(key, "has " + std::to_string(numbers.size()) + " values; must have " +
-                   (count > 0 ? std::to_string(count) : "one or more"));
+    fault(key, fmt::format("has {} values; must have {}", numbers.size(),
+                           count > 0 ? fmt::to_string(count) : "one or more"));
   return numbers;
 }
 
@@ -132,13 +133,13 @@ std::array<std::int32_t, 3> CaseFile::size(const std::string& key) const
              static_cast<std::int32_t>(found[2]) } };
 }
 
-std::vector<std::string> CaseFile::idle() const
+std::vector<std::string> CaseFile::unused() const
 {
-  std::vector<std::string> idle;
+  std::vector<std::string> unused;
   for (const auto& [key, value] : values_)
     if (asked_.count(key) == 0)
-      idle.push_back(key);
-  return idle;
+      unused.push_back(key);
+  return unused;
 }
 
 }  // namespace frontalis

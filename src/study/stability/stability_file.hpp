@@ -10,27 +10,26 @@
 namespace frontalis
 {
 
-/// A hard case as it is written down (test/stability/NAME.yaml): what is hard, in words, its sizes, times and bounds.
-/// Values are a number with a unit behind it, or a list of such; keys of a mapping are reached by a dot
-/// ("bounds.energy"). Every function throws Error with file and key where a value is missing or has another unit than
-/// is asked for.
+/// The file of a hard case (test/stability/NAME.yaml): a description, sizes, times and bounds. A value is a number with
+/// its unit, or a list of such; keys inside a mapping are named with a dot ("bounds.energy"). Every function throws
+/// Error with file and key where a value is missing or does not have the unit that is asked for.
 class CaseFile
 {
 public:
   explicit CaseFile(std::string path);
 
-  const std::string& hard() const { return hard_; }  ///< what is hard about it, in a few words
-  const std::string& text() const { return text_; }  ///< markdown; {KEY} stands for the value of that key
+  const std::string& hard() const { return hard_; }  ///< what makes the case hard, in a few words
+  const std::string& text() const { return text_; }  ///< markdown, with the values of its keys in place of {KEY}
 
-  /// count 0: as many as there are.
+  /// `count` is how many there must be; 0: one or more.
   std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
   double number(const std::string& key, const std::string& unit = {}) const;
-  double seconds(const std::string& key) const;                             ///< of ms or s
+  double seconds(const std::string& key) const;                             ///< given in ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels
   double bound(const std::string& key, const std::string& unit = {}) const { return number("bounds." + key, unit); }
 
-  /// Keys that nobody has asked for.
-  std::vector<std::string> idle() const;
+  /// Keys that no function has been asked for: the case makes no use of them.
+  std::vector<std::string> unused() const;
 
 private:
   [[noreturn]] void fault(const std::string& key, const std::string& text) const;

@@ -10,12 +10,13 @@ namespace frontalis
 
 Material soft_tissue(double poisson) { return neo_hookean(34e3, poisson); }
 
-Model soft_block(const std::array<std::int32_t, 3>& size)
+Model soft_block(const std::array<std::int32_t, 3>& size) { return voxel_model(size, 1e-3, soft_tissue()); }
+
+Model damped_block(const CaseFile& file)
 {
-  VoxelBox box;
-  box.size = size;
-  box.materials = { soft_tissue() };
-  return voxel_model(box);
+  Model model = soft_block(file.size());
+  model.damping = file.number("damping", "1/s");
+  return model;
 }
 
 void hold(Model& model, const std::function<bool(const std::array<double, 3>&)>& condition, const std::string& bone)
@@ -72,6 +73,8 @@ void add_muscles(Model& model, const std::vector<Muscle>& muscles,
     model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
   }
 }
+
+std::array<float, 3> along_x(std::size_t) { return { { 1, 0, 0 } }; }
 
 Vectors displaced(const Model& model, const std::function<std::array<double, 3>(const std::array<double, 3>&)>& map)
 {

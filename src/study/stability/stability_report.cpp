@@ -1,5 +1,6 @@
-#include "frontalis/error.hpp"
 #include "study/stability/stability_cases.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -36,8 +37,7 @@ std::string trials_markdown(const Trials& trials)
   {
     const bool ran = trial.skipped.empty();
     overview.add({ "[" + hard_case.name + "](#" + hard_case.name + ")", hard_case.hard,
-                   ran ? Table::Cell(static_cast<double>(trial.voxels)) : Table::Cell(std::string()),
-                   ran ? Table::Cell(std::to_string(trial.steps)) : Table::Cell(std::string()),
+                   ran ? fmt::to_string(trial.voxels) : "", ran ? fmt::to_string(trial.steps) : "",
                    readable(finite_or_none(trial.worst_jacobian), 3), percent(trial.energy_error),
                    percent(trial.hourglass_share), readable(trial.seconds, 2),
                    trial.stopped.empty() ? verdict_of(trial) : "stopped with a report" });
@@ -48,21 +48,20 @@ std::string trials_markdown(const Trials& trials)
 void write_stability(const Trials& trials, const std::string& folder)
 {
   const std::filesystem::path pictures = std::filesystem::path(folder) / "stability";
-  std::error_code failed;
-  std::filesystem::create_directories(pictures, failed);
-  if (failed)
-    throw Error(pictures.string() + ": cannot be made: " + failed.message());
+  make_folder(pictures.string());
   std::string out =
-      "# Hard cases\n\nWritten by `./dev cli stability --all --mesh-dir DIR --markdown doc`; every figure is of one "
-      "run "
-      "of it, but for what is said of a GPU. What explicit codes fail at, as motions that must hold, or stop with a "
-      "report and the last good state. *Worst J* is the smallest volume ratio of a voxel that was seen, *energy* what "
-      "the energy ledger left unexplained and *hourglass* the energy of hourglass modes, both over the ledger's "
-      "largest term. A case passes when all its checks do, and every energy, volume ratio and displacement stayed "
-      "finite. Words, voxels, times and bounds stand in test/stability, a file a case. What is said to fail without a "
-      "measure was tried where a figure stands with it. `--models DIR` writes the model of each motion.\n";
+      "# Hard cases\n\nMotions that explicit codes fail at. Each must hold, or be stopped with a report and the last "
+      "good "
+      "state. A case passes when all its checks do and every energy, volume ratio and displacement stays finite.\n\n"
+      "*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and *hourglass* "
+      "the energy of hourglass modes, both over the largest term of the ledger. Each case has a file in test/stability "
+      "with its description, sizes, times and bounds. This document is written by `./dev cli stability --all "
+      "--mesh-dir "
+      "DIR --markdown doc`, and all figures but those of a GPU are from one run of it. `--models DIR` writes the model "
+      "of "
+      "each motion.\n";
   out += "\n" + trials_markdown(trials);
-  // of runs elsewhere and in full length
+  // a text about runs on other machines, written by hand
   std::ifstream elsewhere(pictures / "elsewhere.md");
   if (elsewhere)
     out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
@@ -77,9 +76,8 @@ void write_stability(const Trials& trials, const std::string& folder)
     {
       Table checks({ "check", "unit", "expected", "got", "bound", "" });
       for (const Check& check : trial.checks)
-        checks.add({ check.name, check.unit, check.expected, check.found,
-                     readable(check.relative ? 100 * check.bound : check.bound, 3) + (check.relative ? " %" : ""),
-                     std::string(check.passed() ? "pass" : "FAIL") });
+        checks.add(
+            { check.name, check.unit, check.expected, check.found, check.error_text(check.bound), check.verdict() });
       out += "\n" + checks.markdown();
     }
     for (const auto& [file, plot] : trial.plots)
@@ -88,7 +86,7 @@ void write_stability(const Trials& trials, const std::string& folder)
       out += "\n![" + plot.title + "](stability/" + file + ".png)\n";
     }
   }
-  write_text((std::filesystem::path(folder) / "stability.md").string(), out);
+  write_text((std::filesystem::path(folder) / "stability.md").string(), wrapped(out));
 }
 
 }  // namespace frontalis

@@ -1,4 +1,4 @@
-// what shapes make hard: crushed, twisted, scrambled, turning, dangling, slender voxels
+// hard cases of shapes: crushed, twisted, scrambled, turning, dangling and slender voxels
 
 #include "frontalis/study/equilibrium.hpp"
 #include "study/stability/stability_cases.hpp"
@@ -17,20 +17,18 @@ const double pi = std::acos(-1.0);
 
 using Point = std::array<double, 3>;
 
-// stored energy left over what there was
+// checks that the stored energy is gone and the voxels have their volumes again
 void expect_rest(const CaseFile& file, Trial& trial, GuardedTrial& motion, const std::string& of, double stored_before)
 {
   const Monitor& m = motion.monitor();
-  trial.checks.push_back(absolute_check("stored energy left, " + of, "1", 0, (m.internal + m.hourglass) / stored_before,
-                                        file.bound("stored_left")));
-  trial.checks.push_back(
-      absolute_check("smallest J in the end, " + of, "1", 1, m.worst_jacobian, file.bound("smallest_J")));
+  trial.checks.absolute("stored energy left, " + of, "1", 0, (m.internal + m.hourglass) / stored_before,
+                        file.bound("stored_left"));
+  trial.checks.absolute("smallest J in the end, " + of, "1", 1, m.worst_jacobian, file.bound("smallest_J"));
 }
 
 void crushed(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  Model model = soft_block(file.size());
-  model.damping = file.number("damping", "1/s");
+  Model model = damped_block(file);
   hold_face(model, 2, false);
   hold_face(model, 2, true, "press");
   GuardedTrial motion(settings, trial, model);
@@ -42,15 +40,14 @@ void crushed(const StabilitySettings& settings, const CaseFile& file, Trial& tri
   const double stored = motion.energies().internal + motion.energies().hourglass;
   motion.advance(press, motion.controls(), 20);
   motion.advance(file.seconds("rest"), motion.controls(), 20);
-  motion.expect_balance("pressed and let go", file.bound("energy", "%"));
-  motion.plot("crushed", "A block is pressed to a tenth of its height in 20 ms, and back");
+  motion.check_balance(file, "pressed and let go", "crushed",
+                       "A block is pressed to a tenth of its height in 20 ms, and back");
   expect_rest(file, trial, motion, "pressed", stored);
 }
 
 void twisted(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
-  Model model = soft_block(file.size());
-  model.damping = file.number("damping", "1/s");
+  Model model = damped_block(file);
   hold_face(model, 2, false);
   hold_face(model, 2, true, "grip");
   GuardedTrial motion(settings, trial, model);
@@ -62,12 +59,11 @@ void twisted(const StabilitySettings& settings, const CaseFile& file, Trial& tri
   for (const int quarter : { 1, 0 })
     motion.advance(quarter_turn, motion.controls(0, turned_about({ { 0, 0, quarter * pi / 2 } }, axis)), 10);
   motion.advance(file.seconds("rest"), motion.controls(), 20);
-  motion.expect_balance("turned by 180° and back", file.bound("energy", "%"));
-  motion.plot("twisted", "A bar's end is turned by 180° in 20 ms, and back");
+  motion.check_balance(file, "turned by 180° and back", "twisted", "A bar's end is turned by 180° in 20 ms, and back");
   expect_rest(file, trial, motion, "twisted", stored);
 }
 
-// no longer held by anything: what was forced on it is let go at once
+// a free block starts in a deformation that was forced on it, and is let go at once
 void released(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
 {
   const auto size = file.size();
@@ -91,8 +87,7 @@ void released(const StabilitySettings& settings, const CaseFile& file, Trial& tr
     motion.set(displaced(model, map));
     const double stored = motion.energies().initial;
     motion.advance(file.seconds("watched"), motion.controls(), 50);
-    motion.expect_balance(name, file.bound("energy", "%"));
-    motion.plot("released_" + name, "A free block is let go, " + name);
+    motion.check_balance(file, name, "released_" + name, "A free block is let go, " + name);
     motion.advance(file.seconds("rest"), motion.controls(), 10);
     expect_rest(file, trial, motion, name, stored);
   }
@@ -111,10 +106,9 @@ void scrambled(const StabilitySettings& settings, const CaseFile& file, Trial& t
          Form{ "assumed_strain", "assumed strain", HourglassControl::assumed_strain, Integration::one_point },
          Form{ "selective_reduced", "eight points", HourglassControl::scalar, Integration::selective_reduced } })
   {
-    Model model = soft_block(file.size());
+    Model model = damped_block(file);
     model.hourglass = form.hourglass;
     model.integration = form.integration;
-    model.damping = file.number("damping", "1/s");
     std::mt19937 random(7);
     // half a voxel in a random direction
     Vectors u(model.nodes.size());
@@ -134,9 +128,8 @@ void scrambled(const StabilitySettings& settings, const CaseFile& file, Trial& t
     motion.set(u);
     const double stored = motion.energies().initial;
     motion.advance(file.seconds("watched"), motion.controls(), 40);
-    motion.expect_balance(form.name, file.bound("energy", "%"));
-    motion.plot(std::string("scrambled_") + form.file,
-                std::string("Every node of a block moved by half a voxel, ") + form.name);
+    motion.check_balance(file, form.name, std::string("scrambled_") + form.file,
+                         std::string("Every node of a block moved by half a voxel, ") + form.name);
     motion.advance(file.seconds("rest"), motion.controls(), 10);
     expect_rest(file, trial, motion, form.name, stored);
   }
@@ -160,11 +153,10 @@ void rigid_rotation(const StabilitySettings& settings, const CaseFile& file, Tri
   motion.set(u, v);
   const double kinetic = motion.energies().kinetic;
   motion.advance(file.number("turns") * 2 * pi / rate, motion.controls(), 50);
-  motion.expect_balance("ten turns", file.bound("energy", "%"));
-  motion.plot("rigid_rotation", "A free block turns ten times");
-  trial.checks.push_back(relative_check("kinetic energy after ten turns", "uJ", 1e6 * kinetic,
-                                        1e6 * motion.energies().kinetic, 0.01 * file.bound("kinetic_energy", "%")));
-  // its diagonals keep their length
+  motion.check_balance(file, "ten turns", "rigid_rotation", "A free block turns ten times");
+  trial.checks.relative("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies().kinetic,
+                        0.01 * file.bound("kinetic_energy", "%"));
+  // the shape is kept where the diagonals keep their lengths
   const auto now = motion.displacements();
   double worst = 0;
   for (std::size_t n = 0; n < now.size(); ++n)
@@ -180,7 +172,7 @@ void rigid_rotation(const StabilitySettings& settings, const CaseFile& file, Tri
     if (before > 0)
       worst = std::max(worst, std::abs(std::sqrt(after / before) - 1));
   }
-  trial.checks.push_back(absolute_check("change of a diagonal", "%", 0, 100 * worst, file.bound("diagonal", "%")));
+  trial.checks.absolute("change of a diagonal", "%", 0, 100 * worst, file.bound("diagonal", "%"));
 }
 
 void dangling(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
@@ -188,7 +180,7 @@ void dangling(const StabilitySettings& settings, const CaseFile& file, Trial& tr
   VoxelBox box;
   box.size = file.size();
   box.materials = { soft_tissue() };
-  // a held slab, from which a sheet sticks out, a strip, one voxel by an edge, one by a corner; and one that is free
+  // a held slab with a sheet, a strip, a voxel by its edge and a voxel by its corner on it; and one voxel that is free
   box.fill = [](const std::array<std::int32_t, 3>& v) -> double
   {
     const bool top = v[2] == 6;
@@ -203,12 +195,11 @@ void dangling(const StabilitySettings& settings, const CaseFile& file, Trial& tr
   GuardedTrial motion(settings, trial, model);
   const double seconds = file.seconds("fall");
   motion.advance(seconds, motion.controls(), 50);
-  motion.expect_balance("hanging and falling", file.bound("energy", "%"));
-  motion.plot("dangling", "A sheet, a strip and single voxels hang by faces, an edge and a corner; one falls");
+  motion.check_balance(file, "hanging and falling", "dangling",
+                       "A sheet, a strip and single voxels hang by faces, an edge and a corner; one falls");
   const auto alone = nodes_where(model, [](const auto& p) { return p[2] < 1.5e-3; });
-  trial.checks.push_back(relative_check("fall of the free voxel", "mm", -1e3 * 0.5 * 9.81 * seconds * seconds,
-                                        1e3 * mean_displacement(motion.displacements(), alone)[2],
-                                        0.01 * file.bound("fall", "%")));
+  trial.checks.relative("fall of the free voxel", "mm", -1e3 * 0.5 * 9.81 * seconds * seconds,
+                        1e3 * mean_displacement(motion.displacements(), alone)[2], 0.01 * file.bound("fall", "%"));
 }
 
 void slender(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
@@ -229,13 +220,13 @@ void slender(const StabilitySettings& settings, const CaseFile& file, Trial& tri
     model.gravity[along] = -9.81;
     GuardedTrial motion(settings, trial, model);
     motion.advance(file.seconds("swing"), motion.controls(), 20);
-    motion.expect_balance(name, file.bound("energy", "%"));
-    motion.plot(long_way ? "slender_along" : "slender_across", "Voxels of 1 × 1 × 10 mm, " + name + " at once");
+    motion.check_balance(file, name, long_way ? "slender_along" : "slender_across",
+                         "Voxels of 1 × 1 × 10 mm, " + name + " at once");
     motion.settle(motion.controls(), 1e-4, file.seconds("longest_settling"));
     const auto end = nodes_where(model, [&](const auto& p) { return p[along] < 0.1e-3; });
-    trial.checks.push_back(relative_check(
-        "lengthening, " + name, "um", -1e6 * 1000 * 9.81 * length * length / (2 * 34e3),
-        1e6 * mean_displacement(motion.displacements(), end)[along], 0.01 * file.bound("lengthening", "%")));
+    trial.checks.relative("lengthening, " + name, "um", -1e6 * 1000 * 9.81 * length * length / (2 * 34e3),
+                          1e6 * mean_displacement(motion.displacements(), end)[along],
+                          0.01 * file.bound("lengthening", "%"));
   }
 }
 

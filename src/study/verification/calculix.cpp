@@ -4,6 +4,8 @@
 #include "frontalis/study/equilibrium.hpp"
 #include "frontalis/study/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +22,7 @@ namespace
 
 using Lattice = std::array<int, 3>;  // half elements from the origin
 
-// corners and middles of edges of the element at the origin, in CalculiX's order
+// corners and midpoints of the edges of the element at the origin, in CalculiX's order
 constexpr int element_nodes[20][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 },
                                        { 2, 0, 2 }, { 2, 2, 2 }, { 0, 2, 2 }, { 1, 0, 0 }, { 2, 1, 0 },
                                        { 1, 2, 0 }, { 0, 1, 0 }, { 1, 0, 2 }, { 2, 1, 2 }, { 1, 2, 2 },
@@ -66,7 +68,7 @@ std::string deck(const SolidProblem& problem, const Lattice& elements, std::vect
   for (std::size_t m = 0; m < problem.materials.size(); ++m)
   {
     const auto& p = problem.materials[m].parameters;
-    const std::string name = std::to_string(m);
+    const std::string name = fmt::to_string(m);
     solids << "*ELEMENT,TYPE=C3D20R,ELSET=E" << name << '\n' << of_material[m].str();
     sections << "*MATERIAL,NAME=M" << name << "\n*HYPERELASTIC,NEO HOOKE\n"
              << 0.5e-6 * p[0] << ',' << 2e6 / p[1] << "\n*DENSITY\n"
@@ -102,12 +104,12 @@ std::string text_of(const std::filesystem::path& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// the last block of ccx's table of that name; `unit` turns its numbers to SI
+// the last table of that name in the output; `unit` converts its numbers to SI units
 Vectors last_block(const std::string& output, const std::string& name, std::size_t count, double unit)
 {
   const std::size_t at = output.rfind(name);
   if (at == std::string::npos)
-    throw Error("CalculiX: its output has no " + name);
+    throw Error("CalculiX: its output has no table of " + name);
   std::istringstream in(output.substr(output.find('\n', at)));
   Vectors values(count);
   std::size_t node = 0;
@@ -115,8 +117,7 @@ Vectors last_block(const std::string& output, const std::string& name, std::size
   {
     in >> node;
     if (!in || node < 1 || node > count)
-      throw Error("CalculiX: its " + name + " end after " + std::to_string(n) + " of " + std::to_string(count) +
-                  " nodes");
+      throw Error(fmt::format("CalculiX: its table of {} ends after {} of {} nodes", name, n, count));
     for (double& c : values[node - 1])
     {
       in >> c;
@@ -170,9 +171,7 @@ SolidState solve_by_voxels(const SolidProblem& problem, double edge, double peri
       if (hold.where(state.positions[n]))
         prescribe(model, { static_cast<std::int32_t>(n) }, hold.components, hold.displacement(state.positions[n]));
   }
-  EquilibriumSettings relax;
-  relax.backend = backend;
-  relax.period = period;
+  EquilibriumSettings relax{ backend, period };
   relax.tolerance = 5e-4;
   RestState rest = find_equilibrium(model, relax);
   state.displacements = rest.displacements;

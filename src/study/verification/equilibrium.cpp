@@ -3,6 +3,8 @@
 #include "frontalis/error.hpp"
 #include "frontalis/solver/guard.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +18,7 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
   RestState result;
-  // few voxels are not worth a second thread's waiting
+  // with few voxels threads would wait for each other longer than they work
   const int threads = model.voxels.size() < 2000 ? 1 : 0;
   const auto shared = std::make_shared<const Model>(std::move(model));
   result.solver = make_solver(shared, { settings.backend, threads, 0 });
@@ -27,8 +29,8 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   guard.advance(settings.ramp * settings.period, target);
   const Equilibrium end = guard.settle(target, settings.tolerance, settings.longest * settings.period);
   if (!end.reached)
-    throw Error("no equilibrium within " + std::to_string(settings.longest) + " periods of " +
-                std::to_string(settings.period) + " s: " + std::to_string(end.residual) + " of the motion is left");
+    throw Error(fmt::format("no equilibrium within {:g} periods of {:g} s: {:.3g} of the displacement is left",
+                            settings.longest, settings.period, end.residual));
   result.solver->displacements(result.displacements);
   return result;
 }

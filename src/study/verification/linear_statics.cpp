@@ -3,18 +3,17 @@
 #include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <memory>
-#include <numeric>
 
 namespace frontalis
 {
 namespace
 {
 
-using Matrix = std::vector<double>;  // 24 x 24: 3 * corner + axis
+using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
 
 // a voxel of the model alone
 Model lone_voxel(const Model& model, std::size_t e)
@@ -38,7 +37,7 @@ Model lone_voxel(const Model& model, std::size_t e)
   return one;
 }
 
-// what tells voxels of different make apart
+// the properties of a voxel that decide its stiffness
 std::vector<float> make_of(const Model& model, std::size_t e)
 {
   std::vector<float> make{ model.fill[e] };
@@ -52,48 +51,85 @@ std::vector<float> make_of(const Model& model, std::size_t e)
   return make;
 }
 
-Matrix element_stiffness(const Model& model, std::size_t e, const std::array<double, 9>& gradient)
+ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::array<double, 9>& gradient)
 {
   const auto one = std::make_shared<const Model>(lone_voxel(model, e));
   const auto solver = make_solver(one, { "reference", 1, 0 });
-  Vectors u(8), f[2];
-  for (std::size_t b = 0; b < 8; ++b)
-  {
-    const auto p = rest_position(*one, b);
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        u[b][i] += (gradient[3 * i + j] - (i == j ? 1 : 0)) * p[j];
-  }
+  const Vectors u = affine_displacements(*one, gradient);
   const double step = 1e-6 * *std::min_element(model.spacing.begin(), model.spacing.end());
-  Matrix k(576);
-  for (std::size_t column = 0; column < 24; ++column)
+  ElementMatrix k;
+  Vectors before, after;
+  for (int column = 0; column < 24; ++column)
   {
-    for (int side = 0; side < 2; ++side)
-    {
-      Vectors moved = u;
-      moved[column / 3][column % 3] += side == 0 ? -step : step;
-      solver->set_displacements(moved);
-      solver->internal_forces(f[side]);
-    }
-    for (std::size_t row = 0; row < 24; ++row)
-      k[24 * row + column] = (f[1][row / 3][row % 3] - f[0][row / 3][row % 3]) / (2 * step);
+    Vectors moved = u;
+    double& component = moved[column / 3][column % 3];
+    component -= step;
+    solver->set_displacements(moved);
+    solver->internal_forces(before);
+    component += 2 * step;
+    solver->set_displacements(moved);
+    solver->internal_forces(after);
+    for (int row = 0; row < 24; ++row)
+      k(row, column) = (after[row / 3][row % 3] - before[row / 3][row % 3]) / (2 * step);
   }
   // symmetric but for rounding
-  for (std::size_t row = 0; row < 24; ++row)
-    for (std::size_t column = 0; column < row; ++column)
-      k[24 * row + column] = k[24 * column + row] = 0.5 * (k[24 * row + column] + k[24 * column + row]);
-  return k;
+  return 0.5 * (k + k.transpose());
 }
 
 }  // namespace
 
+// Voxels join only neighbouring planes of nodes, so the stiffness is block tridiagonal in the planes across the longest
+// axis of the grid. Its Cholesky factors are those of the dense blocks of planes.
+struct LinearStatics::System
+{
+  struct Unknown
+  {
+    int plane = 0, row = -1;  // row in the plane's block; -1: the component is fixed
+  };
+  std::vector<std::array<Unknown, 3>> unknowns;    // of each component of each node
+  Vectors fixed;                                   // prescribed displacements
+  std::vector<Eigen::VectorXd> forces;             // of each plane: exerted by the prescribed displacements
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // factor of the block of each plane
+  std::vector<Eigen::MatrixXd> next;               // factor of the block that joins a plane to the next one
+  bool positive_definite = true;
+
+  void factorise(std::vector<Eigen::MatrixXd> diagonal)
+  {
+    for (std::size_t p = 0; p < diagonal.size() && positive_definite; ++p)
+    {
+      plane.emplace_back(diagonal[p]);
+      positive_definite = plane.back().info() == Eigen::Success;
+      if (p + 1 == diagonal.size() || !positive_definite)
+        continue;
+      plane[p].matrixU().solveInPlace<Eigen::OnTheRight>(next[p]);
+      diagonal[p + 1].noalias() -= next[p] * next[p].transpose();
+    }
+  }
+
+  void solve_in_place(std::vector<Eigen::VectorXd>& x) const
+  {
+    for (std::size_t p = 0; p < x.size(); ++p)
+    {
+      if (p > 0)
+        x[p].noalias() -= next[p - 1] * x[p - 1];
+      plane[p].matrixL().solveInPlace(x[p]);
+    }
+    for (std::size_t p = x.size(); p-- > 0;)
+    {
+      if (p + 1 < x.size())
+        x[p].noalias() -= next[p].transpose() * x[p + 1];
+      plane[p].matrixU().solveInPlace(x[p]);
+    }
+  }
+};
+
 LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gradient)
+    : system_(std::make_unique<System>())
 {
   if (!model.muscles.empty() || !model.sliding.empty())
-    throw Error("linear statics has neither muscles nor sliding nodes");
-  const std::size_t nodes = model.nodes.size();
-  std::vector<std::array<bool, 3>> held(nodes, { { false, false, false } });
-  fixed_.assign(nodes, { { 0, 0, 0 } });
+    throw Error("linear statics: the model has muscles or sliding nodes; it must have neither");
+  std::vector<std::array<bool, 3>> held(model.nodes.size(), { { false, false, false } });
+  system_->fixed.assign(model.nodes.size(), { { 0, 0, 0 } });
   for (const auto& rigid : model.rigid)
     held[rigid.node] = { { true, true, true } };
   for (const auto& [node, load] : model.prescribed)
@@ -101,131 +137,71 @@ LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gr
       if (model.loads[load].fixed[axis])
       {
         held[node][axis] = true;
-        fixed_[node][axis] = model.loads[load].value[axis];
+        system_->fixed[node][axis] = model.loads[load].value[axis];
       }
-
-  // unknowns are numbered along the longest way through the grid: a narrow band
-  std::array<int, 3> axes{ { 0, 1, 2 } };
-  std::sort(axes.begin(), axes.end(), [&](int a, int b) { return model.size[a] > model.size[b]; });
-  std::vector<std::size_t> order(nodes);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b)
-            {
-              for (const int axis : axes)
-                if (model.nodes[a][axis] != model.nodes[b][axis])
-                  return model.nodes[a][axis] < model.nodes[b][axis];
-              return false;
-            });
-  unknown_.assign(nodes, { { -1, -1, -1 } });
-  for (const auto node : order)
+  const auto along = std::max_element(model.size.begin(), model.size.end()) - model.size.begin();
+  const std::size_t planes = static_cast<std::size_t>(model.size[along]) + 1;
+  std::vector<int> rows(planes, 0);
+  system_->unknowns.resize(model.nodes.size());
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
-      if (!held[node][axis])
-        unknown_[node][axis] = static_cast<std::int32_t>(count_++);
-  assemble(model, gradient);
-  factorise();
-}
+    {
+      const int plane = model.nodes[n][along];
+      system_->unknowns[n][axis] = { plane, held[n][axis] ? -1 : rows[plane]++ };
+    }
 
-void LinearStatics::assemble(const Model& model, const std::array<double, 9>& gradient)
-{
-  for (const auto& corners : model.voxel_nodes)
+  std::vector<Eigen::MatrixXd> diagonal;
+  for (std::size_t p = 0; p < planes; ++p)
   {
-    std::int32_t lowest = static_cast<std::int32_t>(count_), highest = -1;
-    for (const auto node : corners)
-      for (const auto unknown : unknown_[node])
-        if (unknown >= 0)
-        {
-          lowest = std::min(lowest, unknown);
-          highest = std::max(highest, unknown);
-        }
-    width_ = std::max(width_, static_cast<std::size_t>(std::max(highest - lowest, 0)));
+    diagonal.emplace_back(Eigen::MatrixXd::Zero(rows[p], rows[p]));
+    system_->forces.emplace_back(Eigen::VectorXd::Zero(rows[p]));
+    if (p + 1 < planes)
+      system_->next.emplace_back(Eigen::MatrixXd::Zero(rows[p + 1], rows[p]));
   }
-  band_.assign(count_ * (width_ + 1), 0);
-  right_.assign(count_, 0);
-  std::map<std::vector<float>, Matrix> known;
+  std::map<std::vector<float>, ElementMatrix> known;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    const auto entry = known.try_emplace(make_of(model, e));
-    Matrix& k = entry.first->second;
-    if (entry.second)
-      k = element_stiffness(model, e, gradient);
-    for (std::size_t row = 0; row < 24; ++row)
+    const auto [entry, is_new] = known.try_emplace(make_of(model, e));
+    if (is_new)
+      entry->second = element_stiffness(model, e, gradient);
+    const ElementMatrix& k = entry->second;
+    for (int row = 0; row < 24; ++row)
     {
-      const auto i = unknown_[model.voxel_nodes[e][row / 3]][row % 3];
-      for (std::size_t column = 0; i >= 0 && column < 24; ++column)
+      const auto [plane, i] = system_->unknowns[model.voxel_nodes[e][row / 3]][row % 3];
+      for (int column = 0; i >= 0 && column < 24; ++column)
       {
         const auto node = model.voxel_nodes[e][column / 3];
-        const auto j = unknown_[node][column % 3];
+        const auto [other, j] = system_->unknowns[node][column % 3];
         if (j < 0)
-          right_[i] -= k[24 * row + column] * fixed_[node][column % 3];
-        else if (j <= i)
-          band_[static_cast<std::size_t>(j) * (width_ + 1) + static_cast<std::size_t>(i - j)] += k[24 * row + column];
+          system_->forces[plane][i] -= k(row, column) * system_->fixed[node][column % 3];
+        else if (other <= plane)
+          (other == plane ? diagonal[plane] : system_->next[other])(i, j) += k(row, column);
       }
     }
   }
+  system_->factorise(std::move(diagonal));
 }
 
-void LinearStatics::factorise()
-{
-  const std::size_t stride = width_ + 1;
-  for (std::size_t j = 0; j < count_; ++j)
-  {
-    double* const column = band_.data() + j * stride;
-    if (!(column[0] > 0))
-    {
-      positive_definite_ = false;
-      return;
-    }
-    const double scale = 1 / std::sqrt(column[0]);
-    const std::size_t last = std::min(width_, count_ - 1 - j);
-    for (std::size_t r = 0; r <= last; ++r)
-      column[r] *= scale;
-    for (std::size_t k = 1; k <= last; ++k)
-    {
-      const double factor = column[k];
-      if (factor == 0)
-        continue;
-      double* const other = column + k * stride;
-      for (std::size_t r = k; r <= last; ++r)
-        other[r - k] -= factor * column[r];
-    }
-  }
-}
+LinearStatics::~LinearStatics() = default;
 
-void LinearStatics::back_substitute(std::vector<double>& x) const
-{
-  const std::size_t stride = width_ + 1;
-  for (std::size_t j = 0; j < count_; ++j)
-  {
-    const double* const column = band_.data() + j * stride;
-    x[j] /= column[0];
-    for (std::size_t r = 1; r <= std::min(width_, count_ - 1 - j); ++r)
-      x[j + r] -= column[r] * x[j];
-  }
-  for (std::size_t j = count_; j-- > 0;)
-  {
-    const double* const column = band_.data() + j * stride;
-    for (std::size_t r = 1; r <= std::min(width_, count_ - 1 - j); ++r)
-      x[j] -= column[r] * x[j + r];
-    x[j] /= column[0];
-  }
-}
+bool LinearStatics::positive_definite() const { return system_->positive_definite; }
 
 Vectors LinearStatics::solve(const Vectors& forces) const
 {
-  if (!positive_definite_)
+  if (!positive_definite())
     throw Error("linear statics: the stiffness is not positive definite");
-  std::vector<double> x = right_;
-  for (std::size_t n = 0; n < unknown_.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      if (unknown_[n][axis] >= 0)
-        x[unknown_[n][axis]] += forces[n][axis];
-  back_substitute(x);
-  Vectors u = fixed_;
-  for (std::size_t n = 0; n < unknown_.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      if (unknown_[n][axis] >= 0)
-        u[n][axis] = x[unknown_[n][axis]];
+  std::vector<Eigen::VectorXd> x = system_->forces;
+  Vectors u = system_->fixed;
+  const auto for_each_unknown = [&](const auto& visit)
+  {
+    for (std::size_t n = 0; n < u.size(); ++n)
+      for (int axis = 0; axis < 3; ++axis)
+        if (const auto [plane, row] = system_->unknowns[n][axis]; row >= 0)
+          visit(x[plane][row], n, axis);
+  };
+  for_each_unknown([&](double& value, std::size_t n, int axis) { value += forces[n][axis]; });
+  system_->solve_in_place(x);
+  for_each_unknown([&](double value, std::size_t n, int axis) { u[n][axis] = value; });
   return u;
 }
 
@@ -238,7 +214,7 @@ Vectors face_forces(const Model& model, int axis, std::int32_t index, const std:
     for (const int side : { 0, 1 })
     {
       const auto first = corners[static_cast<std::size_t>(side) << axis];
-      // the face of the voxel on the plane, but each face of the model once: its outer side
+      // a face that two voxels share is counted by the lower one alone; the plane 0 has no lower ones
       if (model.nodes[first][axis] != index || (side == 0 && index != 0))
         continue;
       for (std::size_t b = 0; b < 8; ++b)

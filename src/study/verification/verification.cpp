@@ -1,34 +1,16 @@
 #include "frontalis/study/verification.hpp"
 
+#include "frontalis/error.hpp"
 #include "study/verification/verification_cases.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
 
 namespace frontalis
 {
-namespace
-{
-
-Check check_of(std::string name, std::string unit, double expected, double found, double bound, bool relative)
-{
-  Check check{ std::move(name), std::move(unit), expected, found, std::abs(found - expected), bound, relative };
-  if (relative)
-    check.error /= std::abs(expected);
-  return check;
-}
-
-}  // namespace
-
-Check relative_check(std::string name, std::string unit, double expected, double found, double bound)
-{
-  return check_of(std::move(name), std::move(unit), expected, found, bound, true);
-}
-
-Check absolute_check(std::string name, std::string unit, double expected, double found, double bound)
-{
-  return check_of(std::move(name), std::move(unit), expected, found, bound, false);
-}
 
 std::vector<VerificationCase> verification_cases()
 {
@@ -53,37 +35,115 @@ std::vector<VerificationCase> verification_cases()
            { "calculix", false, verify_calculix } };
 }
 
-std::string check_line(const std::string& name, const Check& check)
+void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>& condition)
 {
-  const auto share = [&](double value) -> std::string
-  {
-    if (std::isnan(value))
-      return "-";
-    return check.relative ? readable(100 * value, 3) + " %" : readable(value, 3);
-  };
-  const char* const verdict = std::isnan(check.bound) ? "shown" : check.passed() ? "pass" : "FAIL";
-  char line[400];
-  std::snprintf(line, sizeof line, "%-17s %-44s %12s %12s %-6s %10s %8s  %s", name.c_str(), check.name.c_str(),
-                readable(check.expected).c_str(), readable(check.found).c_str(), check.unit.c_str(),
-                share(check.error).c_str(), share(check.bound).c_str(), verdict);
-  return line;
+  for (const auto node : nodes_where(model, condition))
+    model.rigid.push_back({ node, -1 });
 }
 
-double slope(const std::vector<double>& x, const std::vector<double>& y)
+Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range)
 {
-  double mx = 0, my = 0, xx = 0, xy = 0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i)
+  Plot plot{ title, x_label, y_label };
+  plot.x_log = plot.y_log = true;
+  plot.x_ticks = x_ticks;
+  plot.x_range = x_range;
+  plot.key = "below";
+  return plot;
+}
+
+std::string findings_json(const Findings& findings)
+{
+  Table table({ "case", "check", "unit", "expected", "found", "error", "bound", "relative", "verdict" });
+  for (const auto& [name, finding] : findings)
   {
-    mx += std::log(x[i]) / n;
-    my += std::log(y[i]) / n;
+    for (const auto& check : finding.checks)
+      table.add({ name, check.name, check.unit, check.expected, check.found, check.error, check.bound,
+                  check.relative ? "yes" : "no", check.verdict() });
+    if (!finding.skipped.empty())
+      table.add({ name, finding.skipped, "", std::nan(""), std::nan(""), std::nan(""), std::nan(""), "", "skipped" });
   }
-  for (std::size_t i = 0; i < x.size(); ++i)
+  return table.json();
+}
+
+namespace
+{
+
+struct CaseText
+{
+  std::string title, before, after;  // markdown before and after the figures
+};
+
+// the sections of a file of texts, by name of their case
+std::map<std::string, CaseText> read_texts(const std::string& path)
+{
+  std::ifstream file(path);
+  if (!file)
+    throw Error(path + ": cannot be read; must have the texts of the manual");
+  std::map<std::string, CaseText> texts;
+  CaseText ignored;  // what stands above the first section
+  CaseText* text = &ignored;
+  std::string* part = &ignored.before;
+  for (std::string line; std::getline(file, line);)
+    if (const std::size_t colon = line.find(": "); line.rfind("## ", 0) == 0 && colon != std::string::npos)
+    {
+      text = &texts[line.substr(3, colon - 3)];
+      text->title = line.substr(colon + 2);
+      part = &text->before;
+    }
+    else if (line.rfind("### ", 0) == 0)
+      part = &text->after;
+    else if (!line.empty() || !part->empty())
+      *part += line + '\n';
+  for (auto& [name, of_case] : texts)
+    for (std::string* const end : { &of_case.before, &of_case.after })
+      end->erase(end->find_last_not_of('\n') + 1);
+  return texts;
+}
+
+}  // namespace
+
+void write_manual(const Findings& findings, const std::string& path)
+{
+  const std::filesystem::path manual(path);
+  const auto pictures = manual.parent_path() / manual.stem();
+  make_folder(pictures.string());
+  const std::map<std::string, CaseText> texts = read_texts((pictures / "text.md").string());
+  std::string out =
+      "# Verification\n\nThe solver against closed forms, published figures and CalculiX. The table says how many "
+      "checks "
+      "of each case pass; a check passes when its error is within its bound. Figures without a bound are only *shown*. "
+      "Errors and bounds in % are relative.\n\nThis document is written by `./dev cli verify --markdown "
+      "doc/verification.md` with the texts of verification/text.md, and all figures are from one run of it.\n";
+  Table overview({ "case", "checks", "passed" });
+  std::string sections;
+  for (const auto& [name, finding] : findings)
   {
-    xx += (std::log(x[i]) - mx) * (std::log(x[i]) - mx);
-    xy += (std::log(x[i]) - mx) * (std::log(y[i]) - my);
+    const auto text = texts.find(name);
+    if (text == texts.end())
+      throw Error((pictures / "text.md").string() + ": has no section '## " + name + ": TITLE'");
+    const auto& checks = finding.checks;
+    const auto is_bounded = [](const Check& check) { return !std::isnan(check.bound); };
+    const auto passes = [&](const Check& check) { return is_bounded(check) && check.passed(); };
+    overview.add({ "[" + text->second.title + "](#" + name + ")",
+                   static_cast<double>(std::count_if(checks.begin(), checks.end(), is_bounded)),
+                   static_cast<double>(std::count_if(checks.begin(), checks.end(), passes)) });
+    sections += "\n## " + text->second.title + "\n\n<a id=\"" + name + "\"></a>\n" + text->second.before + "\n";
+    if (!finding.skipped.empty())
+      sections += "\nSkipped: " + finding.skipped + "\n";
+    if (!checks.empty())
+      sections += "\n" + check_table(checks).markdown();
+    for (const auto& [caption, table] : finding.tables)
+      sections += "\n" + caption + ":\n\n" + table.markdown();
+    for (const auto& [file, plot] : finding.plots)
+    {
+      write_plot(plot, (pictures / file).string());
+      sections += "\n![" + plot.title + "](" + manual.stem().string() + "/" + file + ".png)\n";
+    }
+    if (!text->second.after.empty())
+      sections += "\n" + text->second.after + "\n";
   }
-  return xy / xx;
+  write_text(path, wrapped(out + "\n" + overview.markdown() + sections));
 }
 
 }  // namespace frontalis

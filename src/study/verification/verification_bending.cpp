@@ -1,8 +1,10 @@
-// bending: hourglass control against a converged solution, and what vibrates
+// bending with each hourglass control against a converged solution, and periods of vibration
 
 #include "frontalis/study/equilibrium.hpp"
 #include "frontalis/study/linear_statics.hpp"
 #include "study/verification/verification_cases.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +23,7 @@ struct Deflection
   double tip_force, own_weight;
 };
 
-// a square cantilever of `n` voxels through its height; forces are small: only ratios are of interest
+// deflections of a square cantilever of `n` voxels through its height; forces are small, since only ratios matter
 Deflection deflection(double poisson, int n, HourglassControl form, const Ratio& ratio,
                       Integration integration = Integration::one_point)
 {
@@ -36,8 +38,7 @@ Deflection deflection(double poisson, int n, HourglassControl form, const Ratio&
   Model model = voxel_model(box);
   model.hourglass = form;
   model.integration = integration;
-  for (const auto node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
-    model.rigid.push_back({ node, -1 });
+  clamp(model, [](const auto& p) { return p[0] == 0; });
   const LinearStatics statics(model);
   const auto end = nodes_where(model, [&](const auto& p) { return p[0] > length - 0.1 * unit; });
   Vectors weight(model.nodes.size());
@@ -53,29 +54,19 @@ Deflection deflection(double poisson, int n, HourglassControl form, const Ratio&
 Finding verify_cantilever(const VerificationSettings&)
 {
   Finding finding;
-  finding.title = "Bending with few voxels through the thickness";
-  finding.text =
-      "A square cantilever, 10 heights long, wholly clamped, under a small shear force spread over its end; "
-      "deflection of the end over the converged one (assumed strain at 4 and 8 voxels through the height, "
-      "extrapolated by Richardson; the scalar form goes to the same value). Boxes 2:1 have their long edges "
-      "where the three digits say 2 (along the beam, across it, through its height). Bounds: scalar 7 % on "
-      "cubes; assumed strain 3 % on cubes and 6 % on 2:1 boxes.";
   Table table({ "ν", "edges", "voxels", "scalar [%]", "assumed strain [%]", "own weight: scalar [%]",
                 "own weight: assumed strain [%]" });
   Table selective({ "ν", "1 voxel", "2", "4", "8" });
   const std::vector<Ratio> ratios{ { { 1, 1, 1 } }, { { 2, 1, 1 } }, { { 1, 2, 1 } }, { { 1, 1, 2 } },
                                    { { 2, 2, 1 } }, { { 2, 1, 2 } }, { { 1, 2, 2 } } };
-  Plot plot;
-  plot.title = "Deflection of a square cantilever, Poisson ratio 0.49";
-  plot.x_label = "voxels through the height [1]";
-  plot.y_label = "error of the deflection [%]";
+  Plot plot{ "Deflection of a square cantilever, Poisson ratio 0.49", "voxels through the height [1]",
+             "error of the deflection [%]" };
   plot.x_log = true;
-  plot.x_from = 0.9;
-  plot.x_to = 4.5;
+  plot.x_range = { 0.9, 4.5 };
   plot.x_ticks = { 1, 2, 4 };
   plot.key = "below";
   for (const char* const name : { "scalar, cubes", "assumed strain, cubes", "assumed strain, 2:1 along the beam" })
-    plot.curves.push_back({ name, {}, {}, Plot::Style::line_and_points });
+    plot.curves.push_back({ name });
   for (const double poisson : { 0.3, 0.45, 0.49 })
   {
     const auto coarse = deflection(poisson, 4, HourglassControl::assumed_strain, ratios[0]);
@@ -89,7 +80,7 @@ Finding verify_cantilever(const VerificationSettings&)
         if (n * ratio[2] < ratio[1])
           continue;
         double error[2], weight[2];
-        for (const auto form : { HourglassControl::scalar, HourglassControl::assumed_strain })
+        for (const auto form : hourglass_forms)
         {
           const auto found = deflection(poisson, n, form, ratio);
           const auto f = static_cast<int>(form);
@@ -100,11 +91,10 @@ Finding verify_cantilever(const VerificationSettings&)
           if (poisson == 0.49 && (ratio == ratios[0] || (f == 1 && ratio == ratios[1])))
           {
             auto& curve = plot.curves[ratio == ratios[0] ? f : 2];
-            curve.x.push_back(n);
-            curve.y.push_back(error[f]);
+            curve.add(n, error[f]);
           }
         }
-        const std::string edges = std::to_string(ratio[0]) + std::to_string(ratio[1]) + std::to_string(ratio[2]);
+        const std::string edges = fmt::format("{}", fmt::join(ratio, ""));
         table.add({ poisson, edges, static_cast<double>(n), std::round(100 * error[0]) / 100,
                     std::round(100 * error[1]) / 100, std::round(100 * weight[0]) / 100,
                     std::round(100 * weight[1]) / 100 });
@@ -120,9 +110,9 @@ Finding verify_cantilever(const VerificationSettings&)
           100);
     selective.add(row);
     const std::string at = ", ν = " + readable(poisson);
-    finding.checks.push_back(absolute_check("worst error, scalar, cubes" + at, "%", 0, worst[0][0], 7));
-    finding.checks.push_back(absolute_check("worst error, assumed strain, cubes" + at, "%", 0, worst[1][0], 3));
-    finding.checks.push_back(absolute_check("worst error, assumed strain, 2:1" + at, "%", 0, worst[1][1], 6));
+    finding.checks.absolute("worst error, scalar, cubes" + at, "%", 0, worst[0][0], 7);
+    finding.checks.absolute("worst error, assumed strain, cubes" + at, "%", 0, worst[1][0], 3);
+    finding.checks.absolute("worst error, assumed strain, 2:1" + at, "%", 0, worst[1][1], 6);
   }
   finding.tables.emplace_back("Error of the deflection under a force at the end and under the beam's own weight",
                               table);
@@ -131,22 +121,13 @@ Finding verify_cantilever(const VerificationSettings&)
       "end [%]",
       selective);
   finding.plots.emplace_back("cantilever", plot);
-  finding.remarks =
-      "The scalar form takes the longest edge, so boxes that are longer through the height than along the beam "
-      "bend four times too easily with one of them: use it on cubes, or where the long edge lies along what "
-      "bends. What is left in assumed strain is the clamp: near it sideways contraction has to grow from "
-      "nothing within less than a height, and an element that is two heights long can only let it grow evenly; "
-      "the nearer ν is to ½ the more that costs. With ends that may contract the error is a third of it. Under "
-      "its own weight, which acts nearer to the clamp, the same effect weighs more. Selective reduced "
-      "integration takes the volumetric part at the centre alone, so one voxel through the thickness bends too "
-      "easily; it is for two and more.";
   return finding;
 }
 
 namespace
 {
 
-// period of the first swing of a bar that starts with the velocities `shape`, from zero crossings at its end
+// period of a bar that starts with these velocities, from the zero crossings of its end
 double measured_period(const Model& model, const VerificationSettings& settings, const Vectors& velocities,
                        const std::vector<std::int32_t>& end, int axis, double guess)
 {
@@ -155,7 +136,7 @@ double measured_period(const Model& model, const VerificationSettings& settings,
   const double interval = guess / 200;
   double before = 0, first = 0;
   int crossings = 0;
-  constexpr int wanted = 7;  // three periods after the first
+  constexpr int wanted = 7;  // zero crossings of three periods
   for (int sample = 1; sample < 200 * 8; ++sample)
   {
     solver->advance(interval, solver->controls());
@@ -179,21 +160,11 @@ double measured_period(const Model& model, const VerificationSettings& settings,
 Finding verify_vibration(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "Periods of vibration";
-  finding.text =
-      "A clamped strip, L = 0.2 m, H = 0.02 m, E = 2 MPa, ν = 0.3975, ρ = 1000 kg/m³ in plane strain swings "
-      "freely: Euler–Bernoulli with E/(1 − ν²) gives 0.25403 s for its first period; shear and rotary inertia, "
-      "which that leaves out, lengthen it by about 1 % here. A bar of the same material with free sides, held "
-      "at one end, vibrates along itself with 4L √(ρ/E).";
   const double pi = std::acos(-1.0);
-  for (const auto form : { HourglassControl::scalar, HourglassControl::assumed_strain })
+  for (const auto form : hourglass_forms)
     for (const int n : { 2, 4, 8 })
     {
-      VoxelBox box;
-      box.size = { { 10 * n, 1, n } };
-      box.spacing.fill(0.02 / n);
-      box.materials = { neo_hookean(2e6, 0.3975) };
-      Model model = voxel_model(box);
+      Model model = voxel_model({ { 10 * n, 1, n } }, 0.02 / n, neo_hookean(2e6, 0.3975));
       model.hourglass = form;
       prescribe(model, nodes_where(model, [](const auto&) { return true; }), { { false, true, false } });
       prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0; }), { { true, true, true } });
@@ -201,16 +172,11 @@ Finding verify_vibration(const VerificationSettings& settings)
       for (std::size_t node = 0; node < velocities.size(); ++node)
         velocities[node][2] = 1e-3 * (1 - std::cos(0.5 * pi * rest_position(model, node)[0] / 0.2));
       const auto end = nodes_where(model, [](const auto& p) { return p[0] > 0.1999; });
-      finding.checks.push_back(relative_check("strip, " + std::to_string(n) + " voxels, " +
-                                                  (form == HourglassControl::scalar ? "scalar" : "assumed strain"),
-                                              "s", 0.25403, measured_period(model, settings, velocities, end, 2, 0.254),
-                                              n > 2 ? 0.015 : std::nan("")));
+      finding.checks.relative(fmt::format("strip, {} voxels, {}", n, name_of(form)), "s", 0.25403,
+                              measured_period(model, settings, velocities, end, 2, 0.254),
+                              n > 2 ? 0.015 : std::nan(""));
     }
-  VoxelBox box;
-  box.size = { { 80, 2, 2 } };
-  box.spacing.fill(2.5e-3);
-  box.materials = { neo_hookean(2e6, 0.3975) };
-  Model model = voxel_model(box);
+  Model model = voxel_model({ { 80, 2, 2 } }, 2.5e-3, neo_hookean(2e6, 0.3975));
   prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0; }), { { true, false, false } });
   prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0 && p[1] == 0; }),
             { { false, true, false } });
@@ -221,10 +187,8 @@ Finding verify_vibration(const VerificationSettings& settings)
     velocities[node][0] = 1e-3 * std::sin(0.5 * pi * rest_position(model, node)[0] / 0.2);
   const auto end = nodes_where(model, [](const auto& p) { return p[0] > 0.1999; });
   const double expected = 4 * 0.2 * std::sqrt(1000 / 2e6);
-  finding.checks.push_back(relative_check("bar along itself", "s", expected,
-                                          measured_period(model, settings, velocities, end, 0, expected), 0.003));
-  finding.remarks =
-      "Two voxels through the thickness are shown without a bound: the strip's error there is that of bending.";
+  finding.checks.relative("bar along itself", "s", expected,
+                          measured_period(model, settings, velocities, end, 0, expected), 0.003);
   return finding;
 }
 

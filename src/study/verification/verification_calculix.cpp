@@ -1,4 +1,4 @@
-// the same solids by CalculiX, with quadratic hexahedra
+// solids solved by voxels and by CalculiX with quadratic hexahedra
 
 #include "study/verification/calculix.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double tiny = 1e-7;  // [m]
+constexpr double tiny = 1e-7;  // [m], between equal positions
 
 using Point = std::array<double, 3>;
 
@@ -44,9 +44,11 @@ struct Comparison
   std::array<int, 3> elements;
   std::vector<double> edges;     // of voxels [m]
   double period;                 // [s]
-  bool second_is_small = false;  // beside what the solid bears: shown, without a bound
-  std::string unit[2];
-  std::string what[2];
+  bool second_is_small = false;  // the second figure is a small difference of stresses, and has no bound
+  struct
+  {
+    std::string what, unit;
+  } figure[2];
   std::function<std::array<double, 2>(const SolidState&)> figures;
 };
 
@@ -64,10 +66,8 @@ Comparison stretched_block()
   c.elements = { { 10, 6, 6 } };
   c.edges = { 2.5e-3, 1.25e-3 };
   c.period = 0.03;
-  c.what[0] = "force";
-  c.unit[0] = "N";
-  c.what[1] = "narrowing of the waist";
-  c.unit[1] = "mm";
+  c.figure[0] = { "force", "N" };
+  c.figure[1] = { "narrowing of the waist", "mm" };
   c.figures = [=](const SolidState& s) -> std::array<double, 2> {
     return { { force_on(s, end)[0], 1e3 * displacement_at(s, { { 10e-3, 0, 5e-3 } })[1] } };
   };
@@ -85,9 +85,8 @@ Comparison bent_cantilever()
   c.elements = { { 15, 4, 4 } };
   c.edges = { 5e-3, 2.5e-3, 1.25e-3 };
   c.period = 0.28;
-  c.what[0] = "sinking of the end";
-  c.what[1] = "drawing in of the end";
-  c.unit[0] = c.unit[1] = "mm";
+  c.figure[0] = { "sinking of the end", "mm" };
+  c.figure[1] = { "drawing in of the end", "mm" };
   c.figures = [](const SolidState& s) -> std::array<double, 2>
   {
     const Point u = displacement_at(s, { { 50e-3, 5e-3, 5e-3 } });
@@ -114,11 +113,9 @@ Comparison twisted_column()
   c.elements = { { 12, 4, 4 } };
   c.edges = { 2.5e-3, 1.25e-3 };
   c.period = 0.03;
-  c.what[0] = "torque";
-  c.unit[0] = "N mm";
-  c.what[1] = "axial pull";
+  c.figure[0] = { "torque", "N mm" };
+  c.figure[1] = { "axial pull", "N" };
   c.second_is_small = true;
-  c.unit[1] = "N";
   c.figures = [=](const SolidState& s) -> std::array<double, 2>
   {
     double torque = 0;
@@ -148,10 +145,8 @@ Comparison indented_slab()
   c.elements = { { 12, 12, 8 } };
   c.edges = { 2.5e-3, 1.25e-3, 0.625e-3 };
   c.period = 0.03;
-  c.what[0] = "force on the patch";
-  c.unit[0] = "N";
-  c.what[1] = "sinking 2.5 mm beside the patch";
-  c.unit[1] = "mm";
+  c.figure[0] = { "force on the patch", "N" };
+  c.figure[1] = { "sinking 2.5 mm beside the patch", "mm" };
   c.figures = [=](const SolidState& s) -> std::array<double, 2> {
     return { { -4 * force_on(s, patch)[2], -1e3 * displacement_at(s, { { 7.5e-3, 0, 10e-3 } })[2] } };
   };
@@ -163,47 +158,26 @@ Comparison indented_slab()
 Finding verify_calculix(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "CalculiX";
-  finding.text =
-      "Four solids of neo-Hookean material (ν = 0.45; the same strain energy in both programs), solved by CalculiX "
-      "with quadratic hexahedra "
-      "(C3D20R, hyperelastic, large deformation) and by voxels (assumed strain) that come to rest:\n\n"
-      "- a block of 20 × 10 × 10 mm, E = 30 kPa, clamped at both ends and drawn to 30 mm;\n"
-      "- a cantilever of 50 × 10 × 10 mm, E = 30 kPa, under its own weight (1000 kg/m³), which bends it down by more "
-      "than a third of its length;\n"
-      "- a column of 30 × 10 × 10 mm, E = 30 kPa, one end turned by 90°;\n"
-      "- a slab of 40 × 40 × 10 mm (a quarter of it), E = 20 kPa below and 120 kPa in the upper 2.5 mm, a patch of 10 "
-      "× 10 mm pressed in by 2 mm.\n\n"
-      "Differences of the finest voxels have a bound of 3 %.";
   if (!calculix_is_there())
   {
     finding.skipped = "CalculiX (program ccx, Debian's package calculix-ccx) is not installed";
     return finding;
   }
-  Plot plot;
-  plot.title = "Difference from CalculiX";
-  plot.x_label = "voxel edge [mm]";
-  plot.y_label = "relative difference [%]";
-  plot.x_log = plot.y_log = true;
-  plot.x_ticks = { 0.625, 1.25, 2.5, 5 };
-  plot.x_from = 0.55;
-  plot.x_to = 5.7;
-  plot.key = "below";
+  Plot plot = convergence_plot("Difference from CalculiX", "voxel edge [mm]", "relative difference [%]",
+                               { 0.625, 1.25, 2.5, 5 }, { { 0.55, 5.7 } });
   for (const auto& c : { stretched_block(), bent_cantilever(), twisted_column(), indented_slab() })
   {
     const auto expected = c.figures(solve_by_calculix(c.problem, c.elements));
-    Plot::Curve curves[2] = { { c.name + ": " + c.what[0], {}, {}, Plot::Style::line_and_points },
-                              { c.name + ": " + c.what[1], {}, {}, Plot::Style::line_and_points } };
+    Plot::Curve curves[2] = { { c.name + ": " + c.figure[0].what }, { c.name + ": " + c.figure[1].what } };
     for (const double edge : c.edges)
     {
       const auto found = c.figures(solve_by_voxels(c.problem, edge, c.period, settings.backend));
       for (const std::size_t f : { 0, 1 })
       {
         const bool bounded = edge == c.edges.back() && !(f == 1 && c.second_is_small);
-        finding.checks.push_back(relative_check(c.name + ", " + readable(1e3 * edge) + " mm: " + c.what[f], c.unit[f],
-                                                expected[f], found[f], bounded ? 0.03 : std::nan("")));
-        curves[f].x.push_back(1e3 * edge);
-        curves[f].y.push_back(100 * finding.checks.back().error);
+        finding.checks.relative(c.name + ", " + readable(1e3 * edge) + " mm: " + c.figure[f].what, c.figure[f].unit,
+                                expected[f], found[f], bounded ? 0.03 : std::nan(""));
+        curves[f].add(1e3 * edge, 100 * finding.checks.back().error);
       }
     }
     for (const auto& curve : curves)
@@ -211,11 +185,6 @@ Finding verify_calculix(const VerificationSettings& settings)
         plot.curves.push_back(curve);
   }
   finding.plots.emplace_back("calculix", plot);
-  finding.remarks =
-      "The twisted column pulls its end by a seventh of what its torque is over its side: a difference of "
-      "stresses that nearly cancel, which shows the error of these fourfold; it falls with the square of the "
-      "voxel edge. Stress is singular at the edge of the patch on the slab, so there both programs converge "
-      "slowly, and what is left at 0.625 mm is as much CalculiX's 12 × 12 × 8 elements.";
   return finding;
 }
 

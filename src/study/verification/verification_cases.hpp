@@ -1,11 +1,12 @@
 #pragma once
 
 #include "frontalis/study/verification.hpp"
+#include "frontalis/study/voxel_model.hpp"
 
 namespace frontalis
 {
 
-// one function a case; verification.cpp lists them
+// one function per case; verification.cpp lists them
 Finding verify_rigid_motion(const VerificationSettings& settings);
 Finding verify_affine_motion(const VerificationSettings& settings);
 Finding verify_energy_gradient(const VerificationSettings& settings);
@@ -26,7 +27,17 @@ Finding verify_heart_beam(const VerificationSettings& settings);
 Finding verify_calculix(const VerificationSettings& settings);
 Finding verify_heart_ellipsoid(const VerificationSettings& settings);
 
-/// Slope of log y against log x by least squares.
-double slope(const std::vector<double>& x, const std::vector<double>& y);
+inline constexpr HourglassControl hourglass_forms[] = { HourglassControl::scalar, HourglassControl::assumed_strain };
+inline std::string name_of(HourglassControl form)
+{
+  return form == HourglassControl::scalar ? "scalar" : "assumed strain";
+}
+
+/// Holds the nodes that fulfil a condition on their position at rest [m].
+void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>& condition);
+
+/// A plot with logarithmic axes and its legend below.
+Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range);
 
 }  // namespace frontalis

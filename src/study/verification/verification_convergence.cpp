@@ -1,8 +1,8 @@
-// how the error falls with the voxel edge, and what a staircase of voxels costs
+// the order of convergence in the voxel edge, and the error of staircases of voxels
 
 #include "frontalis/study/equilibrium.hpp"
 #include "frontalis/study/linear_statics.hpp"
-#include "study/verification/shape_model.hpp"
+#include "study/models/shape_model.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <algorithm>
@@ -13,19 +13,11 @@ namespace frontalis
 namespace
 {
 
-const char* name_of(HourglassControl form) { return form == HourglassControl::scalar ? "scalar" : "assumed strain"; }
-
-constexpr HourglassControl forms[] = { HourglassControl::scalar, HourglassControl::assumed_strain };
-
-// relative root mean square error of the displacements of a unit cube whose surface is displaced as a field that solves
-// Navier's equation: the gradient of a harmonic function, for any Poisson ratio
+// Relative root mean square error of the displacements of a unit cube. Its surface is displaced by the gradient of a
+// harmonic function, which solves Navier's equation for any Poisson ratio.
 double cube_error(int n, HourglassControl form)
 {
-  VoxelBox box;
-  box.size = { { n, n, n } };
-  box.spacing.fill(1.0 / n);
-  box.materials = { neo_hookean(1e5, 0.45) };
-  Model model = voxel_model(box);
+  Model model = voxel_model({ { n, n, n } }, 1.0 / n, neo_hookean(1e5, 0.45));
   model.hourglass = form;
   const double a = 2, b = 1.5, c = std::hypot(a, b);
   const auto exact = [=](const std::array<double, 3>& p) -> std::array<double, 3>
@@ -56,8 +48,8 @@ double cube_error(int n, HourglassControl form)
   return std::sqrt(error / size);
 }
 
-// rise of the middle of the right side in Cook's membrane: voxel edge h, voxels with less than fill_min inside dropped;
-// whole: the others count as whole
+// Rise of the middle of the right side of Cook's membrane with voxels of edge h. Voxels with less than fill_min inside
+// are dropped; the others are weighted, or all `whole`.
 double cook(double h, HourglassControl form, double fill_min, bool whole)
 {
   VoxelBox box;
@@ -71,7 +63,7 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
   model.hourglass = form;
   prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0; }), { { true, true, false } });
   prescribe(model, nodes_where(model, [](const auto& p) { return p[2] == 0; }), { { false, false, true } });
-  // the force is 1 a unit of thickness, whatever the faces that the voxels at the end happen to have
+  // the force is 1 per unit of thickness, however large the faces of the voxels at the end are
   Vectors forces = face_forces(model, 0, box.size[0], { { 0, 1, 0 } });
   double sum = 0;
   for (const auto& f : forces)
@@ -85,7 +77,7 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
 
 struct Surface
 {
-  double mean = 0, spread = 0;  // radial displacement over Lame's, and its standard deviation over the surface
+  double mean = 0, spread = 0;  // of the radial displacement over Lame's: mean and standard deviation over the surface
 };
 
 // both surfaces of an eighth of a hollow sphere, radii 1 and 2, under a small pressure inside
@@ -104,10 +96,8 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, Backend backe
                           });
   Model model = voxel_model(box);
   model.hourglass = form;
-  for (int axis = 0; axis < 3; ++axis)
-    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
-              { { axis == 0, axis == 1, axis == 2 } });
-  // normals towards the middle: out of the tissue
+  hold_mirror_planes(model);
+  // normals point to the middle, out of the tissue
   const auto sphere = [&](double radius)
   {
     return grid_mesh(2 * n, 2 * n,
@@ -129,11 +119,9 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, Backend backe
   model.skin.vertices.insert(model.skin.vertices.end(), outside.vertices.begin(), outside.vertices.end());
   model.skin.triangles = load.mesh.triangles;
   model.skin_binding = bind_points(model, model.skin.vertices);
-  EquilibriumSettings relax;
-  relax.backend = backend;
-  relax.period = 4 * b / std::sqrt(young / 3 / 1000);
-  relax.tolerance = 5e-4;  // at such small strains single precision leaves noise of 1e-4
-  // half the difference of pressure and suction is free of what grows with the square
+  EquilibriumSettings relax{ backend, 4 * b / std::sqrt(young / 3 / 1000) };
+  relax.tolerance = 5e-4;  // above the noise of single precision, 1e-4 at such small strains
+  // half the difference of pressure and suction has no terms of second order
   SkinState skin[2];
   for (const int side : { 0, 1 })
   {
@@ -166,33 +154,23 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, Backend backe
 Finding verify_convergence(const VerificationSettings&)
 {
   Finding finding;
-  finding.title = "Order of convergence";
-  finding.text =
-      "The surface of a unit cube, ν = 0.45, is displaced as ∇φ with φ = cos(2x + 0.3) cos(1.5y + 0.5) "
-      "cosh(2.5(z − ½)): harmonic, so that ∇φ solves Navier's equation. Root mean square error of the inner "
-      "displacements; theory: second order.";
-  Plot plot;
-  plot.title = "Displacement error inside a cube";
-  plot.x_label = "voxel edge over the cube's [1]";
-  plot.y_label = "relative error [1]";
+  Plot plot{ "Displacement error inside a cube", "voxel edge over the cube's [1]", "relative error [1]" };
   plot.x_log = plot.y_log = true;
   plot.key = "bottom right";
   Table table({ "voxels an edge", "scalar", "assumed strain" });
   std::vector<std::vector<Table::Cell>> rows;
-  for (const auto form : forms)
+  for (const auto form : hourglass_forms)
   {
-    Plot::Curve curve{ name_of(form), {}, {}, Plot::Style::line_and_points };
+    Plot::Curve curve{ name_of(form) };
     std::size_t row = 0;
     for (const int n : { 3, 6, 12 })
     {
-      curve.x.push_back(1.0 / n);
-      curve.y.push_back(cube_error(n, form));
+      curve.add(1.0 / n, cube_error(n, form));
       if (row == rows.size())
         rows.push_back({ static_cast<double>(n) });
       rows[row++].emplace_back(curve.y.back());
     }
-    finding.checks.push_back(
-        absolute_check(std::string("order, ") + name_of(form), "1", 2, slope(curve.x, curve.y), 0.25));
+    finding.checks.absolute("order, " + name_of(form), "1", 2, slope(curve.x, curve.y), 0.25);
     plot.curves.push_back(curve);
   }
   for (const auto& row : rows)
@@ -207,13 +185,6 @@ Finding verify_convergence(const VerificationSettings&)
 Finding verify_cook(const VerificationSettings&)
 {
   Finding finding;
-  finding.title = "Cook's membrane";
-  finding.text =
-      "A tapered panel in linear plane stress (E = 1, ν = ⅓), clamped at its left side (height 44) and sheared "
-      "by a unit force at its right one (height 16): the middle of that side rises by 23.96. (The upper "
-      "corner, which is sometimes named with this figure, rises by about 25.1 as voxels shrink.) One layer of "
-      "voxels, free to thin; the slanted sides are staircases of voxels weighted by their proportion inside "
-      "the panel.";
   struct Way
   {
     const char* name;
@@ -225,29 +196,20 @@ Finding verify_cook(const VerificationSettings&)
                        { "weighted, below 0.2 dropped", HourglassControl::assumed_strain, 0.2, false },
                        { "weighted, none dropped", HourglassControl::assumed_strain, 0.01, false },
                        { "whole from a half on", HourglassControl::assumed_strain, 0.5, true } };
-  Plot plot;
-  plot.title = "Cook's membrane: rise of the middle of its right side";
-  plot.x_label = "voxel edge [1]";
-  plot.y_label = "relative error [1]";
-  plot.x_log = plot.y_log = true;
-  plot.x_ticks = { 1, 2, 4 };
-  plot.key = "below";
-  plot.x_from = 0.9;
-  plot.x_to = 5;
+  Plot plot = convergence_plot("Cook's membrane: rise of the middle of its right side", "voxel edge [1]",
+                               "relative error [1]", { 1, 2, 4 }, { { 0.9, 5 } });
   Table table({ "voxels", "edge 4", "edge 2", "edge 1" });
   for (const auto& way : ways)
   {
-    Plot::Curve curve{ way.name, {}, {}, Plot::Style::line_and_points };
+    Plot::Curve curve{ way.name };
     std::vector<Table::Cell> row{ way.name };
     for (const double h : { 4.0, 2.0, 1.0 })
     {
       const double found = cook(h, way.form, way.fill_min, way.whole);
-      curve.x.push_back(h);
-      curve.y.push_back(std::abs(found / 23.96 - 1));
+      curve.add(h, std::abs(found / 23.96 - 1));
       row.emplace_back(found);
       if (h == 1)
-        finding.checks.push_back(
-            relative_check(way.name, "1", 23.96, found, way.fill_min == 0.2 ? 0.03 : std::nan("")));
+        finding.checks.relative(way.name, "1", 23.96, found, way.fill_min == 0.2 ? 0.03 : std::nan(""));
     }
     table.add(row);
     plot.curves.push_back(curve);
@@ -255,57 +217,35 @@ Finding verify_cook(const VerificationSettings&)
   plot.curves.push_back({ "first order", { 4, 1 }, { 0.08, 0.02 }, Plot::Style::dashed });
   finding.tables.emplace_back("Rise", table);
   finding.plots.emplace_back("cook_membrane", plot);
-  finding.remarks =
-      "The staircase makes the error one of first order: a body with straight sides along the grid converges "
-      "with the second (above). Weighted voxels halve what whole ones err by.";
   return finding;
 }
 
 Finding verify_staircase(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "What a staircase costs on a curved body";
-  finding.text =
-      "A hollow sphere, radii 1 and 2, ν = 0.45, under a small pressure inside, an eighth of it: Lamé's "
-      "solution gives the displacement of both surfaces. Voxels are weighted by their proportion inside (4³ "
-      "samples, below 0.2 dropped: the defaults of a bake); the pressure acts on the true sphere and reaches "
-      "the nodes through its binding.";
-  Plot plot;
-  plot.title = "Hollow sphere under pressure: displacement of its inner surface";
-  plot.x_label = "voxel edge over the wall's thickness [1]";
-  plot.y_label = "relative error [1]";
-  plot.x_log = plot.y_log = true;
-  plot.x_ticks = { 0.0625, 0.125, 0.25 };
-  plot.key = "below";
-  plot.x_from = 0.05;
-  plot.x_to = 0.3;
-  plot.y_from = 5e-4;
-  plot.y_to = 0.1;
+  Plot plot = convergence_plot("Hollow sphere under pressure: displacement of its inner surface",
+                               "voxel edge over the wall's thickness [1]", "relative error [1]",
+                               { 0.0625, 0.125, 0.25 }, { { 0.05, 0.3 } });
+  plot.y_range = { 5e-4, 0.1 };
   Table table({ "form", "voxels through the wall", "inner surface", "its scatter", "outer surface", "its scatter" });
-  for (const auto form : forms)
+  for (const auto form : hourglass_forms)
   {
-    Plot::Curve mean{ std::string("mean, ") + name_of(form), {}, {}, Plot::Style::line_and_points };
-    Plot::Curve spread{ std::string("scatter, ") + name_of(form), {}, {}, Plot::Style::line_and_points };
+    Plot::Curve mean{ "mean, " + name_of(form) };
+    Plot::Curve spread{ "scatter, " + name_of(form) };
     for (const int n : { 8, 16, 32 })
     {
       const auto found = hollow_sphere(n, form, settings.backend);
-      mean.x.push_back(2.0 / n);
-      mean.y.push_back(std::abs(found[0].mean - 1));
-      spread.x.push_back(2.0 / n);
-      spread.y.push_back(found[0].spread);
+      mean.add(2.0 / n, std::abs(found[0].mean - 1));
+      spread.add(2.0 / n, found[0].spread);
       table.add({ name_of(form), n / 2.0, found[0].mean, found[0].spread, found[1].mean, found[1].spread });
       if (n == 32)
-        finding.checks.push_back(
-            relative_check(std::string("inner surface, 16 voxels, ") + name_of(form), "1", 1, found[0].mean, 0.03));
+        finding.checks.relative("inner surface, 16 voxels, " + name_of(form), "1", 1, found[0].mean, 0.03);
     }
     plot.curves.push_back(mean);
     plot.curves.push_back(spread);
   }
   finding.tables.emplace_back("Radial displacement over Lamé's: mean and standard deviation over the surface", table);
   finding.plots.emplace_back("staircase", plot);
-  finding.remarks =
-      "The mean is within 2 % from four voxels through the wall on; what is left at sixteen is the tissue in "
-      "voxels that were dropped. Locally the surface follows the steps: the scatter falls with the voxel edge.";
   return finding;
 }
 

@@ -2,8 +2,10 @@
 
 #include "frontalis/physics/materials/all.hpp"
 #include "frontalis/study/equilibrium.hpp"
-#include "study/verification/shape_model.hpp"
+#include "study/models/shape_model.hpp"
 #include "study/verification/verification_cases.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,26 +38,19 @@ void add_pressure(Model& model, double pressure, const TriangleMesh& mesh)
   model.loads.push_back(load);
 }
 
-// position along z [mm] that the end's upper edge of the beam comes to; n voxels through its height
+// height [mm] of the upper edge of the beam's end; n voxels through its height
 double beam(int n, double kappa, Backend backend)
 {
-  VoxelBox box;
-  box.size = { { 10 * n, n, n } };
-  box.spacing.fill(1e-3 / n);
-  box.materials = { heart(kappa) };
-  Model model = voxel_model(box);
+  Model model = voxel_model({ { 10 * n, n, n } }, 1e-3 / n, heart(kappa));
   model.hourglass = HourglassControl::assumed_strain;
-  for (const auto node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
-    model.rigid.push_back({ node, -1 });
-  // normals downwards
+  clamp(model, [](const auto& p) { return p[0] == 0; });
+  // normals point down
   add_pressure(model, 4,
                grid_mesh(n, 10 * n,
                          [](double s, double t) -> std::array<double, 3> {
                            return { { 1e-2 * t, 1e-3 * s, 0 } };
                          }));
-  EquilibriumSettings relax;
-  relax.backend = backend;
-  relax.period = 0.14;
+  EquilibriumSettings relax{ backend, 0.14 };
   relax.tolerance = 1e-3;
   const auto end = nodes_where(model, [](const auto& p) { return p[0] > 9.99e-3 && p[2] > 0.99e-3; });
   return 1 + 1e3 * mean_displacement(find_equilibrium(model, relax).displacements, end)[2];
@@ -90,7 +85,7 @@ struct Apex
   double inner, outer;  // distance from the ellipsoids' centre [mm]
 };
 
-// the contracted ellipsoid, voxel edge h [m]
+// apices of the contracted ellipsoid with voxels of edge h [m]
 Apex ellipsoid(double h, double kappa, Backend backend)
 {
   const std::array<double, 3> centre{ { 10e-3, 10e-3, 20e-3 } };
@@ -116,11 +111,10 @@ Apex ellipsoid(double h, double kappa, Backend backend)
   add_muscle(model, Muscle{ "wall", 60e3, false, false }, fibre);
   for (const auto& f : model.fibre_direction)
     model.material_directions.push_back({ { f[0], f[1], f[2], 0, 0, 0 } });
-  for (const auto node : nodes_where(model, [&](const auto& p) { return p[2] > 25e-3 - 0.1 * h; }))
-    model.rigid.push_back({ node, -1 });
+  clamp(model, [&](const auto& p) { return p[2] > 25e-3 - 0.1 * h; });
   const int rows = static_cast<int>(std::lround(30e-3 / h));
   const double edge = std::acos(5.0 / 17);
-  // from the apex up; normals into the cavity
+  // from the apex up; normals point into the cavity
   add_pressure(model, 15e3,
                grid_mesh(rows, 2 * rows,
                          [&](double s, double t) -> std::array<double, 3>
@@ -132,9 +126,7 @@ Apex ellipsoid(double h, double kappa, Backend backend)
   model.landmarks = { "inner apex", "outer apex" };
   model.landmark_positions = { { { 10e-3, 10e-3, 3e-3 } }, { { 10e-3, 10e-3, 0 } } };
   model.landmark_binding = bind_points(model, model.landmark_positions);
-  EquilibriumSettings relax;
-  relax.backend = backend;
-  relax.period = 0.02;
+  EquilibriumSettings relax{ backend, 0.02 };
   relax.ramp = 2;
   relax.tolerance = 1e-3;
   relax.activation = 1;
@@ -148,60 +140,32 @@ Apex ellipsoid(double h, double kappa, Backend backend)
 Finding verify_heart_beam(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "Heart benchmark, problem 1: a beam bends under pressure";
-  finding.text =
-      "Land et al. 2015 (Proc. R. Soc. A 471:20150641): a beam of 10 × 1 × 1 mm of Guccione's law, c = 2 kPa, "
-      "b_f = 8, b_t = 2, b_fs = 4, fibres along it, incompressible, clamped at one end, with 4 Pa on its lower "
-      "side that follow it. Height of the end's upper edge. Expected: 4.1549 mm, the output in the "
-      "documentation of the FEniCS code *pulse* (finsberg/pulse, problem 1). Bulk modulus here 100 c.";
-  Plot plot;
-  plot.title = "Heart benchmark, problem 1: height of the beam's end";
-  plot.x_label = "voxel edge [mm]";
-  plot.y_label = "height [mm]";
-  plot.x_from = 0;
-  plot.x_to = 0.55;
-  plot.y_from = 3.8;
-  plot.y_to = 4.3;
-  plot.curves = { { "voxels", {}, {}, Plot::Style::line_and_points },
-                  { "published code", { 0, 0.55 }, { 4.1549, 4.1549 }, Plot::Style::dashed } };
+  Plot plot{ "Heart benchmark, problem 1: height of the beam's end", "voxel edge [mm]", "height [mm]" };
+  plot.x_range = { 0, 0.55 };
+  plot.y_range = { 3.8, 4.3 };
+  plot.curves = { { "voxels" }, { "published code", { 0, 0.55 }, { 4.1549, 4.1549 }, Plot::Style::dashed } };
   for (const int n : { 2, 4, 6 })
   {
     const double z = beam(n, 2e5, settings.backend);
-    plot.curves[0].x.push_back(1.0 / n);
-    plot.curves[0].y.push_back(z);
-    finding.checks.push_back(relative_check("end of the beam, " + std::to_string(n) + " voxels", "mm", 4.1549, z,
-                                            n > 2 ? 0.03 : std::nan("")));
+    plot.curves[0].add(1.0 / n, z);
+    finding.checks.relative(fmt::format("end of the beam, {} voxels", n), "mm", 4.1549, z, n > 2 ? 0.03 : std::nan(""));
   }
-  finding.checks.push_back(relative_check("end of the beam, 2 voxels, bulk modulus 500 c", "mm", 4.1549,
-                                          beam(2, 1e6, settings.backend), std::nan("")));
+  finding.checks.relative("end of the beam, 2 voxels, bulk modulus 500 c", "mm", 4.1549, beam(2, 1e6, settings.backend),
+                          std::nan(""));
   finding.plots.emplace_back("heart_beam", plot);
-  finding.remarks = "Five times the bulk modulus takes about 1 % off the height.";
   return finding;
 }
 
 Finding verify_heart_ellipsoid(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "Heart benchmark, problem 3: an ellipsoid is inflated and contracts";
-  finding.text =
-      "Land et al. 2015: the wall between ellipsoids with semi-axes 7, 7, 17 and 10, 10, 20 mm, cut off 5 mm "
-      "above their centre and held there; Guccione's law as in problem 1, fibres that turn from −90° at the "
-      "inner surface to 90° at the outer one, 15 kPa inside and an active stress of 60 kPa, S = Tₐ f₀ ⊗ f₀. "
-      "Distance of the two apices from the centre. Expected: about 12.5 and 15.5 mm, as read from the paper's "
-      "figures (so quoted in issue 39 of finsberg/pulse); that code's documentation has 11.855 and 15.490 mm "
-      "for its coarse mesh. Bulk modulus 1000 c; each voxel has its own fibre direction, for the muscle and "
-      "for the law.";
-  Plot plot;
-  plot.title = "Heart benchmark, problem 3: apices after contraction";
-  plot.x_label = "voxel edge [mm]";
-  plot.y_label = "distance from the centre [mm]";
+  Plot plot{ "Heart benchmark, problem 3: apices after contraction", "voxel edge [mm]",
+             "distance from the centre [mm]" };
   plot.key = "below";
-  plot.x_from = 0;
-  plot.x_to = 1.05;
-  plot.y_from = 11;
-  plot.y_to = 18;
-  plot.curves = { { "outer apex, voxels", {}, {}, Plot::Style::line_and_points },
-                  { "inner apex, voxels", {}, {}, Plot::Style::line_and_points },
+  plot.x_range = { 0, 1.05 };
+  plot.y_range = { 11, 18 };
+  plot.curves = { { "outer apex, voxels" },
+                  { "inner apex, voxels" },
                   { "outer apex, published", { 0, 1.05 }, { 15.5, 15.5 }, Plot::Style::dashed },
                   { "inner apex, published", { 0, 1.05 }, { 12.5, 12.5 }, Plot::Style::dashed } };
   for (const double h : { 1e-3, 0.5e-3 })
@@ -209,20 +173,12 @@ Finding verify_heart_ellipsoid(const VerificationSettings& settings)
     const Apex apex = ellipsoid(h, 2e6, settings.backend);
     const std::string at = " apex, edge " + readable(1e3 * h) + " mm";
     const double bound = h < 0.6e-3 ? 0.05 : std::nan("");
-    finding.checks.push_back(relative_check("inner" + at, "mm", 12.5, apex.inner, bound));
-    finding.checks.push_back(relative_check("outer" + at, "mm", 15.5, apex.outer, bound));
+    finding.checks.relative("inner" + at, "mm", 12.5, apex.inner, bound);
+    finding.checks.relative("outer" + at, "mm", 15.5, apex.outer, bound);
     for (const std::size_t curve : { 0, 1 })
-    {
-      plot.curves[curve].x.push_back(1e3 * h);
-      plot.curves[curve].y.push_back(curve == 0 ? apex.outer : apex.inner);
-    }
+      plot.curves[curve].add(1e3 * h, curve == 0 ? apex.outer : apex.inner);
   }
   finding.plots.emplace_back("heart_ellipsoid", plot);
-  finding.remarks =
-      "The wall is 3 mm thick: 3 and 6 voxels. Contraction shortens the ellipsoid by about 4.5 mm, so 0.3 mm "
-      "at the apex are 6 % of its motion. What is missing at coarse voxels is what a staircase costs: fibres "
-      "turn by 60° from one voxel to the next through a wall of three, and the apex, where the wall's "
-      "curvature is greatest, is a step of a few voxels.";
   return finding;
 }
 

@@ -1,4 +1,4 @@
-// what goes on in time: viscous relaxation, the balance of energies, a million steps
+// motions over time: viscous relaxation, the balance of energies, a million steps in single precision
 
 #include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-// force on the upper side of a block that is sheared at once and held
+// shear force on the upper side of a block
 double shear_force(Solver& solver, const Model& model)
 {
   return internal_force(
@@ -32,15 +32,11 @@ Model sheared_block(const std::array<double, 2>& share, const std::array<double,
   return model;
 }
 
-// a bar held at one end that gravity draws long, its muscle too where it has one
+// a bar under gravity that is held at one end
 Model hanging_bar(const std::array<std::int32_t, 3>& size, double gravity)
 {
-  VoxelBox box;
-  box.size = size;
-  box.materials = { neo_hookean(34e3, 0.45) };
-  Model model = voxel_model(box);
-  for (const auto node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
-    model.rigid.push_back({ node, -1 });
+  Model model = voxel_model(size, 1e-3, neo_hookean(34e3, 0.45));
+  clamp(model, [](const auto& p) { return p[0] == 0; });
   model.gravity = { { gravity, 0, -0.3 * gravity } };
   return model;
 }
@@ -50,14 +46,7 @@ Model hanging_bar(const std::array<std::int32_t, 3>& size, double gravity)
 Finding verify_viscosity(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "Viscous relaxation";
-  finding.text =
-      "A block is sheared at once and held. Of its stress, 1 − Σ gᵢ (1 − e^(−t/τᵢ)) is left after a time t "
-      "(Prony series on the isochoric stress, which is all that simple shear has).";
-  Plot plot;
-  plot.title = "Stress of a sheared block that is held";
-  plot.x_label = "time [s]";
-  plot.y_label = "stress over the elastic one [1]";
+  Plot plot{ "Stress of a sheared block that is held", "time [s]", "stress over the elastic one [1]" };
   plot.x_log = true;
   plot.key = "bottom left";
   struct Series
@@ -84,20 +73,16 @@ Finding verify_viscosity(const VerificationSettings& settings)
       return sum;
     };
     for (double t = 1e-3; t < 1; t *= 1.1)
-    {
-      theory.x.push_back(t);
-      theory.y.push_back(left(t));
-    }
+      theory.add(t, left(t));
     double now = 0;
     for (const double then : { 0.002, 0.01, 0.05, 0.2, 0.8 })
     {
       viscous->advance(then - now, viscous->controls());
       now = then;
       const double found = shear_force(*viscous, model) / at_once;
-      measured.x.push_back(now);
-      measured.y.push_back(found);
-      finding.checks.push_back(
-          relative_check(std::string(series.name) + ", after " + readable(now) + " s", "1", left(now), found, 2e-3));
+      measured.add(now, found);
+      finding.checks.relative(std::string(series.name) + ", after " + readable(now) + " s", "1", left(now), found,
+                              2e-3);
     }
     plot.curves.push_back(theory);
     plot.curves.push_back(measured);
@@ -109,11 +94,6 @@ Finding verify_viscosity(const VerificationSettings& settings)
 Finding verify_energy_balance(const VerificationSettings& settings)
 {
   Finding finding;
-  finding.title = "Balance of energies";
-  finding.text =
-      "A bar of 12 × 4 × 4 voxels, held at one end, falls under gravity while a muscle along it contracts, for "
-      "three periods: with damping, without, and with viscosity. What the terms of the energy ledger leave "
-      "unexplained, over the largest of them.";
   for (const std::string kind : { "undamped", "damped", "viscous" })
   {
     Model model = hanging_bar({ { 12, 4, 4 } }, 9.81);
@@ -136,8 +116,8 @@ Finding verify_energy_balance(const VerificationSettings& settings)
     solver->advance(0.05, target);
     solver->advance(0.1, target);
     const EnergyLedger ledger = solver->ledger();
-    finding.checks.push_back(absolute_check("unexplained, " + kind + " bar", "%", 0,
-                                            100 * std::abs(ledger.imbalance()) / ledger.largest, 1));
+    finding.checks.absolute("unexplained, " + kind + " bar", "%", 0,
+                            100 * std::abs(ledger.imbalance()) / ledger.largest, 1);
   }
   return finding;
 }
@@ -145,11 +125,6 @@ Finding verify_energy_balance(const VerificationSettings& settings)
 Finding verify_precision(const VerificationSettings&)
 {
   Finding finding;
-  finding.title = "A million steps in single precision";
-  finding.text =
-      "A slender bar (16 × 1 × 1 voxels, four times critically damped) is bent by a traction at its end that "
-      "grows over a million steps of 5 µs, the published step. A step moves its end by some units in the last "
-      "place of its displacement. End's displacement against the reference backend's, which computes in double.";
   constexpr int steps = 1000000;
   const auto end_displacement = [&](Backend backend, Precision precision)
   {
@@ -186,11 +161,8 @@ Finding verify_precision(const VerificationSettings&)
   };
   for (const auto& way : { Way{ "single", Precision::single, 1e-3 }, Way{ "compensated", Precision::compensated, 1e-3 },
                            Way{ "double", Precision::double_precision, 1e-7 } })
-    finding.checks.push_back(relative_check(std::string(way.name) + ", end's displacement", "mm", expected,
-                                            1e3 * end_displacement("cpu", way.precision), way.bound));
-  finding.remarks =
-      "A compensated sum keeps every increment, but its forces are of single precision too, from differences "
-      "of displacements that are rounded to the last place: that is most of the error here.";
+    finding.checks.relative(std::string(way.name) + ", end's displacement", "mm", expected,
+                            1e3 * end_displacement("cpu", way.precision), way.bound);
   return finding;
 }
 

@@ -1,7 +1,9 @@
-// a stiff film on a soft base: when it wrinkles, and how wide
+// wrinkling of a stiff film on a soft base: critical compression and wavelength
 
 #include "frontalis/study/linear_statics.hpp"
 #include "study/verification/verification_cases.hpp"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +16,7 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// stretch across the layers that leaves them free of stress there, at a stretch along them in plane strain
+// stretch across the layers, free of stress, at a given stretch along them in plane strain
 double free_stretch(double along)
 {
   const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
@@ -28,8 +30,8 @@ double free_stretch(double along)
   return 0.5 * (low + high);
 }
 
-// a plate on a base: voxels as thick as `spacing` says, of the film's and the base's numbers of planes, each plane of
-// the film with its own stiffness over the base's, the lowest first
+// a film on a base: the spacing of voxels, the number of planes of the base, and for each plane of the film, the lowest
+// first, its stiffness over that of the base
 struct Layers
 {
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // [m]
@@ -45,7 +47,7 @@ Layers film_on_deep_base(double contrast, int film, int half)
   return layers;
 }
 
-// compression at which a cell of half a wavelength, `half` voxels, loses its stability
+// compression at which a cell of half a wavelength, `half` voxels, becomes unstable
 double critical_compression(const Layers& layers, int half)
 {
   VoxelBox box;
@@ -78,33 +80,32 @@ struct Wrinkles
   double compression = 0;  ///< [%]
 };
 
-// plate theory
+// the wrinkles of plate theory
 Wrinkles expected_wrinkles(double contrast)
 {
   return { 2 * std::acos(-1.0) * std::cbrt(contrast / 3), 25 * std::pow(3 / contrast, 2.0 / 3) };
 }
 
-// the wavelength that needs least compression, of half wavelengths from `first` to `last` voxels; the curve gets all of
-// them, wavelengths in voxels
+// The wrinkles that need the least compression among half wavelengths from `first` to `last` voxels. `curve` gets the
+// compression of each wavelength; wavelengths are in voxels.
 Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int last, int step, Plot::Curve& curve)
 {
   std::size_t least = 0;
   for (int half = first; half <= last; half += step)
   {
-    curve.x.push_back(2.0 * half);
-    curve.y.push_back(100 * critical_compression(layers(half), half));
+    curve.add(2.0 * half, 100 * critical_compression(layers(half), half));
     if (curve.y.back() < curve.y[least])
       least = curve.y.size() - 1;
   }
   if (least == 0 || least + 1 == curve.y.size())
     return { curve.x[least], curve.y[least] };
-  // the least of a parabola through the three lowest points
+  // the minimum of a parabola through the three lowest points
   const double left = curve.y[least - 1], middle = curve.y[least], right = curve.y[least + 1];
   const double shift = 0.5 * (left - right) / (left - 2 * middle + right);
   return { curve.x[least] + shift * (curve.x[1] - curve.x[0]), middle - 0.25 * (left - right) * shift };
 }
 
-// of a film of `film` voxels on a deep base; wavelengths over the film's thickness
+// wrinkles of a film of `film` voxels on a deep base; wavelengths over the film's thickness
 Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 {
   const int expected = static_cast<int>(std::lround(expected_wrinkles(contrast).wavelength / 2));
@@ -116,9 +117,9 @@ Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
   return found;
 }
 
-// of the published skin on hypodermis over bone: corneum (48 MPa, 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) as the one
-// plate of the same stretching and bending stiffness, so that the corneum cannot wrinkle by itself; wavelengths in mm,
-// the one found as it is after the compression
+// Wrinkles of the published skin on hypodermis over bone. Corneum (48 MPa, 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) are
+// one plate of their stretching and bending stiffness, so that the corneum cannot wrinkle alone. Wavelengths are in mm,
+// that of the result after the compression.
 Wrinkles skin_wrinkles(double depth, double expected, Plot::Curve& curve)
 {
   constexpr double young[2] = { 48e6, 81.4e3 }, thickness[2] = { 0.02e-3, 1.8e-3 }, hypodermis = 34e3;
@@ -153,50 +154,32 @@ Wrinkles skin_wrinkles(double depth, double expected, Plot::Curve& curve)
 Finding verify_wrinkling(const VerificationSettings&)
 {
   Finding finding;
-  finding.title = "Wrinkling of a stiff film on a soft base";
-  finding.text =
-      "Both neo-Hookean, ν = 0.49, the film 100 times stiffer, compressed in plane strain. Plate theory "
-      "(Allen; Cao & Hutchinson 2012) for a wave number k and film thickness h: compression (kh)²/12 + Ēs/(2Ēf "
-      "kh), least at wavelength 2πh (Ēf/3Ēs)^(1/3) = 20.2 h with ¼(3Ēs/Ēf)^(2/3) = 2.41 %. Here the compressed "
-      "state is homogeneous, so the tangent of the solver's forces is assembled about it, and the compression "
-      "is sought at which it stops being positive definite, for cells of half a wavelength, base one "
-      "wavelength deep. The same for the published stratum corneum on its dermis (48 MPa, 0.02 mm on 0.0814 MPa), "
-      "whose "
-      "figures by plate theory are 0.731 mm and 0.74 %, in voxels as thick as the film.";
   constexpr double contrast = 100;
   const double pi = std::acos(-1.0);
-  Plot plot;
-  plot.title = "Compression at which a film wrinkles";
-  plot.x_label = "wavelength over film thickness [1]";
-  plot.y_label = "compression [%]";
+  Plot plot{ "Compression at which a film wrinkles", "wavelength over film thickness [1]", "compression [%]" };
   plot.curves.push_back({ "plate theory", {}, {}, Plot::Style::line });
   for (double wavelength = 10; wavelength < 30; wavelength += 0.5)
   {
     const double kh = 2 * pi / wavelength;
-    plot.curves[0].x.push_back(wavelength);
-    plot.curves[0].y.push_back(100 * (kh * kh / 12 + 1 / (2 * contrast * kh)));
+    plot.curves[0].add(wavelength, 100 * (kh * kh / 12 + 1 / (2 * contrast * kh)));
   }
   const Wrinkles expected = expected_wrinkles(contrast);
   for (const int film : { 1, 2 })
   {
     Plot::Curve curve{
-      "film of " + std::to_string(film) + (film == 1 ? " voxel" : " voxels"), {}, {}, Plot::Style::points
+      fmt::format("film of {} {}", film, film == 1 ? "voxel" : "voxels"), {}, {}, Plot::Style::points
     };
     const Wrinkles found = film_wrinkles(contrast, film, curve);
-    finding.checks.push_back(
-        relative_check("wavelength over h, " + curve.name, "1", expected.wavelength, found.wavelength, 0.1));
-    finding.checks.push_back(
-        relative_check("critical compression, " + curve.name, "%", expected.compression, found.compression, 0.1));
+    finding.checks.relative("wavelength over h, " + curve.name, "1", expected.wavelength, found.wavelength, 0.1);
+    finding.checks.relative("critical compression, " + curve.name, "%", expected.compression, found.compression, 0.1);
     plot.curves.push_back(curve);
   }
   // 48 MPa and 0.02 mm on 0.0814 MPa, in voxels of 0.02 mm
   constexpr double skin_contrast = 48 / 0.0814, thickness = 0.02;
   Plot::Curve skin;
   const Wrinkles of_skin = film_wrinkles(skin_contrast, 1, skin);
-  finding.checks.push_back(
-      relative_check("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1));
-  finding.checks.push_back(
-      relative_check("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1));
+  finding.checks.relative("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1);
+  finding.checks.relative("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1);
   finding.plots.emplace_back("wrinkling", plot);
   // hypodermis over bone: depth [m]; wavelength [mm] and compression [%] by plate theory on an elastic layer that is
   // bonded to bone, ν = 0.49 and free to shear at the plate, and ν = 0.5 and held there
@@ -209,22 +192,11 @@ Finding verify_wrinkling(const VerificationSettings&)
     const Wrinkles found = skin_wrinkles(plate[0], 1e-3 * plate[1], curve);
     const std::string name = "skin on " + readable(1e3 * plate[0]) + " mm of hypodermis: ";
     const double unbounded = std::nan("");
-    finding.checks.push_back(relative_check(name + "wavelength", "mm", plate[1], found.wavelength, 0.1));
-    finding.checks.push_back(relative_check(name + "compression", "%", plate[2], found.compression, 0.15));
-    finding.checks.push_back(relative_check(name + "wavelength, held", "mm", plate[3], found.wavelength, unbounded));
-    finding.checks.push_back(relative_check(name + "compression, held", "%", plate[4], found.compression, unbounded));
+    finding.checks.relative(name + "wavelength", "mm", plate[1], found.wavelength, 0.1);
+    finding.checks.relative(name + "compression", "%", plate[2], found.compression, 0.15);
+    finding.checks.relative(name + "wavelength, held", "mm", plate[3], found.wavelength, unbounded);
+    finding.checks.relative(name + "compression, held", "%", plate[4], found.compression, unbounded);
   }
-  finding.remarks =
-      "Which wrinkles voxels can show: a wavelength takes about 8 voxels, and the film at least one. In a whole face "
-      "only a shell can carry the stratum corneum, voxels of a millimetre do not: they can show the wrinkles of "
-      "corneum and "
-      "dermis as one plate (the plate of 1.25 mm and 0.883 MPa that stretches and bends as the two do), 8 to 14 mm "
-      "wide at 6 "
-      "to 13 %. Plate theory for small compression brackets these by what it says of the plate's lower face, free to "
-      "shear "
-      "or held; the voxels' plate is thick (a sixth to an eighth of its wavelength), shears, and is compressed by a "
-      "tenth "
-      "before it wrinkles, which makes it wrinkle sooner. The rows without a bound are against the held face.";
   return finding;
 }
 

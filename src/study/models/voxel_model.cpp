@@ -1,5 +1,7 @@
 #include "frontalis/study/voxel_model.hpp"
 
+#include <fmt/core.h>
+
 namespace frontalis
 {
 
@@ -42,6 +44,11 @@ Model voxel_model(const VoxelBox& box)
   return model;
 }
 
+Model voxel_model(const std::array<std::int32_t, 3>& size, double edge, const Material& material)
+{
+  return voxel_model(VoxelBox{ size, { { edge, edge, edge } }, { material }, {}, {} });
+}
+
 void add_muscle(Model& model, const Muscle& muscle, const std::function<std::array<float, 3>(std::size_t)>& direction)
 {
   model.muscles = { muscle };
@@ -61,6 +68,20 @@ std::array<double, 3> rest_position(const Model& model, std::size_t node)
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
 
+Vectors affine_displacements(const Model& model, const std::array<double, 9>& gradient,
+                             const std::array<double, 3>& shift)
+{
+  Vectors u(model.nodes.size(), shift);
+  for (std::size_t n = 0; n < u.size(); ++n)
+  {
+    const auto p = rest_position(model, n);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        u[n][i] += (gradient[3 * i + j] - (i == j ? 1 : 0)) * p[j];
+  }
+  return u;
+}
+
 std::vector<std::int32_t> nodes_where(const Model& model,
                                       const std::function<bool(const std::array<double, 3>&)>& condition)
 {
@@ -75,7 +96,7 @@ void prescribe(Model& model, const std::vector<std::int32_t>& nodes, const std::
                const std::array<double, 3>& displacement, double ramp)
 {
   Load load;
-  load.name = "prescribed " + std::to_string(model.loads.size());
+  load.name = fmt::format("prescribed {}", model.loads.size());
   load.kind = Load::Kind::displacement;
   load.value = displacement;
   load.fixed = components;
@@ -83,6 +104,13 @@ void prescribe(Model& model, const std::vector<std::int32_t>& nodes, const std::
   for (const auto node : nodes)
     model.prescribed.push_back({ node, static_cast<std::int32_t>(model.loads.size()) });
   model.loads.push_back(load);
+}
+
+void hold_mirror_planes(Model& model)
+{
+  for (int axis = 0; axis < 3; ++axis)
+    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
+              { { axis == 0, axis == 1, axis == 2 } });
 }
 
 }  // namespace frontalis

@@ -1,4 +1,4 @@
-#include "study/verification/shape_model.hpp"
+#include "study/models/shape_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ Binding bind_points(const Model& model, const std::vector<std::array<double, 3>>
     std::array<std::int32_t, 3> at;
     for (std::size_t axis = 0; axis < 3; ++axis)
       at[axis] = static_cast<std::int32_t>(std::floor(point[axis] / model.spacing[axis]));
-    // the nearest voxel, among those around
+    // the nearest of the voxels around the point
     double nearest = 1e300;
     std::int32_t best = 0;
     for (int k = -2; k <= 2; ++k)

@@ -3,6 +3,8 @@
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -16,12 +18,12 @@ namespace frontalis
 namespace
 {
 
-// colours that stay apart for colour-blind eyes (Okabe & Ito 2008)
+// colours that colour-blind readers can tell apart (Okabe & Ito 2008)
 const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000" };
 const char* const marks[] = { "7", "5" };
 const char* const more_marks[] = { "9", "13", "11" };
 
-// text between single quotes: doubled inside; lines are joined from strings between double quotes
+// a string of gnuplot: single quotes are doubled inside, and line breaks stand in double quotes
 std::string quoted(const std::string& text)
 {
   std::string out = "'";
@@ -30,7 +32,7 @@ std::string quoted(const std::string& text)
   return out + "'";
 }
 
-// tick labels are formats
+// a string that gnuplot takes as a format, as it does tick labels
 std::string quoted_as_format(const std::string& text)
 {
   std::string out;
@@ -44,7 +46,7 @@ const char* colour_of(std::size_t index) { return colours[index % std::size(colo
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colour_of(index) + "'";
-  // a colour that comes again has another mark
+  // a colour that is used again has another mark
   const bool again = index >= std::size(colours);
   const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
   switch (curve.style)
@@ -96,15 +98,15 @@ std::string script(const Plot& plot, const std::string& path)
       << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
       << "set title " << quoted(plot.title)
       << "\nset xlabel "
-      // an empty line keeps a legend below at a distance
+      // an empty line keeps a legend below the axis at a distance
       << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
-  for (const auto& [axis, log, from, to] :
-       { std::tuple{ 'x', plot.x_log, plot.x_from, plot.x_to }, std::tuple{ 'y', plot.y_log, plot.y_from, plot.y_to } })
+  for (const auto& [axis, log, range] :
+       { std::tuple{ 'x', plot.x_log, plot.x_range }, std::tuple{ 'y', plot.y_log, plot.y_range } })
   {
     if (log)
       out << "set logscale " << axis << '\n';
-    if (from != to)
-      out << "set " << axis << "range [" << from << ':' << to << "]\n";
+    if (range[0] != range[1])
+      out << "set " << axis << "range [" << range[0] << ':' << range[1] << "]\n";
   }
   for (const auto& [axis, ticks] : { std::pair("x", plot.x_ticks), std::pair("y", plot.y_ticks) })
     for (std::size_t t = 0; t < ticks.size(); ++t)
@@ -120,13 +122,13 @@ std::string script(const Plot& plot, const std::string& path)
           << (plot.curves[c].name.empty() ? " notitle" : " title " + quoted(plot.curves[c].name));
     out << "\nset output\n";
   };
-  const std::string size = " noenhanced size " + std::to_string(plot.width) + "," + std::to_string(plot.height);
+  const std::string size = fmt::format(" noenhanced size {},{}", plot.width, plot.height);
   draw("pngcairo" + size + " font 'sans,13' background '#ffffff'", path + ".png");
   draw("svg" + size + " font 'sans,15' background '#ffffff'", path + ".svg");
   return out.str();
 }
 
-// one word of a shell's command, whatever is in it
+// a text as one word of a shell's command
 std::string shell_quoted(const std::string& text)
 {
   std::string word = "'";

@@ -1,0 +1,84 @@
+#include "solver/stepping/dynamic_relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double clear_change = 1e-4;  // of the displacement: rounding errors of single precision cannot make it
+constexpr double slow_share = 0.05;    // of the fastest speed: below it rounding errors drown the frequency
+constexpr double getting_going = 4;    // radians of the slowest motion: before, it has hardly begun
+constexpr int enough_windows = 4;      // in a row within the tolerance
+
+}  // namespace
+
+DynamicRelaxation::DynamicRelaxation(const Settings& settings, const std::vector<double>& mass, double time,
+                                     NodalVectors u, NodalVectors f)
+    : settings_(settings),
+      mass_(mass),
+      begin_(time),
+      window_begin_(time),
+      u_(std::move(u)),
+      f_(std::move(f)),
+      damping_(settings.damping)
+{
+  result_.residual = 1;
+}
+
+void DynamicRelaxation::look(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last)
+{
+  const double change = distance(u_, u), moved = distance({}, u);
+  result_.seconds = time - begin_;
+  if (change < clear_change * moved && ++looks_ < settings_.longest_window && !last)
+    return;
+  looks_ = 0;
+  const double speed = change / (time - std::exchange(window_begin_, time));
+  forces(f_now_);
+  fastest_ = std::max(fastest_, speed);
+  const double squared = speed > slow_share * fastest_ ? rayleigh_quotient(u, f_now_, change) : 0;
+  u_.swap(u);
+  f_.swap(f_now_);
+  // critical for the slowest motion seen, and not more: what is faster must not slow it down
+  if (squared > 0)
+  {
+    lowest_ = lowest_ > 0 ? std::min(lowest_, squared) : squared;
+    damping_ = std::min(2 * std::sqrt(lowest_), most_damping);
+  }
+  // what is left creeps by lowest_ / damping_ of itself per second
+  if (lowest_ > 0)
+    result_.residual = speed * damping_ / lowest_ / moved;
+  else if (change == 0)
+    result_.residual = 0;
+  const bool begins = lowest_ > 0 && result_.seconds * std::sqrt(lowest_) < getting_going;
+  good_windows_ = result_.residual <= settings_.tolerance && !begins ? good_windows_ + 1 : 0;
+  result_.reached = good_windows_ == enough_windows;
+}
+
+// root of the sum of m |a - b|^2; a may be empty, for zeros
+double DynamicRelaxation::distance(const NodalVectors& a, const NodalVectors& b) const
+{
+  double sum = 0;
+  for (std::size_t n = 0; n < b.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double apart = (a.empty() ? 0 : a[n][axis]) - b[n][axis];
+      sum += mass_[n] * apart * apart;
+    }
+  return std::sqrt(sum);
+}
+
+// of the change since the window began: the frequency squared [1/s2] of the motion
+double DynamicRelaxation::rayleigh_quotient(const NodalVectors& u_now, const NodalVectors& f_now, double change) const
+{
+  double stiffness = 0;
+  for (std::size_t n = 0; n < u_.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      stiffness += (u_now[n][axis] - u_[n][axis]) * (f_now[n][axis] - f_[n][axis]);
+  return change > 0 ? std::max(stiffness / (change * change), 0.0) : 0;
+}
+
+}  // namespace frontalis

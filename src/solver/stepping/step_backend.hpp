@@ -1,0 +1,98 @@
+#pragma once
+
+#include "frontalis/byte_archive.hpp"
+#include "solver/energy/energy_account.hpp"
+#include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/step_plan.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace frontalis
+{
+
+/// One vector per node, in the order of Model::nodes.
+using NodalVectors = std::vector<std::array<double, 3>>;
+
+enum class NodalField
+{
+  displacements,  ///< [m]
+  velocities      ///< [m/s], half a step before the displacements
+};
+
+/// All that a backend keeps of a motion between two plans, in its own form.
+struct BackendState
+{
+  virtual ~BackendState() = default;
+  virtual void archive(ByteArchive& archive) = 0;
+};
+
+/// What a backend is, and the numbers of steps that suit it.
+struct BackendTraits
+{
+  std::string description;  ///< backend, number type, instruction set or device, threads
+  /// A plan lasts this long [s] if the number of its steps stays within the two bounds.
+  double seconds_per_plan = 0;
+  int fewest_steps_per_plan = 32;
+  int most_steps_per_plan = 32;
+  int steps_per_look = 32;    ///< between two looks at all displacements during dynamic relaxation
+  int steps_per_check = 512;  ///< Solver::steps_per_check
+};
+
+/// What a time stepper gives its backend to read.
+struct BackendInput
+{
+  const Model& model;
+  const Discretisation& discretisation;
+  const Conditions& conditions;
+  const SolverSettings& settings;  ///< the other three outlive the backend, this one does not
+};
+
+/// A backend: takes time steps, with the nodes and voxels in memory of its own. It begins at rest. TimeStepper makes a
+/// Solver of it.
+class StepBackend
+{
+public:
+  virtual ~StepBackend() = default;
+
+  virtual BackendTraits traits() const = 0;
+  virtual void list_allocations(AllocationList& list) const = 0;
+
+  /// Runs the plan's steps. Returns the largest frequency bound squared [1/s2] that was found in them, NaN where
+  /// displacements are not finite; or, where the plan allows it, the bound of the plan before.
+  virtual double run(const StepPlan& plan) = 0;
+  /// To be called after Conditions::running and the discretisation's bounds have changed. An effect that comes back has
+  /// no history.
+  virtual void effect_switched(Effect effect) = 0;
+
+  virtual void get(NodalField field, NodalVectors& out) const = 0;
+  /// Setting displacements brings everything else to rest. An empty list stands for zeros.
+  virtual void set(NodalField field, const NodalVectors& in) = 0;
+  /// `to` may hold an earlier state of this backend, whose memory is used again.
+  virtual void save(std::unique_ptr<BackendState>& to) const = 0;
+  virtual void restore(const BackendState& from) = 0;
+
+  /// Internal forces [N] at these displacements; null: at the present ones.
+  virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
+  /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed, if the backend
+  /// can search for it faster than internal_forces() allows.
+  virtual std::optional<double> highest_frequency_squared(int /*most_iterations*/) { return std::nullopt; }
+  virtual Monitor monitor() = 0;
+  /// Work since the account was opened; `open`: opens it now. Only called where SolverSettings::ledger was asked for.
+  virtual Work work(bool open) = 0;
+  virtual void skin(SkinState& out) = 0;
+
+protected:
+  explicit StepBackend(const BackendInput& input)
+      : model_(&input.model), discretisation_(input.discretisation), conditions_(input.conditions)
+  {
+  }
+  bool runs(Effect effect) const { return conditions_.running.has(effect); }
+
+  const Model* const model_;
+  const Discretisation& discretisation_;
+  const Conditions& conditions_;
+};
+
+}  // namespace frontalis

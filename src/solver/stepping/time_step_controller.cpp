@@ -1,0 +1,130 @@
+#include "solver/stepping/time_step_controller.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/physics/mutation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+// These numbers are empirical: the hard cases of doc/stability.md hold with them.
+constexpr double cautious_share = 0.55;  // of the critical step, instead of the safety share
+constexpr int cautious_plan = 8;         // steps
+constexpr int vibration_plan = 32;       // steps at most
+// signs of fast change, and for how many steps they call for caution
+constexpr double growth_allowed = 1.1;  // of the frequency squared from one plan to the next
+constexpr int steps_after_stiffening = 128;
+constexpr float activation_change_allowed = 0.3F;  // of a muscle within a plan
+constexpr int steps_after_a_switch = 48;
+constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
+// Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens it slowly.
+constexpr double stiffening_ratio = 4;     // of the frequency squared against rest
+constexpr double vibration_change = 0.05;  // of the frequency squared from one plan to the next
+constexpr int steps_after_vibration = 256;
+// Softening is followed slowly: tissue may stiffen again before the next plan, and each change of the step costs
+// accuracy.
+constexpr double slowest_softening = 0.95;  // of the frequency squared from one plan to the next
+
+}  // namespace
+
+TimeStepController::TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step)
+    : rest_frequency_squared_(rest_frequency_squared), safety_share_(safety_share), fixed_step_(fixed_step)
+{
+  reset();
+  if (!(fixed_step >= 0 && fixed_step <= critical_step(1)))
+    throw Error(fmt::format("time step {:g} s refused: allowed is 0 (found by the solver) to the critical {:g} s",
+                            fixed_step, critical_step(1)));
+}
+
+void TimeStepController::reset()
+{
+  state_ = {};
+  state_.frequency_squared = rest_frequency_squared_;
+}
+
+double TimeStepController::critical_step(double share) const
+{
+  return share * 2 / std::sqrt(state_.assembled.frequency_squared(state_.frequency_squared));
+}
+
+double TimeStepController::safe_step() const
+{
+  const double critical = critical_step(1);
+  return slow_share_ * (fixed_step_ > 0 ? std::min(fixed_step_, critical) : safety_share_ * critical);
+}
+
+void TimeStepController::slow_down(double share)
+{
+  if (!(share > 0 && share <= 1))
+    throw Error(fmt::format("{:g} of the time step: allowed are shares above 0 up to 1", share));
+  slow_share_ = share;
+}
+
+double TimeStepController::alarming_frequency_squared() const { return growth_allowed * state_.frequency_squared; }
+
+TimeStepController::Choice TimeStepController::choose(double remaining, double longest,
+                                                      const BackendTraits& backend) const
+{
+  const bool vibrates = state_.vibration_steps_left > 0;
+  double dt = safe_step();
+  int most_steps = static_cast<int>(std::clamp(backend.seconds_per_plan / dt, double(backend.fewest_steps_per_plan),
+                                               double(backend.most_steps_per_plan)));
+  if (state_.cautious_steps_left > 0 || vibrates)
+    dt = std::min(dt, critical_step(slow_share_ * cautious_share));
+  const bool cautious = state_.cautious_steps_left > 0 || longest <= dt;
+  if (cautious)
+    most_steps = cautious_plan;
+  else if (vibrates)
+    most_steps = std::min(vibration_plan, most_steps);
+  // a rounding error must not cost a step
+  const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
+  return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
+           cautious, cautious || vibrates };
+}
+
+void TimeStepController::observe(double frequency_squared, int steps)
+{
+  const bool changes = std::abs(frequency_squared - state_.latest_observed) > vibration_change * state_.latest_observed;
+  const bool vibrates = changes && frequency_squared > stiffening_ratio * rest_frequency_squared_;
+  const bool stiffens = frequency_squared > alarming_frequency_squared();
+  state_.latest_observed = frequency_squared;
+  state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
+  state_.vibration_steps_left = std::max(vibrates ? steps_after_vibration : 0, state_.vibration_steps_left - steps);
+  if (!mutation::time_step_of_rest)
+    state_.frequency_squared =
+        std::max({ frequency_squared, slowest_softening * state_.frequency_squared, rest_frequency_squared_ });
+  state_.assembled.steps_taken(steps);
+}
+
+bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)
+{
+  for (std::size_t m = 0; m < to.size(); ++m)
+    if (std::abs(to[m] - from[m]) > activation_change_allowed)
+    {
+      state_.cautious_steps_left = std::max(state_.cautious_steps_left, steps_after_a_switch);
+      return true;
+    }
+  return false;
+}
+
+void TimeStepController::bone_jumped()
+{
+  state_.cautious_steps_left = std::max(state_.cautious_steps_left, steps_after_a_jump);
+}
+
+void TimeStepController::displacements_set(double frequency_squared)
+{
+  state_.frequency_squared = rest_frequency_squared_;
+  if (std::isfinite(frequency_squared))
+    state_.frequency_squared = std::max(frequency_squared, rest_frequency_squared_);
+  state_.cautious_steps_left = steps_after_stiffening;
+  state_.assembled.discard();
+}
+
+}  // namespace frontalis

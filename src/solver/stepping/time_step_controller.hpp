@@ -1,0 +1,81 @@
+#pragma once
+
+#include "solver/stepping/assembled_estimate.hpp"
+#include "solver/stepping/step_backend.hpp"
+
+namespace frontalis
+{
+
+/// Chooses the length of steps, and the number of steps until the frequency bound is found again. It is told the bounds
+/// that a backend finds, activations, and when bones jump; it knows neither model nor backend.
+///
+/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. So the
+/// controller is cautious for some steps after signs of fast change: steps are shorter, plans have few steps, and every
+/// step's bound is found. While tissue that has stiffened vibrates, steps are shorter and plans not long.
+class TimeStepController
+{
+public:
+  struct State
+  {
+    double frequency_squared = 0;  ///< bound at nodes that steps are chosen by [1/s2]
+    double latest_observed = 0;    ///< latest bound that a backend found [1/s2]
+    int cautious_steps_left = 0;
+    int vibration_steps_left = 0;
+    AssembledEstimate assembled;
+
+    void archive(ByteArchive& archive)
+    {
+      archive(frequency_squared)(latest_observed)(cautious_steps_left)(vibration_steps_left);
+      assembled.archive(archive);
+    }
+  };
+  /// The next plan.
+  struct Choice
+  {
+    int steps;
+    double dt;              ///< [s]
+    bool reaches_end;       ///< of the motion
+    bool bound_every_step;  ///< as in StepPlan
+    bool bound_awaited;     ///< as in StepPlan
+  };
+
+  /// Steps take `safety_share` of the critical step, or `fixed_step` [s] if that is not 0. Throws Error if the fixed
+  /// step is above the critical one at rest.
+  TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step);
+
+  /// Longest step [s] that would be taken now if nothing called for caution.
+  double safe_step() const;
+  /// At most this share of the safe step is taken from now on. Throws Error.
+  void slow_down(double share);
+  /// Bound above which a plan's own bound has to be awaited [1/s2].
+  double alarming_frequency_squared() const;
+  /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
+  Choice choose(double remaining, double longest, const BackendTraits& backend) const;
+
+  /// After a plan: the largest bound that was found in it, or in the one before.
+  void observe(double frequency_squared, int steps);
+  /// Returns whether a muscle is switched between these activations, and is cautious then: its voxels stiffen at once,
+  /// and a little later those that it pulls on.
+  bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
+  /// The velocity of a bone has jumped (BoneMotionLimits).
+  void bone_jumped();
+  /// Displacements were set from outside, where the bound at nodes is this [1/s2].
+  void displacements_set(double frequency_squared);
+  /// The bound at rest has another value now, because effects were switched.
+  void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }
+  /// Back to rest.
+  void reset();
+
+  const State& state() const { return state_; }
+  void restore(const State& state) { state_ = state; }
+  AssembledEstimate& assembled() { return state_.assembled; }
+
+private:
+  double critical_step(double share) const;  ///< a share of it
+
+  double rest_frequency_squared_, safety_share_, fixed_step_;
+  double slow_share_ = 1;
+  State state_;
+};
+
+}  // namespace frontalis

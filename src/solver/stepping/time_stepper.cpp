@@ -1,0 +1,325 @@
+#include "solver/stepping/time_stepper.hpp"
+
+#include "frontalis/solver/rigid_motion.hpp"
+#include "solver/stepping/dynamic_relaxation.hpp"
+#include "solver/stepping/highest_frequency_search.hpp"
+#include "solver/stepping/muscle_response.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+// Viscous stresses relax when this share of the shortest time constant has passed, and at the end of each plan.
+constexpr double relaxation_interval = 0.005;
+constexpr double fully_relaxed = 1e9;  // [s] longer than any time constant
+// During dynamic relaxation a window ends at the latest after so many steps, even if nothing seems to move.
+constexpr int steps_per_window = 2048;
+
+// adds the wall seconds of its life to a sum
+class Stopwatch
+{
+public:
+  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+  double& sum_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace
+
+Controls interpolate(const Controls& from, const Controls& to, double fraction)
+{
+  Controls result = to;
+  for (std::size_t m = 0; m < result.activation.size(); ++m)
+    result.activation[m] = from.activation[m] + static_cast<float>(fraction) * (to.activation[m] - from.activation[m]);
+  for (std::size_t b = 0; b < result.bone.size(); ++b)
+    result.bone[b] = interpolate(from.bone[b], to.bone[b], fraction);
+  return result;
+}
+
+TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSettings& settings,
+                         const MakeBackend& make_backend)
+    : model_((check_model(*model), std::move(model))),
+      discretisation_(*model_),
+      effects_(*model_),
+      controller_(discretisation_.frequency_squared_max, model_->time_step_share, settings.time_step),
+      motion_(at_rest())
+{
+  conditions_.damping = model_->damping;
+  renew_conditions();
+  backend_ = make_backend({ *model_, discretisation_, conditions_, settings });
+  traits_ = backend_->traits();
+  if (settings.ledger)
+    ledger_ = std::make_unique<EnergyLedgerKeeper>(*model_, discretisation_, conditions_, *backend_);
+  open_ledger();
+}
+
+TimeStepper::Motion TimeStepper::at_rest() const
+{
+  const std::vector<float> relaxed(model_->muscles.size(), 0);
+  const std::vector<RigidTransform> in_place(model_->bones.size());
+  return { BoneMotionLimits(*model_), { relaxed, in_place }, relaxed };
+}
+
+void TimeStepper::renew_conditions()
+{
+  conditions_.running = effects_.running();
+  conditions_.gravity = effects_.gravity();
+  conditions_.activation = effects_.felt(motion_.activation);
+}
+
+void TimeStepper::reset()
+{
+  backend_->set(NodalField::displacements, {});
+  motion_ = at_rest();
+  controller_.reset();
+  profile_ = {};
+  renew_conditions();
+  open_ledger();
+}
+
+void TimeStepper::set_displacements(const NodalVectors& in)
+{
+  backend_->set(NodalField::displacements, in);
+  displacements_were_set();
+}
+
+void TimeStepper::set_velocities(const NodalVectors& in)
+{
+  backend_->set(NodalField::velocities, in);
+  open_ledger();
+}
+
+void TimeStepper::displacements_were_set()
+{
+  const double critical = monitor().critical_time_step;
+  motion_.latest_step = 0;
+  controller_.displacements_set(4 / (critical * critical));
+  open_ledger();
+}
+
+void TimeStepper::check(double seconds, const Controls& target) const
+{
+  if (!(seconds >= 0) || !std::isfinite(seconds))
+    throw Error(fmt::format("advance by {:g} s: allowed are finite durations from 0", seconds));
+  if (target.activation.size() != model_->muscles.size() || target.bone.size() != model_->bones.size())
+    throw Error(fmt::format("controls for {} muscles and {} bones; the model has {} and {}", target.activation.size(),
+                            target.bone.size(), model_->muscles.size(), model_->bones.size()));
+  for (std::size_t m = 0; m < target.activation.size(); ++m)
+    if (!(target.activation[m] >= 0 && target.activation[m] <= 1))
+      throw Error(
+          fmt::format("activation of {} is {:g}; allowed is 0 to 1", model_->muscles[m].name, target.activation[m]));
+  for (std::size_t b = 0; b < target.bone.size(); ++b)
+    if (!is_rigid_motion(target.bone[b]))
+      throw Error("pose of bone " + model_->bones[b] + " is not a finite rigid motion");
+  if (motion_.diverged)
+    throw Error("the motion has diverged earlier: reset the solver first");
+}
+
+void TimeStepper::advance(double seconds, const Controls& target)
+{
+  check(seconds, target);
+  const Stopwatch stopwatch(profile_.stepping);
+  const double begin = motion_.time, end = begin + seconds;
+  const Controls from = motion_.controls;
+  const double longest_step = motion_.bones.longest_step(from.bone, target.bone, seconds);
+  if (motion_.bones.jumps(from.bone, target.bone, seconds, time_step()))
+    controller_.bone_jumped();
+  if (seconds > 0)
+    motion_.bones.moved(from.bone, seconds);
+  while (motion_.time < end)
+  {
+    if (model_->time_step_estimate == TimeStepEstimate::assembled)
+      renew_assembled_estimate(target.activation);
+    const auto choice = controller_.choose(end - motion_.time, longest_step, traits_);
+    const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
+    const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
+    const StepPlan plan = plan_to(next, choice);
+    const double frequency_squared = backend_->run(plan);
+    motion_.time = reached;
+    motion_.latest_step = plan.dt;
+    motion_.controls = next;
+    profile_.steps += plan.steps;
+    motion_.diverged = !std::isfinite(frequency_squared);
+    if (motion_.diverged)
+      throw Diverged(fmt::format("the motion diverged at {:g} s: displacements are no longer finite", motion_.time));
+    controller_.observe(frequency_squared, plan.steps);
+  }
+  motion_.controls = target;
+}
+
+void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
+{
+  const auto search = [this](int most_iterations)
+  {
+    if (const auto found = backend_->highest_frequency_squared(most_iterations))
+      return *found;
+    NodalVectors u;
+    displacements(u);
+    const auto forces_at = [this](const NodalVectors& at, NodalVectors& out) { backend_->internal_forces(&at, out); };
+    return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
+  };
+  controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
+}
+
+// takes the muscles on to the end of the plan
+StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Choice& choice)
+{
+  StepPlan plan;
+  plan.steps = choice.steps;
+  plan.dt = choice.dt;
+  plan.first_kick = motion_.latest_step > 0 ? 0.5 * (motion_.latest_step + plan.dt) : plan.dt;
+  plan.time = motion_.time;
+  const std::vector<float> before = motion_.activation;
+  respond(*model_, motion_.controls.activation, next.activation, plan.steps * plan.dt, motion_.activation);
+  plan.begin = { effects_.felt(before), motion_.controls.bone };
+  plan.end = { effects_.felt(motion_.activation), next.bone };
+  conditions_.activation = plan.end.activation;
+  const bool switched = controller_.muscles_switched(before, motion_.activation);
+  plan.bound_every_step = choice.bound_every_step || switched;
+  plan.bound_awaited = choice.bound_awaited || switched;
+  plan.alarming_frequency_squared = controller_.alarming_frequency_squared();
+  plan.relaxation.assign(plan.steps, 0);
+  double elapsed = 0;
+  for (int step = 0; step < plan.steps && effects_.running().has(Effect::viscosity); ++step)
+  {
+    elapsed += plan.dt;
+    if (step + 1 < plan.steps && elapsed < relaxation_interval * discretisation_.viscous_time_min)
+      continue;
+    plan.relaxation[step] = settling_ ? fully_relaxed : elapsed;
+    elapsed = 0;
+  }
+  return plan;
+}
+
+Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double seconds,
+                                const std::function<bool(const Equilibrium&)>& go_on)
+{
+  if (!(tolerance > 0) || !std::isfinite(tolerance))
+    throw Error(fmt::format("equilibrium within {:g}: allowed are tolerances above 0", tolerance));
+  check(seconds, target);
+  // settled motion has no history: muscles have responded, viscous stresses relaxed
+  struct Settling
+  {
+    explicit Settling(TimeStepper& s) : stepper(s) { stepper.settling_ = true; }
+    ~Settling()
+    {
+      stepper.conditions_.damping = stepper.model_->damping;
+      stepper.settling_ = false;
+      stepper.open_ledger();
+    }
+    TimeStepper& stepper;
+  } const settling(*this);
+  motion_.activation = motion_.controls.activation = target.activation;
+  renew_conditions();
+
+  NodalVectors u, f;
+  displacements(u);
+  internal_forces(f);
+  const double begin = motion_.time;
+  const int longest_window = std::max(1, steps_per_window / traits_.steps_per_look);
+  DynamicRelaxation relaxation({ tolerance, model_->damping, longest_window }, discretisation_.node_mass, begin, u, f);
+  const auto forces = [this](NodalVectors& out) { internal_forces(out); };
+  while (!relaxation.result().reached && motion_.time - begin < seconds)
+  {
+    advance(std::min(traits_.steps_per_look * time_step(), seconds - (motion_.time - begin)), target);
+    displacements(u);
+    relaxation.look(motion_.time, u, forces, 1 / time_step(), motion_.time - begin >= seconds);
+    conditions_.damping = relaxation.damping();
+    if (go_on && !go_on(relaxation.result()))
+      break;
+  }
+  return relaxation.result();
+}
+
+void TimeStepper::switch_effect(Effect effect, bool on)
+{
+  if (!effects_.change(effect, on))
+    return;
+  renew_conditions();
+  if (is_of_fibres(effect))
+  {
+    discretisation_.bound(effects_.running());
+    controller_.set_rest_frequency(discretisation_.frequency_squared_max);
+  }
+  effects_switched({ effect });
+}
+
+// the discretisation's bounds are those of the effects already
+void TimeStepper::effects_switched(const std::vector<Effect>& effects)
+{
+  for (const Effect effect : effects)
+    backend_->effect_switched(effect);
+  if (ledger_)
+    ledger_->effect_switched();
+  if (motion_.diverged)
+    return;
+  if (std::any_of(effects.begin(), effects.end(), is_of_fibres))
+    displacements_were_set();
+  else
+    open_ledger();
+}
+
+std::vector<Allocation> TimeStepper::allocations() const
+{
+  AllocationList list;
+  if (skin_values_)
+    skin_values_->list_allocations(list);
+  discretisation_.list_allocations(list);
+  list.add(Effect::elasticity, "mode of the highest frequency", motion_.highest_mode);
+  if (ledger_)
+    ledger_->list_allocations(list);
+  backend_->list_allocations(list);
+  return list.take();
+}
+
+void TimeStepper::skin_field(SkinField field, std::vector<float>& out)
+{
+  const Stopwatch stopwatch(profile_.skin);
+  if (const EffectPresence fields = presence_of(*model_, Effect::output_fields); !fields.present)
+    throw Error("the model has no output_fields: " + fields.why);
+  if (!skin_values_)
+    skin_values_ = std::make_unique<SkinValues>(*model_, discretisation_);
+  NodalVectors u;
+  displacements(u);
+  skin_values_->compute(field, u, conditions_.activation, effects_.running(), out);
+}
+
+Monitor TimeStepper::monitor()
+{
+  const Stopwatch stopwatch(profile_.monitor);
+  Monitor result = backend_->monitor();
+  result.step_share =
+      motion_.latest_step * std::sqrt(controller_.state().assembled.share()) / result.critical_time_step;
+  return result;
+}
+
+void TimeStepper::open_ledger()
+{
+  const Stopwatch stopwatch(profile_.monitor);
+  if (ledger_ && !settling_)
+    ledger_->open(motion_.time, ledger_step());
+}
+
+EnergyLedger TimeStepper::ledger()
+{
+  if (!ledger_)
+    throw Error("no energy ledger is kept: ask for it in SolverSettings");
+  const Stopwatch stopwatch(profile_.monitor);
+  return ledger_->balance(motion_.time, ledger_step());
+}
+
+double TimeStepper::ledger_step() const { return motion_.latest_step > 0 ? motion_.latest_step : time_step(); }
+
+}  // namespace frontalis

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "solver/energy/energy_ledger_keeper.hpp"
+#include "solver/skin/skin_values.hpp"
+#include "solver/stepping/bone_motion_limits.hpp"
+#include "solver/stepping/effect_switches.hpp"
+#include "solver/stepping/time_step_controller.hpp"
+
+#include <functional>
+
+namespace frontalis
+{
+
+/// The Solver of every backend: plans a motion in parts of equal steps, as its components advise, and has the backend
+/// take them.
+class TimeStepper final : public Solver
+{
+public:
+  using MakeBackend = std::function<std::unique_ptr<StepBackend>(const BackendInput&)>;
+
+  /// Throws Error as make_solver().
+  TimeStepper(std::shared_ptr<const Model> model, const SolverSettings& settings, const MakeBackend& make_backend);
+
+  void reset() override;
+  void advance(double seconds, const Controls& target) override;
+  void check(double seconds, const Controls& target) const override;
+  Equilibrium settle(const Controls& target, double tolerance, double seconds,
+                     const std::function<bool(const Equilibrium&)>& go_on) override;
+  void save(std::unique_ptr<Snapshot>& to) override;
+  void restore(const Snapshot& snapshot) override;
+  std::string pack() override;
+  void unpack(const std::string& bytes) override;
+  int steps_per_check() const override { return traits_.steps_per_check; }
+  void slow_down(double share) override { controller_.slow_down(share); }
+  double time() const override { return motion_.time; }
+  double time_step() const override { return controller_.safe_step(); }
+  const Controls& controls() const override { return motion_.controls; }
+  const std::vector<float>& activation() const override { return motion_.activation; }
+  EffectSet effects() const override { return effects_.running(); }
+  void switch_effect(Effect effect, bool on) override;
+  std::vector<Allocation> allocations() const override;
+  void skin(SkinState& out) override { backend_->skin(out); }
+  void skin_field(SkinField field, std::vector<float>& out) override;
+  Monitor monitor() override;
+  EnergyLedger ledger() override;
+  Profile profile() const override { return profile_; }
+  void displacements(NodalVectors& out) const override { backend_->get(NodalField::displacements, out); }
+  void set_displacements(const NodalVectors& in) override;
+  void set_velocities(const NodalVectors& in) override;
+  void internal_forces(NodalVectors& out) override { backend_->internal_forces(nullptr, out); }
+  std::string description() const override { return traits_.description; }
+
+private:
+  /// How far the motion has come, besides what controller, ledger and backend know.
+  struct Motion
+  {
+    BoneMotionLimits bones;
+    Controls controls;
+    std::vector<float> activation;
+    double time = 0;         // [s]
+    double latest_step = 0;  // [s]; 0: there was none
+    bool diverged = false;
+    NodalVectors highest_mode{};  // empty until it is searched for
+
+    void archive(ByteArchive& archive)
+    {
+      bones.archive(archive);
+      archive(controls.activation)(controls.bone)(activation)(time)(latest_step)(diverged)(highest_mode);
+    }
+  };
+  struct MotionSnapshot;
+
+  Motion at_rest() const;
+  void renew_conditions();
+  void renew_assembled_estimate(const std::vector<float>& asked);
+  StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
+  void effects_switched(const std::vector<Effect>& effects);
+  /// Time step and ledger begin anew.
+  void displacements_were_set();
+  void open_ledger();
+  double ledger_step() const;
+  std::string owner() const;
+
+  std::shared_ptr<const Model> model_;
+  Discretisation discretisation_;
+  EffectSwitches effects_;
+  Conditions conditions_;
+  TimeStepController controller_;
+  std::unique_ptr<StepBackend> backend_;
+  BackendTraits traits_;
+  std::unique_ptr<EnergyLedgerKeeper> ledger_;  // where it was asked for
+  std::unique_ptr<SkinValues> skin_values_;     // from the first request on
+  Motion motion_;
+  Profile profile_;
+  bool settling_ = false;  // viscous stresses are fully relaxed, and no ledger is kept
+};
+
+}  // namespace frontalis

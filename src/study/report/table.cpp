@@ -1,0 +1,203 @@
+#include "frontalis/study/table.hpp"
+
+#include "frontalis/error.hpp"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace frontalis
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+std::string shown(const Table::Cell& cell)
+{
+  const auto* number = std::get_if<double>(&cell);
+  return number != nullptr ? readable(*number) : std::get<std::string>(cell);
+}
+
+// length in characters of UTF-8 text
+std::size_t width(const std::string& text)
+{
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string csv_cell(const Table::Cell& cell)
+{
+  if (const auto* number = std::get_if<double>(&cell))
+    return std::isnan(*number) ? "" : fmt::format("{}", *number);
+  const auto& text = std::get<std::string>(cell);
+  if (text.find_first_of(",\"\n\r") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+std::string readable(double value, int digits)
+{
+  return std::isnan(value) ? "" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string millimetres(double metres, int digits) { return readable(1e3 * metres, digits) + " mm"; }
+
+std::string wrapped(const std::string& text, std::size_t columns)
+{
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+  {
+    // rows of tables, headings, pictures and code must stay whole; further lines of a list's entry are indented
+    const bool is_whole = line.find_first_of("|#!< ") == 0, is_entry = line.rfind("- ", 0) == 0;
+    std::size_t used = 0;
+    std::istringstream words(is_whole ? "" : line);
+    for (std::string word; words >> word;)
+    {
+      const bool breaks = used > 0 && used + 1 + width(word) > columns;
+      const std::string before = used == 0 ? "" : !breaks ? " " : is_entry ? "\n  " : "\n";
+      out += before + word;
+      used = (breaks ? before.size() - 1 : used + before.size()) + width(word);
+    }
+    out += used == 0 ? line + '\n' : "\n";
+  }
+  return out;
+}
+
+std::string json_text(const nlohmann::ordered_json& json)
+{
+  // names come from files: bytes that are no UTF-8 must not end the program
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+void make_folder(const std::string& path)
+{
+  std::error_code failed;
+  fs::create_directories(path, failed);
+  if (failed)
+    throw Error(path + ": cannot be made: " + failed.message());
+}
+
+void write_text(const std::string& path, const std::string& text)
+{
+  std::error_code failed;
+  // a device or a pipe cannot be replaced
+  const bool is_replaceable = !fs::exists(path, failed) || fs::is_regular_file(path, failed);
+  const std::string place = is_replaceable ? path + ".partial" : path;
+  std::ofstream file(place, std::ios::binary);
+  file << text;
+  file.close();
+  failed = file ? std::error_code() : std::error_code(errno, std::generic_category());
+  if (is_replaceable && !failed)
+    fs::rename(place, path, failed);
+  if (!failed)
+    return;
+  std::error_code ignored;
+  if (is_replaceable)
+    fs::remove(place, ignored);
+  throw Error(path + ": cannot be written: " + failed.message());
+}
+
+void Table::add(std::vector<Cell> row)
+{
+  if (row.size() != columns_.size())
+    throw Error(fmt::format("a row has {} cells; its table has {} columns", row.size(), columns_.size()));
+  rows_.push_back(std::move(row));
+}
+
+std::string Table::text() const
+{
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < columns_.size(); ++c)
+  {
+    std::size_t widest = width(columns_[c]);
+    for (const auto& row : rows_)
+      widest = std::max(widest, width(shown(row[c])));
+    widths.push_back(widest);
+  }
+  std::string out;
+  const auto line = [&](auto&& cell_of)
+  {
+    std::string padded;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+    {
+      const std::string cell = cell_of(c);
+      padded += cell + std::string(widths[c] - width(cell) + 2, ' ');
+    }
+    padded.erase(padded.find_last_not_of(' ') + 1);
+    out += padded + '\n';
+  };
+  line([&](std::size_t c) { return columns_[c]; });
+  for (const auto& row : rows_)
+    line([&](std::size_t c) { return shown(row[c]); });
+  return out;
+}
+
+std::string Table::markdown() const
+{
+  std::string out = "|", rule = "|";
+  for (const auto& column : columns_)
+  {
+    out += " " + column + " |";
+    rule += "---|";
+  }
+  out += '\n' + rule + '\n';
+  for (const auto& row : rows_)
+  {
+    out += "|";
+    for (const auto& cell : row)
+      out += " " + shown(cell) + " |";
+    out += '\n';
+  }
+  return out;
+}
+
+std::string Table::csv() const
+{
+  std::string out;
+  const auto line = [&](const auto& cells)
+  {
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      out += (c > 0 ? "," : "") + csv_cell(cells[c]);
+    out += "\r\n";
+  };
+  line(columns_);
+  for (const auto& row : rows_)
+    line(row);
+  return out;
+}
+
+std::string Table::json() const
+{
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const auto& row : rows_)
+  {
+    auto& object = rows.emplace_back(nlohmann::ordered_json::object());
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+    {
+      const auto* number = std::get_if<double>(&row[c]);
+      if (number == nullptr)
+        object[columns_[c]] = std::get<std::string>(row[c]);
+      else if (*number == std::floor(*number) && std::abs(*number) < 1e15)
+        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 and not 5.0
+      else
+        object[columns_[c]] = *number;
+    }
+  }
+  return json_text(rows);
+}
+
+}  // namespace frontalis

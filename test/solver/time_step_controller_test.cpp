@@ -1,0 +1,216 @@
+#include "solver/stepping/time_step_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace frontalis;
+
+namespace
+{
+
+constexpr double rest = 4e10;      // frequency squared [1/s2]
+constexpr double critical = 1e-5;  // [s]
+constexpr double forever = 1e9;    // [s]
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+BackendTraits traits()
+{
+  BackendTraits backend;
+  backend.most_steps_per_plan = 100;
+  backend.seconds_per_plan = 9e-4;
+  return backend;
+}
+
+TimeStepController::Choice choose(const TimeStepController& controller)
+{
+  return controller.choose(forever, unlimited, traits());
+}
+
+bool is_calm(const TimeStepController& controller)
+{
+  const auto choice = choose(controller);
+  return !choice.bound_every_step && !choice.bound_awaited && choice.steps > 32;
+}
+
+bool is_cautious(const TimeStepController& controller)
+{
+  const auto choice = choose(controller);
+  const double step = 0.55 * 2 / std::sqrt(controller.state().frequency_squared);
+  return choice.bound_every_step && choice.bound_awaited && choice.steps == 8 && choice.dt <= 1.000001 * step;
+}
+
+// steps of observations at rest until it is calm
+int steps_until_calm(TimeStepController& controller)
+{
+  int steps = 0;
+  for (; !is_calm(controller) && steps < 10000; ++steps)
+    controller.observe(rest, 1);
+  return steps;
+}
+
+}  // namespace
+
+TEST(TimeStepController, takes_a_share_of_the_critical_step_or_a_fixed_one)
+{
+  EXPECT_DOUBLE_EQ(TimeStepController(rest, 0.9, 0).safe_step(), 0.9 * critical);
+  TimeStepController fixed(rest, 0.9, 0.99 * critical);
+  EXPECT_DOUBLE_EQ(fixed.safe_step(), 0.99 * critical);
+  fixed.observe(4 * rest, 1);
+  EXPECT_DOUBLE_EQ(fixed.safe_step(), critical / 2) << "no longer than critical";
+  for (const double refused : { 1.01 * critical, -critical, std::nan("") })
+    EXPECT_THROW(TimeStepController(rest, 0.9, refused), Error);
+}
+
+TEST(TimeStepController, divides_a_motion_into_equal_steps_that_end_with_it)
+{
+  const TimeStepController controller(rest, 0.9, 0);
+  for (const double seconds : { 1e-7, 8.9e-6, 9e-6, 9.1e-6, 5e-4, 1.7e-3 })
+  {
+    double left = seconds;
+    int plans = 0;
+    for (bool ended = false; !ended; ++plans)
+    {
+      const auto choice = controller.choose(left, unlimited, traits());
+      EXPECT_LE(choice.dt, 0.9 * critical * (1 + 1e-8));
+      EXPECT_LE(choice.steps, 100);
+      left -= choice.steps * choice.dt;
+      ended = choice.reaches_end;
+      EXPECT_EQ(ended, left < 1e-12 * seconds) << seconds;
+    }
+    EXPECT_EQ(plans, seconds > 1e-3 ? 2 : 1) << seconds;
+  }
+  EXPECT_EQ(controller.choose(9e-6, unlimited, traits()).steps, 1) << "a rounding error costs no step";
+}
+
+TEST(TimeStepController, plans_last_as_long_as_the_backend_likes)
+{
+  const TimeStepController controller(rest, 0.9, 0);
+  BackendTraits backend;
+  EXPECT_EQ(controller.choose(forever, unlimited, backend).steps, 32);
+  backend.most_steps_per_plan = 128;
+  for (const double seconds : { 1e-6, 4.5e-4, 1.0 })
+  {
+    backend.seconds_per_plan = seconds;
+    const int wanted = static_cast<int>(std::min(std::max(seconds / controller.safe_step(), 32.0), 128.0));
+    EXPECT_EQ(controller.choose(forever, unlimited, backend).steps, wanted);
+  }
+}
+
+TEST(TimeStepController, follows_what_stiffens_at_once_and_what_softens_slowly)
+{
+  TimeStepController controller(rest, 0.9, 0);
+  controller.observe(1.05 * rest, 32);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(1.05));
+  EXPECT_TRUE(is_calm(controller));
+  controller.observe(2 * rest, 32);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0));
+  controller.observe(1.2 * rest, 32);
+  EXPECT_DOUBLE_EQ(controller.state().frequency_squared, 0.95 * 2 * rest);
+  for (int plan = 0; plan < 100; ++plan)
+    controller.observe(0.5 * rest, 32);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical) << "never longer than at rest";
+}
+
+TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
+{
+  TimeStepController stiffened(rest, 0.9, 0);
+  stiffened.observe(1.09 * rest, 32);
+  EXPECT_TRUE(is_calm(stiffened));
+  EXPECT_GT(1.21 * rest, stiffened.alarming_frequency_squared());
+  stiffened.observe(1.21 * rest, 32);
+  EXPECT_TRUE(is_cautious(stiffened));
+  EXPECT_EQ(steps_until_calm(stiffened), 128);
+
+  TimeStepController switched(rest, 0.9, 0);
+  EXPECT_FALSE(switched.muscles_switched({ 0, 0.5f }, { 0.29f, 0.25f }));
+  EXPECT_TRUE(is_calm(switched));
+  EXPECT_TRUE(switched.muscles_switched({ 0, 0.5f }, { 0, 0.1f }));
+  EXPECT_TRUE(is_cautious(switched));
+  EXPECT_EQ(steps_until_calm(switched), 48);
+
+  TimeStepController jumped(rest, 0.9, 0);
+  jumped.bone_jumped();
+  EXPECT_TRUE(is_cautious(jumped));
+  EXPECT_FALSE(jumped.muscles_switched({ 0 }, { 0 }));
+  jumped.observe(1.2 * rest, 900);
+  EXPECT_EQ(steps_until_calm(jumped), 128) << "what lasts longer counts";
+
+  TimeStepController set(rest, 0.9, 0);
+  set.displacements_set(3 * rest);
+  EXPECT_DOUBLE_EQ(set.safe_step(), 0.9 * critical / std::sqrt(3.0));
+  EXPECT_TRUE(is_cautious(set));
+  set.displacements_set(std::nan(""));
+  EXPECT_DOUBLE_EQ(set.safe_step(), 0.9 * critical);
+}
+
+TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
+{
+  TimeStepController controller(rest, 0.9, 0);
+  // a contraction stiffens slowly, to five times
+  for (double squared = rest; squared < 5 * rest; squared *= 1.03)
+    controller.observe(squared, 32);
+  EXPECT_TRUE(is_calm(controller));
+  const double squared = controller.state().frequency_squared;
+  controller.observe(0.9 * squared, 32);
+  const auto choice = choose(controller);
+  EXPECT_FALSE(choice.bound_every_step);
+  EXPECT_TRUE(choice.bound_awaited);
+  EXPECT_EQ(choice.steps, 32);
+  EXPECT_LE(choice.dt, (1 + 1e-8) * 0.55 * 2 / std::sqrt(0.95 * squared));
+  for (int step = 0; step < 256; ++step)
+    controller.observe(0.9 * squared, 1);
+  EXPECT_TRUE(is_calm(controller));
+  // far below that, changes of the same size are no vibration
+  TimeStepController soft(rest, 0.9, 0);
+  for (const double share : { 1.0, 0.9, 1.0, 0.9 })
+    soft.observe(share * rest, 32);
+  EXPECT_TRUE(is_calm(soft));
+}
+
+TEST(TimeStepController, looks_at_every_step_where_bones_limit_it)
+{
+  const TimeStepController controller(rest, 0.9, 0);
+  const auto choice = controller.choose(forever, 1e-6, traits());
+  EXPECT_NEAR(choice.dt, 1e-6, 1e-12);
+  EXPECT_TRUE(choice.bound_every_step);
+  EXPECT_EQ(choice.steps, 8);
+  EXPECT_FALSE(controller.choose(forever, 0.91 * critical, traits()).bound_every_step);
+}
+
+TEST(TimeStepController, slows_down_whatever_it_chooses)
+{
+  TimeStepController controller(rest, 0.9, 0);
+  for (const bool cautious : { false, true })
+  {
+    if (cautious)
+      controller.bone_jumped();
+    const double whole = choose(controller).dt;
+    controller.slow_down(0.25);
+    EXPECT_NEAR(choose(controller).dt / whole, 0.25, 1e-6);
+    controller.slow_down(1);
+  }
+  for (const double refused : { 0.0, 1.5, std::nan("") })
+    EXPECT_THROW(controller.slow_down(refused), Error);
+}
+
+TEST(TimeStepController, goes_on_from_a_kept_state)
+{
+  TimeStepController one(rest, 0.9, 0), other(rest, 0.9, 0);
+  one.observe(5 * rest, 32);
+  one.slow_down(0.5);
+  other.restore(one.state());
+  EXPECT_DOUBLE_EQ(other.safe_step(), 2 * one.safe_step()) << "the share is not the motion's";
+  for (const double share : { 6.0, 4.0, 4.5, 3.0 })
+  {
+    one.observe(share * rest, 100);
+    other.observe(share * rest, 100);
+    EXPECT_EQ(choose(one).steps, choose(other).steps);
+    EXPECT_EQ(one.state().frequency_squared, other.state().frequency_squared);
+  }
+  one.slow_down(1);
+  one.reset();
+  EXPECT_TRUE(is_calm(one));
+  EXPECT_DOUBLE_EQ(one.safe_step(), 0.9 * critical);
+}

@@ -1,0 +1,246 @@
+#include "solver/stepping/time_stepper.hpp"
+
+#include "block_model.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace frontalis;
+
+namespace
+{
+
+/// What a scripted backend was asked for, and what it answers.
+struct Script
+{
+  std::vector<StepPlan> plans;
+  std::vector<Effect> switched;
+  std::vector<double> damping;  // of each plan
+  double bound = 0;             // frequency squared [1/s2]
+  double velocity = 0;          // of all nodes, along z [m/s]
+  Work work;
+};
+
+struct ScriptState : BackendState
+{
+  std::size_t plans = 0;
+  void archive(ByteArchive& archive) override { archive(plans); }
+};
+
+/// Moves nothing: it takes down what it is to do.
+class ScriptedBackend : public StepBackend
+{
+public:
+  ScriptedBackend(const BackendInput& input, Script& script) : StepBackend(input), script_(script)
+  {
+    script_.bound = discretisation_.frequency_squared_max;
+  }
+  BackendTraits traits() const override
+  {
+    BackendTraits traits;
+    traits.description = "scripted";
+    return traits;
+  }
+  void list_allocations(AllocationList& list) const override { list.add(Effect::elasticity, "script", 3); }
+  double run(const StepPlan& plan) override
+  {
+    script_.plans.push_back(plan);
+    script_.damping.push_back(conditions_.damping);
+    return script_.bound;
+  }
+  void effect_switched(Effect effect) override { script_.switched.push_back(effect); }
+  void get(NodalField field, NodalVectors& out) const override
+  {
+    out.assign(model_->nodes.size(), { { 0, 0, field == NodalField::velocities ? script_.velocity : 0 } });
+  }
+  void set(NodalField, const NodalVectors& in) override { script_.velocity = in.empty() ? 0 : in[0][2]; }
+  void save(std::unique_ptr<BackendState>& to) const override
+  {
+    auto state = std::make_unique<ScriptState>();
+    state->plans = script_.plans.size();
+    to = std::move(state);
+  }
+  void restore(const BackendState& from) override { script_.plans.resize(static_cast<const ScriptState&>(from).plans); }
+  void internal_forces(const NodalVectors*, NodalVectors& out) override { out.assign(model_->nodes.size(), {}); }
+  Monitor monitor() override
+  {
+    Monitor monitor;
+    monitor.critical_time_step = 2 / std::sqrt(script_.bound);
+    monitor.internal = 3;
+    monitor.hourglass = 2;
+    return monitor;
+  }
+  Work work(bool open) override { return script_.work = open ? Work{} : script_.work; }
+  void skin(SkinState& out) override { out = {}; }
+
+private:
+  Script& script_;
+};
+
+Model model_of()
+{
+  Model model = test::block_model();
+  Muscle muscle;
+  muscle.name = "muscle";
+  muscle.stress_reference = 1e4;
+  muscle.rise_time = 1e-3;
+  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
+  model.bones = { "jaw" };
+  model.gravity = { { 0, 0, -9.81 } };
+  model.materials[0].viscous_share = { { 0.3, 0 } };
+  model.materials[0].viscous_time = { { 0.02, 0 } };
+  return model;
+}
+
+struct Stepped
+{
+  explicit Stepped(const Model& model = model_of(), const SolverSettings& settings = {})
+      : solver(std::make_shared<const Model>(model), settings,
+               [this](const BackendInput& input) { return std::make_unique<ScriptedBackend>(input, script); })
+  {
+  }
+  Script script;
+  TimeStepper solver;
+};
+
+const Controls contracted{ { 0.25f }, { rigid_motion({ { 0, 0, 0.02 } }, { { 1e-4, 0, 0 } }) } };
+
+}  // namespace
+
+TEST(TimeStepper, plans_follow_one_another_from_the_begin_to_the_end)
+{
+  Stepped s;
+  s.solver.advance(0.01, contracted);
+  s.solver.advance(0.003, contracted);
+  EXPECT_EQ(s.solver.time(), 0.01 + 0.003);
+  double time = 0, latest = 0;
+  std::int64_t steps = 0;
+  std::vector<float> activation{ 0 };
+  for (const StepPlan& plan : s.script.plans)
+  {
+    EXPECT_NEAR(plan.time, time, 1e-12);
+    EXPECT_DOUBLE_EQ(plan.first_kick, latest > 0 ? 0.5 * (latest + plan.dt) : plan.dt);
+    EXPECT_EQ(plan.begin.activation, activation);
+    EXPECT_GE(plan.end.activation[0], plan.begin.activation[0]);
+    EXPECT_LE(plan.dt, s.solver.time_step() * 1.0001);
+    ASSERT_EQ(plan.relaxation.size(), static_cast<std::size_t>(plan.steps));
+    EXPECT_GT(plan.relaxation.back(), 0) << "viscous stresses relax at the end of each plan";
+    double relaxed = 0;
+    for (const double seconds : plan.relaxation)
+    {
+      EXPECT_LT(seconds, 0.005 * 0.02 + 1.01 * plan.dt);
+      relaxed += seconds;
+    }
+    EXPECT_NEAR(relaxed, plan.steps * plan.dt, 1e-12);
+    time += plan.steps * plan.dt;
+    latest = plan.dt;
+    steps += plan.steps;
+    activation = plan.end.activation;
+  }
+  EXPECT_EQ(s.solver.profile().steps, steps);
+  EXPECT_EQ(s.solver.controls().activation, contracted.activation);
+  EXPECT_EQ(s.script.plans.back().end.bone[0].translation, contracted.bone[0].translation);
+  EXPECT_EQ(s.solver.activation(), activation);
+  EXPECT_GT(activation[0], 0.24f);
+}
+
+TEST(TimeStepper, refuses_bad_targets_and_stops_where_numbers_are_not_finite)
+{
+  Stepped s;
+  EXPECT_THROW(s.solver.advance(-1, contracted), Error);
+  EXPECT_THROW(s.solver.advance(0.01, { { 1.5f }, contracted.bone }), Error);
+  EXPECT_THROW(s.solver.advance(0.01, { {}, contracted.bone }), Error);
+  EXPECT_TRUE(s.script.plans.empty());
+  std::unique_ptr<Snapshot> snapshot;
+  s.solver.save(snapshot);
+  s.script.bound = std::nan("");
+  EXPECT_THROW(s.solver.advance(0.01, contracted), Diverged);
+  EXPECT_EQ(s.script.plans.size(), 1u);
+  EXPECT_THROW(s.solver.advance(0.01, contracted), Error);
+  s.solver.restore(*snapshot);
+  s.script.bound = 1;
+  EXPECT_NO_THROW(s.solver.advance(1e-4, contracted));
+  s.script.bound = std::nan("");
+  EXPECT_THROW(s.solver.advance(0.01, contracted), Diverged);
+  s.script.bound = 1;
+  s.solver.reset();
+  EXPECT_NO_THROW(s.solver.advance(1e-4, contracted));
+}
+
+TEST(TimeStepper, tells_the_backend_what_runs)
+{
+  Stepped s;
+  s.solver.switch_effect(Effect::contraction, false);
+  s.solver.switch_effect(Effect::contraction, false);
+  s.solver.switch_effect(Effect::viscosity, false);
+  EXPECT_EQ(s.script.switched, (std::vector<Effect>{ Effect::contraction, Effect::viscosity }));
+  s.solver.advance(0.01, contracted);
+  for (const StepPlan& plan : s.script.plans)
+  {
+    EXPECT_EQ(plan.end.activation[0], 0) << "as fibres feel it";
+    for (const double seconds : plan.relaxation)
+      EXPECT_EQ(seconds, 0);
+  }
+  EXPECT_GT(s.solver.activation()[0], 0.2f) << "muscles respond all the same";
+  EXPECT_THROW(s.solver.switch_effect(Effect::sliding, false), Error);
+  EXPECT_THROW(s.solver.switch_effect(Effect::elasticity, false), Error);
+}
+
+TEST(TimeStepper, settles_with_relaxed_viscous_stresses_and_full_activation)
+{
+  Stepped s;
+  const Equilibrium result = s.solver.settle(contracted, 1e-3, 1, {});
+  EXPECT_TRUE(result.reached) << "nothing moves";
+  for (const StepPlan& plan : s.script.plans)
+  {
+    EXPECT_EQ(plan.begin.activation[0], 0.25f);
+    EXPECT_GT(plan.relaxation.back(), 1e6);
+  }
+  s.solver.advance(1e-3, contracted);
+  EXPECT_LT(s.script.plans.back().relaxation.back(), 1e-3);
+  EXPECT_EQ(s.script.damping.back(), model_of().damping);
+}
+
+TEST(TimeStepper, takes_back_only_its_own_motions)
+{
+  Stepped one, other;
+  one.solver.advance(0.01, contracted);
+  const std::string bytes = one.solver.pack();
+  other.solver.unpack(bytes);
+  EXPECT_EQ(other.solver.time(), 0.01);
+  EXPECT_EQ(other.solver.activation(), one.solver.activation());
+  EXPECT_EQ(other.script.plans.size(), one.script.plans.size());
+  EXPECT_THROW(other.solver.unpack(bytes + "x"), Error);
+  EXPECT_THROW(other.solver.unpack(bytes.substr(1)), Error);
+  std::unique_ptr<Snapshot> snapshot;
+  one.solver.save(snapshot);
+  EXPECT_THROW(other.solver.restore(*snapshot), Error);
+}
+
+TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_backend_notes)
+{
+  SolverSettings settings;
+  settings.ledger = true;
+  Stepped s(model_of(), settings);
+  EXPECT_EQ(s.solver.ledger().imbalance(), 0);
+  EXPECT_THROW(Stepped().solver.ledger(), Error);
+
+  s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; to friction, damping, viscosity
+  const EnergyLedger now = s.solver.ledger();
+  // velocities stand half a step before displacements, and gravity changes them within the step
+  const double mass = 1000 * 64e-9;
+  EXPECT_NEAR(now.kinetic, 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
+  EXPECT_NEAR(now.initial, now.kinetic + 3 + 2, 1e-12);
+  EXPECT_EQ(now.internal, 3);
+  EXPECT_EQ(now.hourglass, 2);
+  EXPECT_EQ(now.gravity, 0) << "nothing has moved";
+  EXPECT_EQ(now.muscle, 11);
+  EXPECT_NEAR(now.load, 7, 1e-12);
+  EXPECT_EQ(now.constraint, 5 + 1) << "without friction";
+  EXPECT_EQ(now.friction, 1);
+  EXPECT_EQ(now.largest, 11);
+  EXPECT_NEAR(now.imbalance(), 2 + 3 + 1 - 11 - 7 - 6, 1e-12);
+}
