@@ -18,11 +18,9 @@ constexpr double steps_of_lead = 10;
 void CudaSolver::kick(StepArguments& g, double seconds) const
 {
   g.kick = seconds;
-  g.keep = static_cast<float>(conditions_.keep(seconds));
-  g.gain = static_cast<float>(conditions_.gain(seconds));
-  for (int axis = 0; axis < 3; ++axis)
-    g.impulse[axis] =
-        mutation::no_gpu_gravity ? 0 : static_cast<float>(conditions_.gain(seconds) * conditions_.gravity[axis]);
+  static_cast<physics::Kick<float>&>(g) = conditions_.kick<float>(seconds);
+  if (mutation::no_gpu_gravity)
+    std::fill_n(g.impulse, 3, 0.0f);
 }
 
 StepArguments CudaSolver::arguments(double dt) const

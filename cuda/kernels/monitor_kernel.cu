@@ -1,10 +1,7 @@
 #include "cuda/kernels/monitor_kernel.hpp"
 
-#include "frontalis/physics/assumed_strain.hpp"
-#include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/selective_reduced.hpp"
-#include "frontalis/physics/time_step.hpp"
-#include "solver/material_laws.hpp"
+#include "cuda/kernels/palette_voxel.cuh"
+#include "frontalis/physics/element/voxel_look.hpp"
 
 namespace frontalis
 {
@@ -13,60 +10,13 @@ namespace cuda
 
 constexpr int block = 128;
 
-using Kinematics = physics::Kinematics<double>;
-
-__device__ double elastic_energy(const StepArguments& g, std::uint32_t palette,
-                                 const physics::NeoHookean<double>& material, const Kinematics& k)
+/// A voxel with its geometry in double.
+struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
 {
-  double sum = physics::energy(material, k);
-  for (std::uint32_t l = g.law_begin == nullptr ? 0 : g.law_begin[palette];
-       g.law_begin != nullptr && l < g.law_begin[palette + 1]; ++l)
-  {
-    const LawEntry& entry = g.laws[l];
-    double parameters[11];
-    for (int p = 0; p < 11; ++p)
-      parameters[p] = entry.parameters[p];
-    visit_law(static_cast<Law>(entry.law), parameters,
-              [&](const auto& law, const auto&... families)
-              { sum += double(entry.weight) * physics::energy(law, k, families...); });
-  }
-  return sum;
-}
+  const double* grid_scale;
 
-__device__ double stiffness_now(const StepArguments& g, std::uint32_t palette, const Kinematics& k)
-{
-  const float4 entry = g.palette[palette];
-  const physics::NeoHookean<double> material{ entry.x, entry.y };
-  double sum = physics::voxel_stiffness_now(double(entry.w), material, k, g.stretch_weight, g.stretch_half_sum);
-  for (std::uint32_t l = g.law_begin == nullptr ? 0 : g.law_begin[palette];
-       g.law_begin != nullptr && l < g.law_begin[palette + 1]; ++l)
-  {
-    const LawEntry& law = g.laws[l];
-    double parameters[11];
-    for (int p = 0; p < 11; ++p)
-      parameters[p] = law.parameters[p];
-    sum += law_stiffening(static_cast<Law>(law.law), parameters, double(law.at_rest), double(law.per_tangent), k);
-  }
-  return sum;
-}
-
-__device__ double hourglass_energy(const StepArguments& g, std::uint32_t palette, const Kinematics& k,
-                                   const double (&mode)[3][8])
-{
-  const double scalar = g.palette[palette].z;
-  if (g.stabilisation != nullptr)
-  {
-    const float4 s = g.stabilisation[palette];
-    const double weight[3] = { g.hourglass_weight[0], g.hourglass_weight[1], g.hourglass_weight[2] };
-    return physics::hourglass_energy(physics::AssumedStrain<double>{ s.x, s.y, s.z, s.w }, scalar, weight, k.F, mode);
-  }
-  double sum = 0;
-  for (const auto& component : mode)
-    for (int m = 0; m < 8; ++m)
-      if (physics::is_hourglass_mode(m))
-        sum += component[m] * component[m];
-  return 0.5 * scalar * sum;
-}
+  __device__ __forceinline__ const double* scale() const { return grid_scale; }
+};
 
 __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels, std::uint32_t index, const float4* u)
 {
@@ -81,36 +31,13 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
   }
   for (auto& component : mode)
     physics::walsh_hadamard(component);
-  const Kinematics k = physics::kinematics(mode[0], mode[1], mode[2], voxels.scale);
-  const float4 entry = g.palette[voxel.palette];
-  const auto name = static_cast<std::int32_t>(index);
-  PlaneMonitor own{ 0, 0, 0, k.J, 0, name };
-  double stiffness = 0;
-  if (!g.selective_reduced)
-  {
-    own.internal = elastic_energy(g, voxel.palette, { entry.x, entry.y }, k);
-    own.hourglass = hourglass_energy(g, voxel.palette, k, mode);
-    stiffness = stiffness_now(g, voxel.palette, k);
-  }
-  else
-  {
-    own.internal = 0.5 * entry.y * k.dilatation * k.dilatation;
-    for (int point = 0; point < 8; ++point)
-    {
-      double moved[3][8];
-      physics::at_gauss_point(point, mode, moved);
-      const Kinematics there = physics::kinematics(moved[0], moved[1], moved[2], voxels.scale);
-      own.internal += 0.125 * elastic_energy(g, voxel.palette, { entry.x, 0 }, there);
-      own.worst_jacobian = fmin(own.worst_jacobian, there.J);
-      stiffness = physics::larger_or_none(stiffness, stiffness_now(g, voxel.palette, there));
-    }
-  }
-  own.inverted = own.worst_jacobian <= 0 ? 1 : 0;
-  voxels.stiffness[index] = static_cast<float>(stiffness);
-  return own;
+  const PaletteVoxel<double, Effects::general_element> palette = palette_voxel<double>(g, voxel.palette);
+  const auto look = physics::look_at(LookedVoxel{ palette, voxels.scale }, mode);
+  voxels.stiffness[index] = static_cast<float>(look.stiffness);
+  return PlaneMonitor::of_voxel(look, static_cast<std::int32_t>(index));
 }
 
-// each block takes its part of the voxels and of the nodes, in one order
+// each block takes its part of the voxels and of the nodes, in a fixed order
 __global__ void __launch_bounds__(block)
     monitor(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels, const float4* u,
             PlaneMonitor* parts)
@@ -136,14 +63,14 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
-// a node is this corner of one voxel at most, so that nothing is added in a racing order
+// a node is this corner of one voxel at most, so that the order of sums is fixed
 __global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)
     voxels.node_stiffness[voxels.voxels[e].node[corner]] += voxels.stiffness[e];
 }
 
-// a voxel as stiff as the stiffest of its nodes; of those at one node the stiffest
+// of the voxels at the node with the highest bound, the stiffest
 __global__ void __launch_bounds__(block)
     find_stiffest(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels,
                   const float4* u, StiffestVoxel* parts)

@@ -42,10 +42,10 @@ struct StiffestVoxel
   }
 };
 
-/// Parts that launch_monitor() leaves, to be added up.
+/// Number of partial sums that launch_monitor() writes.
 constexpr int monitor_blocks = 264;
 
-/// Energies and worst voxels, in double, and the stiffest ones, at displacements u.
+/// Energies, worst voxels and stiffest voxels at displacements u, in double.
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
 

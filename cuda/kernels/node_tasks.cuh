@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/ramp.hpp"
 #include "cuda/kernels/sliding_nodes.cuh"
 
@@ -8,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Velocities for the account of work, where one is kept.
+/// Keeps a velocity for the account of work, if there is one.
 __device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t node, const float* v)
 {
   if (to[0] != nullptr)
@@ -31,9 +32,7 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
   {
     if (g.load_relief != nullptr)
       force[i] += g.load_relief[3 * index + i];
-    const float change = g.gain * at.before.w * static_cast<float>(force[i]);
-    n.v[i] += change;
-    n.u[i] += g.dt * change;
+    physics::add_load(g.gain * at.before.w, g.dt, static_cast<float>(force[i]), n.u[i], n.v[i]);
   }
   keep_velocity(g.velocity_free, at.node, n.v);
 }
@@ -45,11 +44,8 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
   const float old[3] = { at.before.x, at.before.y, at.before.z };
   for (int i = 0; i < 3; ++i)
     if (motion.fixed[i])
-    {
-      n.u[i] =
-          static_cast<float>(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]));
-      n.v[i] = (n.u[i] - old[i]) / g.dt;
-    }
+      physics::move_to(motion.value[i] * physics::ramped(g.time + (at.step + 1) * g.dt_exact, motion.ramp[i]), old[i],
+                       g.dt, n.u[i], n.v[i]);
 }
 
 static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
@@ -62,14 +58,11 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
   const double to[3] = { moved.x, moved.y, moved.z };
   const float old[3] = { at.before.x, at.before.y, at.before.z };
   for (int i = 0; i < 3; ++i)
-  {
-    n.u[i] = static_cast<float>(to[i]);
-    n.v[i] = (n.u[i] - old[i]) / g.dt;
-  }
+    physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// By NodeEffect. Called through this table, an effect that no node has is no part of the kernels' own code. `With`:
-/// what nodes do.
+/// Functions by NodeEffect. They are called through this table, so that they take no registers of the kernels. With:
+/// effects of nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
@@ -80,7 +73,7 @@ static __device__ const NodeFunction node_functions[node_effects] = {
   follow_bone,
 };
 
-/// What one node has, after its update.
+/// Applies the effects of a node after its update.
 template <Effects With>
 static __device__ __noinline__ void apply_task(const StepArguments& g, const NodeTask& task, const float4& before,
                                                int step, NodeState& n)
@@ -92,8 +85,8 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// For what is rare: called through an address that the compiler does not see through, a function keeps to registers of
-/// its own. Seen through, find_others() had the kernels spill 140 bytes a thread.
+/// Address of a function that is called rarely, hidden from the compiler: it cannot then plan the registers of the
+/// function together with those of its caller, which would spill.
 template <class Function>
 __device__ __forceinline__ Function* aside(Function* function)
 {
@@ -102,13 +95,13 @@ __device__ __forceinline__ Function* aside(Function* function)
   return reinterpret_cast<Function*>(address);
 }
 
-/// As find_others() takes it.
+/// Contact of a node that slides, numbered as for find_others().
 __device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
 {
   return task.of[node_sliding] >= 0 ? task.of[node_sliding] : -1 - task.of[node_gliding];
 }
 
-/// What nodes have that have been written already: tasks [begin, end), a whole warp's.
+/// Applies tasks [begin, end) to nodes after their update has been written; called by whole warps.
 template <Effects With>
 __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
                                           const float4* u, float4* next, int step)
@@ -120,11 +113,11 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
     NodeTask task{};
     if (t < end)
     {
-      // all that may be wanted at once: what waits for memory is most of it
+      // all loads at once: most of the time here is latency of memory
       task = g.tasks[t];
       const float4 before = u[task.node], now = next[task.node];
       n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-      // the inverse mass of what is written: a buffer that was never stepped holds none
+      // the inverse mass is in the new buffer for sure; the old one may never have been written by a step
       const float4 old = make_float4(before.x, before.y, before.z, now.w);
       const std::int32_t contact = task.of[node_sliding];
       if (has<With, Effects::sliding> && slides_only(task))
@@ -141,7 +134,7 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
   }
 }
 
-/// What the update of a node needs, fetched before the stress is computed.
+/// Data of a node's update, loaded before the stress is computed.
 struct NodeFetch
 {
   float4 own;
@@ -150,12 +143,12 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // without a condition, so that nothing waits for it; nodes that are not stepped here are there to be read too
+  // without a condition, so that no instruction waits for it; nodes of other strips can be read too
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }
 
-/// Damped central difference.
+/// A node after a step of the damped central difference.
 __device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32_t node, const NodeFetch& fetch,
                                              const float* force)
 {
@@ -163,8 +156,7 @@ __device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32
   NodeState n;
 #pragma unroll
   for (int i = 0; i < 3; ++i)
-    // two multiply-adds, with gravity or without
-    n.v[i] = (g.keep * fetch.v[i] + g.impulse[i]) - share * force[i];
+    n.v[i] = physics::kicked(g, i, fetch.v[i], share, force[i]);
   n.u[0] = fetch.own.x + g.dt * n.v[0];
   n.u[1] = fetch.own.y + g.dt * n.v[1];
   n.u[2] = fetch.own.z + g.dt * n.v[2];

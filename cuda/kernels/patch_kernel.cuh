@@ -10,13 +10,15 @@ namespace frontalis
 namespace cuda
 {
 
-// A block of threads keeps its patch in shared memory, halo included, for as many steps as a launch has: a thread a
-// voxel, forces of the corners through shared memory, then a thread a node. Between steps only the nodes on the border
-// go from block to block. Displacement and the number of the step travel in one word of 16 bytes, so that whoever waits
-// for a node waits for its data and for nothing else: there is no barrier of all blocks and no fence. Each node's
-// writer also waits for its readers, a step later, because who reads a patch is read by it: two buffers are enough.
+// A block of threads keeps its patch in shared memory, with its halo, for all steps of a launch. In a step each thread
+// computes a voxel and writes the forces on its corners to shared memory, then updates a node. Between steps only the
+// nodes on the border are exchanged with other blocks. Displacement and number of the step are written as one word of
+// 16 bytes, so that a reader waits for the data that it needs and for nothing else: there is no barrier between blocks
+// and no fence. Neighbouring patches read each other, so that a writer is at most one step ahead of its readers, and
+// two buffers are enough.
 
-/// Marks what is written during a launch: the inverse masses that stand there otherwise are not negative.
+/// Number of a step, in the place of the inverse mass. The highest bit tells it from inverse masses, which are not
+/// negative.
 __device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
 {
   return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
@@ -56,7 +58,7 @@ __device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8
   }
 }
 
-/// What a voxel needs besides its corners' displacements.
+/// Data of a voxel besides the displacements of its corners.
 struct VoxelFetch
 {
   uint4 corner;
@@ -114,7 +116,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: its voxels in the order of the corner that it is of them.
+/// Force on a node: the sum over its voxels, in the order of the corners that it is of them.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];
@@ -142,13 +144,13 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Of a node that slides or glides, by its entry of StepArguments::patch_tasks: as find_others() takes it.
+/// Contact of a node that slides, from its entry of StepArguments::patch_tasks; numbered as for find_others().
 __device__ __forceinline__ std::int32_t contact_of(const StepArguments& g, std::int32_t task)
 {
   return task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
 }
 
-/// By a node that is the block's `own`.
+/// Asks for a plane ahead. own: number of the node in the block.
 static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
                                               std::uint32_t own)
 {
@@ -158,8 +160,8 @@ static __device__ __noinline__ void ask_ahead(const StepArguments& g, const Step
       { memory.v[0][own], memory.v[1][own], memory.v[2][own] });
 }
 
-/// `own`: the node among those of the block. `last`: the launch ends with this step, and leaves everything in memory.
-/// Whether the node leaves its plane.
+/// Updates a node. own: its number in the block; last: the launch ends with this step, and everything is written to
+/// memory. Returns whether the node leaves its plane.
 template <Effects With>
 __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -186,7 +188,7 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
       slide<With>(g, task, { fetch.own, node, step }, fetched, n);
     else if (has<With, Effects::tasks> && task != patch_task::none)
     {
-      // a copy, so that the others' numbers stay in registers
+      // a copy, so that the state of nodes without tasks stays in registers
       NodeState held = n;
       apply_task<part<With, of_nodes>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
       n = held;
@@ -205,7 +207,7 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   }
   else if (on_border)
     send(next + node, n.u, mark(g, step + 1));
-  // what is asked in the last step would be waited for
+  // not in the last step: the launch would wait for the answer
   if (has<With, Effects::sliding> && n.asks && !last)
   {
     const std::int32_t contact = contact_of(g, task);
@@ -215,9 +217,9 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   return n.leaves;
 }
 
-/// By whole warps: nodes that leave their planes get others. Neighbours have what they wait for already. `own` as for
-/// step_patch_node(). Finds the block's memory by itself: a reference to PatchMemory would have the kernel keep that in
-/// local memory, and a forehead's step took 7 us and not 5. `With`: what nodes do.
+/// Called by whole warps: nodes that leave their planes get new ones. Neighbours do not wait for this, because the
+/// nodes' displacements are sent before. own: as for step_patch_node(). PatchMemory is not an argument: passed by
+/// reference, the whole kernel would keep it in local memory. With: effects of nodes.
 template <Effects With>
 static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
                                                  std::uint32_t node, std::uint32_t own, bool last)
@@ -248,7 +250,7 @@ static __device__ __noinline__ void leave_planes(const StepArguments& g, const S
     }
 }
 
-// an int: nvcc does not name the sets of an enumeration
+// Set: as in step_kernel.cuh
 template <int Set>
 __global__ void __launch_bounds__(most_patch_threads, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
@@ -299,7 +301,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     {
       const Patch patch = g.patches[p];
       VoxelFetch voxel{};
-      // whole warps: the first voxels have fibres or viscosity, the others ask for neither
+      // voxels with fibres or viscosity come first; whole warps of the others compute neither
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
       const auto fetch = [&](std::uint32_t v) {
         return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
@@ -360,7 +362,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   }
 }
 
-/// Kernels of patches by what their voxels have; `Nodes`: what their nodes do.
+/// The patch kernel for a set of effects. Nodes: the effects of nodes in it.
 template <Effects Nodes, int... Voxels>
 const void* patch_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {
@@ -373,7 +375,8 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// In units of their own: the table of what slides counts for all calls of a unit, of kernels that never slide too.
+/// In translation units of their own: nvcc gives every kernel that calls through a table the registers of the largest
+/// function in all tables of the unit.
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 

@@ -10,10 +10,10 @@ namespace cuda
 /// A block's shared memory: see patch_bytes().
 struct PatchMemory
 {
-  float4* place;        // halo, then own nodes: displacement and, of own nodes, inverse mass
+  float4* place;        // halo, then own nodes: displacement; of own nodes also the inverse mass
   float* v[3];          // of own nodes
-  float* force;         // [corner][component][voxel], then stiffness; the last column is no voxel's and stays 0
-  std::uint32_t width;  // of a row of it
+  float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
+  std::uint32_t width;  // of a row of `force`
 };
 
 __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)

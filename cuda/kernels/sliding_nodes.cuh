@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cuda/kernels/bone_pose.cuh"
-#include "frontalis/physics/sliding.hpp"
+#include "frontalis/physics/element/sliding_node.hpp"
 #include "cuda/kernels/warp_search.cuh"
 
 namespace frontalis
@@ -9,25 +9,19 @@ namespace frontalis
 namespace cuda
 {
 
-// Nodes that slide on surfaces: a step on a tangent plane, and another plane.
+// Nodes that slide on surfaces: the step on a tangent plane, and the change to another plane.
 
 struct NodeState
 {
   float u[3];
   float v[3];
-  bool leaves = false;  ///< goes on so that in the next step it would be farther from its plane than that serves
-  bool asks = false;    ///< the same, but StepArguments::lead later
+  bool leaves = false;  ///< in the next step it will be farther from the plane's reference than the plane is valid
+  bool asks = false;    ///< it will be so within StepArguments::lead
 };
 
-/// A node's velocity turns with its plane.
-__device__ __forceinline__ void turn(const float4& from, const float4& to, float* v)
+__device__ __forceinline__ physics::Vec3<float> normal_of(const float4& normal_offset)
 {
-  using Vector = physics::Vec3<float>;
-  const Vector turned = physics::turned_with_normal(Vector{ from.x, from.y, from.z }, Vector{ to.x, to.y, to.z },
-                                                    Vector{ v[0], v[1], v[2] });
-  v[0] = turned.x;
-  v[1] = turned.y;
-  v[2] = turned.z;
+  return { normal_offset.x, normal_offset.y, normal_offset.z };
 }
 
 __device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& s, const float* u)
@@ -37,11 +31,12 @@ __device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& 
 
 __device__ __forceinline__ float squared(const float* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
-/// By which share of a plan a node that `goes` so far in one [m] is before where its plane is found best: it goes half
-/// of what the plane before served, squared `served` [m2], and half of a plan at most.
+/// How far ahead of a node its next plane is searched, as a fraction of a plan: where the node will be after half of
+/// the distance over which its last plane was valid, but at most half a plan later. goes: distance in a plan [m];
+/// served: squared distance over which the last plane was valid [m2].
 __device__ __forceinline__ float share_before(float goes, float served)
 {
-  // a node without a plane serves nothing, and may not go either
+  // a node may have had no plane, and may not move
   const float far = sqrtf(fmaxf(served, 0.0f));
   return goes > far ? 0.5f * far / goes : 0.5f;
 }
@@ -53,7 +48,7 @@ __device__ __forceinline__ float time_before(const StepArguments& g, const float
   return plan * share_before(plan * sqrtf(squared(v)), served);
 }
 
-/// What a step needs of the plane of a node that was found at a place; `serves`: see SlidingContact.
+/// The plane of a node in the form that a step needs, from the one that was found at `at`. serves: see SlidingContact.
 __device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
                                                       const SurfaceContact::Point& at, float& serves)
 {
@@ -70,24 +65,23 @@ __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
   return static_cast<std::uint32_t>(index) < g.rubbing_count;
 }
 
-__device__ __forceinline__ float along(const float4& normal, const float* v)
-{
-  return normal.x * v[0] + normal.y * v[1] + normal.z * v[2];
-}
-
-/// Gives a node another plane, and turns its velocity with it. `With`: what nodes do.
+/// Gives a node another plane, and turns its velocity with it. With: effects of nodes.
 template <Effects With>
 __device__ __forceinline__ void change_plane(const StepArguments& g, std::int32_t index, const TangentPlane& to,
                                              float* v)
 {
-  const float before = along(to.normal_offset, v);
-  turn(g.contact_planes[index].normal_offset, to.normal_offset, v);
+  physics::Vec3<float> turned{ v[0], v[1], v[2] };
+  const float taken =
+      physics::turn_with_plane(normal_of(g.contact_planes[index].normal_offset), normal_of(to.normal_offset), turned);
+  v[0] = turned.x;
+  v[1] = turned.y;
+  v[2] = turned.z;
   if (has<With, Effects::friction> && rubs(g, index))
-    g.rubbing[index].turning += before - along(to.normal_offset, v);
+    g.rubbing[index].turning += taken;
   g.contact_planes[index] = to;
 }
 
-/// The plane that was found at a place.
+/// The same with the plane that was found at `at`.
 template <Effects With>
 __device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
                                        const SurfaceContact::Point& at, float* v)
@@ -102,11 +96,11 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
   return x * x + y * y + z * z;
 }
 
-/// What a step needs of a sliding node's contact, as it was read before the step.
+/// Data of a sliding node's contact, read before the step.
 struct SlidingFetch
 {
   TangentPlane plane;
-  RubbingContact rubbing;  ///< where it rubs
+  RubbingContact rubbing;  ///< if it has friction
 };
 
 template <Effects With>
@@ -118,7 +112,7 @@ __device__ __forceinline__ SlidingFetch fetch_contact(const StepArguments& g, st
   return contact;
 }
 
-/// A node in a step: displacement before it and inverse mass.
+/// A node in a step. before: displacement before the step, and inverse mass.
 struct NodeStep
 {
   float4 before;
@@ -126,31 +120,27 @@ struct NodeStep
   int step;
 };
 
-/// What friction takes [J] from a node whose velocity it changes, on a surface with a normal and a velocity. `free`:
-/// velocity before constraints.
+/// Energy that friction takes from a node [J]; see physics::friction_work().
 static __device__ __forceinline__ double lost_to_friction(const StepArguments& g, const NodeStep& at,
                                                           const SurfaceContact::Point& normal,
                                                           const SurfaceContact::Point& surface_velocity,
                                                           const SurfaceContact::Point& free,
                                                           const SurfaceContact::Point& v)
 {
-  using Point = SurfaceContact::Point;
-  const Point change = v - free, tangential = change - dot(change, normal) * normal;
-  const Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node], g.velocity_before[2][at.node] };
-  return -dot(tangential, 0.5 * (old + v) - surface_velocity) / double(at.before.w);
+  const SurfaceContact::Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node],
+                                   g.velocity_before[2][at.node] };
+  return physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
 }
 
-/// `taken`: normal speed that the plane took from the node in this step.
+/// Friction on a surface that is still. taken: normal speed that the plane removed in this step.
 static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                            const SlidingFetch& contact, float taken, physics::Vec3<float>& u,
                                            physics::Vec3<float>& v, const float (&free)[3])
 {
   const RubbingContact& s = contact.rubbing;
   const float reaction = (s.turning + taken) * static_cast<float>(g.rate);
-  const float pressing = s.pressing + static_cast<float>(g.friction_response) * (reaction - s.pressing);
-  const physics::Vec3<float> lost = physics::friction_loss(s.friction, g.dt * pressing, norm(v)) * v;
-  v = v - lost;
-  u = u - g.dt * lost;
+  float pressing = s.pressing;
+  physics::rub(s.friction, static_cast<float>(g.friction_response), g.dt, reaction, pressing, u, v);
   g.rubbing[index].pressing = pressing;
   g.rubbing[index].turning = 0;
   const float4& normal = contact.plane.normal_offset;
@@ -159,7 +149,7 @@ static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t 
                                                { free[0], free[1], free[2] }, { v.x, v.y, v.z });
 }
 
-/// On a surface that is still.
+/// Step of a node that slides on a surface that is still.
 template <Effects With>
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                       const SlidingFetch& contact, NodeState& n)
@@ -167,7 +157,7 @@ __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index
   physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
   const TangentPlane& plane = contact.plane;
   const float4& p = plane.normal_offset;
-  const float taken = physics::slide(physics::Vec3<float>{ p.x, p.y, p.z }, -p.w, u, v);
+  const float taken = physics::slide(normal_of(p), -p.w, u, v);
   if (has<With, Effects::friction> && rubs(g, index))
     rub(g, index, at, contact, taken, u, v, n.v);
   const auto leaves_within = [&](float seconds)
@@ -186,7 +176,7 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   slide<With>(g, index, at, fetch_contact<With>(g, index), n);
 }
 
-/// Sliding on a surface that follows a bone, in double (see gliding_nodes.cpp).
+/// Step of a node that slides on a surface that follows a bone, in double as in gliding_nodes.cpp.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {
@@ -195,51 +185,43 @@ static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t i
   const Pose now = pose_at(g, at.step + 1, bone), before = pose_at(g, at.step, bone);
   GlidingContact& s = g.gliding[index];
   const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
-  Point p = now.inwards(rest + Point{ n.u[0], n.u[1], n.u[2] });
-  const Point surface_velocity = g.rate * (now.outwards(p) - before.outwards(p));
-  Point w = now.turned_back(free - surface_velocity);
+  const physics::RelativeMotion motion =
+      physics::relative_to(now, before, g.rate, rest + Point{ n.u[0], n.u[1], n.u[2] }, free);
+  Point p = motion.place, w = motion.velocity;
   const Point& normal = s.plane.normal;
   double taken = 0;
   if (normal.x != s.turned_to.x || normal.y != s.turned_to.y || normal.z != s.turned_to.z)
   {
-    // what turns it is a part of the reaction
-    taken = dot(normal, w);
-    w = physics::turned_with_normal(s.turned_to, normal, w);
-    taken -= dot(normal, w);
+    taken = physics::turn_with_plane(s.turned_to, normal, w);
     s.turned_to = normal;
   }
   taken += physics::slide(normal, s.plane.height, p, w);
   const bool has_friction = has<With, Effects::friction> && s.friction > 0;
   if (has_friction)
-  {
-    const double pressing = s.pressing + g.friction_response * (taken * g.rate - s.pressing);
-    s.pressing = pressing;
-    const Point lost = physics::friction_loss(s.friction, g.dt_exact * pressing, norm(w)) * w;
-    w = w - lost;
-    p = p - g.dt_exact * lost;
-  }
+    physics::rub(s.friction, g.friction_response, g.dt_exact, taken * g.rate, s.pressing, p, w);
   const Point next = p + g.dt_exact * w, slipped = next - s.reference;
   const bool leaves = dot(slipped, slipped) > s.plane.limit * s.plane.limit;
-  // where it is to have another plane
+  // the next plane is searched there
   if (leaves)
     s.reference = next;
   const Point further = next + double(g.lead) * w, gone = further - s.reference;
   const bool asks = g.lead > 0 && !leaves && dot(gone, gone) > s.plane.limit * s.plane.limit;
-  // its state changes to nothing_ahead by its node's thread alone
+  // only the thread of this node sets the state to nothing_ahead
   GlidingSearch& search = g.gliding_searches[index];
   if (asks && search.state == nothing_ahead)
     search.ahead = further;
-  const Point moved = now.outwards(p) - rest, v = now.turned(w) + surface_velocity;
+  const Point moved = now.outwards(p) - rest, v = now.turned(w) + motion.surface_velocity;
   if (has_friction && g.friction_work != nullptr)
-    g.friction_work[g.rubbing_count + index] += lost_to_friction(g, at, now.turned(normal), surface_velocity, free, v);
+    g.friction_work[g.rubbing_count + index] +=
+        lost_to_friction(g, at, now.turned(normal), motion.surface_velocity, free, v);
   n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) },
         leaves,
         asks };
 }
 
-/// By whole warps, after a step: those that leave their planes get others before the next. u and v are theirs;
-/// `contact`: into StepArguments::sliding, or -1 - index into ::gliding.
+/// Called by whole warps after a step: nodes that leave their planes get new ones. contact: index into
+/// StepArguments::sliding, or -1 - index into ::gliding.
 template <int Warps, Effects With>
 __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, std::int32_t contact, const float (&u)[3],
                                          float (&v)[3])

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/element/node_motion.hpp"
 #include "solver/contact/surface_contact.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
@@ -12,7 +13,7 @@
 namespace frontalis
 {
 
-/// What holds or moves nodes besides the forces of their voxels, in the order in which it does.
+/// Effects on nodes besides the forces of their voxels, in the order in which they are applied.
 enum NodeEffect : std::uint8_t
 {
   node_load,        ///< into StepArguments::load_begin
@@ -23,17 +24,17 @@ enum NodeEffect : std::uint8_t
   node_effects      ///< how many there are
 };
 
-/// What one node has of them.
+/// The effects of one node.
 struct NodeTask
 {
   std::uint32_t node;             ///< device node
-  std::int32_t of[node_effects];  ///< indices, by NodeEffect; below 0: not there
+  std::int32_t of[node_effects];  ///< index of each NodeEffect; negative: the node does not have it
 };
 
-/// Whether the node slides on a surface that is still, and has nothing else.
+/// Whether the node slides on a surface that is still, and has no other effect.
 __host__ __device__ inline bool slides_only(const NodeTask& task)
 {
-  static_assert(node_effects == 5, "each of them stands below");
+  static_assert(node_effects == 5, "each of them is tested below");
   return task.of[node_sliding] >= 0 &&
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
@@ -59,9 +60,9 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// In strips planes are found beside a plan's steps for so many nodes of each `search_group` that follow one another in
-/// StepArguments::sliding and then ::gliding, in models of up to `small_model` such nodes for all of them: what a
-/// search knows of its surface takes 296 bytes.
+/// In models that run as strips, new tangent planes are searched for while a plan's steps run. Nodes in
+/// StepArguments::sliding, then in ::gliding, form groups of `search_group`; each group has room for `group_searches`
+/// searches at a time, because one search takes 296 bytes. Models of up to `small_model` such nodes have room for all.
 constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
 
 /// A node on a still surface: what an exact closest point needs.
@@ -70,16 +71,16 @@ struct SlidingContact
   double rest[3];  ///< [m]
   SurfaceContact contact;
   std::uint32_t node;
-  std::int32_t search;         ///< in strips, into StepArguments::searching, where a plane is found beside the steps
+  std::int32_t search;         ///< index into StepArguments::searching while a plane is searched for beside the steps
   float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
 };
 
-/// What friction on a still surface needs besides.
+/// What friction on a still surface needs in addition.
 struct RubbingContact
 {
   float friction;  ///< coefficient
-  float pressing;  ///< reaction over mass that friction knows of [m/s2]
-  float turning;   ///< normal speed that changes of the plane took, a part of the next reaction [m/s]
+  float pressing;  ///< reaction over mass, with the delay of friction [m/s2]
+  float turning;   ///< normal speed removed by changes of the plane; part of the next reaction [m/s]
 };
 
 /// A node on a surface that follows a bone: what each step needs of it, in the frame of the bone.
@@ -88,13 +89,13 @@ struct GlidingContact
   double rest[3];  ///< [m]
   std::int32_t bone;
   double friction;
-  double pressing;  ///< reaction over mass that friction knows of [m/s2]
+  double pressing;  ///< reaction over mass, with the delay of friction [m/s2]
   ContactPlane plane;
   SurfaceContact::Point reference;  ///< where the plane was found
-  SurfaceContact::Point turned_to;  ///< normal of the plane that its velocity is parallel to
+  SurfaceContact::Point turned_to;  ///< normal of the plane to which its velocity is parallel
 };
 
-/// What an exact closest point of it needs, and the plane that is found before it is needed.
+/// What a search for its exact closest point needs, and the plane that was found before it is needed.
 struct GlidingSearch
 {
   SurfaceContact contact;
@@ -110,13 +111,13 @@ struct GlidingSearch
 struct TangentPlane
 {
   float4 normal_offset;
-  float4 reference;  ///< displacement there; w: square of ContactPlane::limit [m2], below 0: there is no plane yet
+  float4 reference;  ///< displacement there; w: square of ContactPlane::limit [m2], negative: there is no plane yet
 };
 
-/// In the place of TangentPlane::reference.w of planes that are found before they are needed.
+/// Values of TangentPlane::reference.w of planes in StepArguments::planes_ahead: none is there, or one is asked for.
 constexpr float nothing_ahead = -1, wanted_ahead = -2;
 
-/// A law beyond neo-Hookean that a voxel has in part.
+/// A law beyond neo-Hookean of a part of a voxel's tissue.
 struct LawEntry
 {
   std::int32_t law;
@@ -127,16 +128,16 @@ struct LawEntry
 };
 
 /// Steps of equal length, or the internal forces alone. Pointers are to device memory.
-struct StepArguments
+struct StepArguments : physics::Kick<float>
 {
-  // what is where: patches, or strips
+  // the partition: patches or strips
   const Patch* patches;
   std::uint32_t patch_count;
   const uint4* patch_corners;       ///< VoxelPatches::corner
-  const uint2* patch_makes;         ///< of each voxel of each patch: palette entry, word of its fibres
+  const uint2* patch_makes;         ///< per voxel of a patch: palette entry, word of its fibres
   const std::uint32_t* halo;        ///< VoxelPatches::halo
   const uint4* node_voxels;         ///< VoxelPatches::node_voxel
-  const std::int32_t* patch_tasks;  ///< of each device node: see patch_task
+  const std::int32_t* patch_tasks;  ///< per device node: see patch_task
   const Strip* strips;
   const uint2* slots;  ///< StripSlot: node and palette entry
   std::uint32_t strip_count;
@@ -145,8 +146,8 @@ struct StepArguments
   const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: that of u
   std::int32_t first;
 
-  // what voxels are made of: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
-  // largest eigenvalue of the stiffness at rest [N/m]; entry 0 is nothing
+  // materials of voxels: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
+  // largest eigenvalue of the stiffness at rest [N/m]; entry 0 has no stiffness
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
@@ -170,21 +171,21 @@ struct StepArguments
   const NodeTask* tasks;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;
-  const double* vertex_force;  ///< three a vertex, at full ramp [N]
-  const double* load_ramp;     ///< one a load [s]
-  const double* load_relief;   ///< three a loaded node: what gravity is less on scaled masses [N]; null: nowhere
+  const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
+  const double* load_ramp;     ///< one per load [s]
+  const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; null: none
   SlidingContact* sliding;
   TangentPlane* contact_planes;
   TangentPlane* planes_ahead;  ///< found before they are needed; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
-  RubbingContact* rubbing;  ///< of the first `rubbing_count` of ::sliding, which have friction
+  RubbingContact* rubbing;  ///< of the first `rubbing_count` nodes in ::sliding, which have friction
   std::uint32_t rubbing_count;
   GlidingContact* gliding;
   GlidingSearch* gliding_searches;
   std::uint32_t gliding_count;
   SurfaceContact* searching;  ///< `searches` for each search_group
-  std::uint32_t searches;     ///< 0: planes are asked for within launches (plane_queue.cuh), not from plan to plan
-  float lead;  ///< how long before a node leaves its plane another is asked for within a launch [s]; 0: none is
+  std::uint32_t searches;     ///< 0: planes are asked for within launches (plane_queue.cuh), not between plans
+  float lead;                 ///< another plane is asked for this long before a node leaves its plane [s]; 0: never
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
   const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
@@ -194,30 +195,29 @@ struct StepArguments
   float stretch_weight[3];    ///< 1/h^2 over the sum of the three
   float stretch_half_sum;     ///< half of that sum [1/m2]
   float hourglass_weight[3];  ///< 1 / (4 sqrt(3) h)
-  float dt, keep, gain;       ///< v = keep v - gain f / m + impulse
-  float impulse[3];
+  float dt;
   double time, dt_exact;
   double rate, friction_response;            ///< 1 / dt_exact; physics::friction_response
-  double kick;                               ///< for how long forces change velocities in these steps [s]
-  std::int32_t step_begin, step_end, steps;  ///< of the plan; a launch may do a part of it
-  std::uint32_t* look;         ///< bits of the bound of the highest frequency squared at the plan's last step, or all
-  bool look_always;            ///< at every step of the plan
+  double kick;                               ///< for how long forces change velocities in each of these steps [s]
+  std::int32_t step_begin, step_end, steps;  ///< this launch runs [step_begin, step_end) of the plan's steps
+  std::uint32_t* look;         ///< bits of the bound of the highest frequency squared, at the plan's last step
+  bool look_always;            ///< the same at all steps of the plan
   bool forces_only;            ///< internal forces into u[1 - first], nothing updated
   float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
   float* velocity_free[3];     ///< after it and the loads, before constraints
-  double* friction_work;       ///< lost to friction by each that rubs, then by each that glides [J], or null
-  std::uint32_t steps_before;  ///< that this solver's launches have done before this one
+  double* friction_work;       ///< lost to friction [J] per node of ::rubbing, then of ::gliding; or null
+  std::uint32_t steps_before;  ///< number of steps in earlier launches of this solver
 };
 
-/// Threads of a block of the strip kernel; a warp walks one strip.
+/// Threads of a block of the strip kernel; each warp takes one strip.
 constexpr int step_block = 128;
 
 /// Planes of slots that a warp fetches past the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads of a patch. Where nodes slide, its last warp finds their planes (plane_queue.cuh).
+/// Most threads of a block of the patch kernel. Where nodes slide, its last warp finds their planes (plane_queue.cuh).
 constexpr std::uint32_t most_patch_threads = 512;
-/// Of them those of the warp that finds planes.
+/// Threads of the warp that finds planes.
 constexpr std::uint32_t finding_threads = 32;
 /// Most patches that a block takes in turn.
 constexpr int most_turns = 8;
@@ -225,8 +225,8 @@ constexpr int most_turns = 8;
 /// Most muscles that a model may have on the GPU: their activations lie in shared memory.
 constexpr int most_muscles = 512;
 
-/// Entries of patch_tasks: 0 and up: the node slides on this contact and nothing else; none: nothing holds it; still:
-/// it never moves; else other - index of its NodeTask.
+/// Entries of patch_tasks. 0 or more: the node slides on this contact and has no other effect; none: it has no effect;
+/// still: it never moves; other - i: it has NodeTask i.
 namespace patch_task
 {
 constexpr std::int32_t none = -1;
@@ -234,9 +234,8 @@ constexpr std::int32_t other = -2;
 constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
-/// What a kernel has within its loops over voxels and nodes. There is one for each set, so that what a model does not
-/// have takes neither registers nor instructions. What few nodes have is called through a table (node_tasks.cuh), in
-/// kernels of their own.
+/// Effects that a kernel computes. There is a kernel for each set, so that effects which a model does not have take
+/// neither registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
 enum class Effects : std::uint8_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
@@ -244,23 +243,23 @@ enum class Effects : std::uint8_t
   viscosity = 2,
   general_element = 4,  ///< laws beyond neo-Hookean, other hourglass controls and integrations
   sliding = 8,          ///< on surfaces
-  tasks = 16,    ///< what node_tasks.cuh has; goes with sliding, whose rare search is better called than compiled in
-  friction = 32  ///< of what slides
+  tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
+  friction = 32         ///< of sliding nodes
 };
-constexpr int voxel_sets = 8;  ///< of the first three bits
+constexpr int voxel_sets = 8;  ///< number of sets of the effects of voxels, the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
-// variables, which device code can use too
+// variables, because device code cannot call the functions above
 template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
-/// What nodes do.
+/// Effects of nodes.
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// What voxels that have neither fibres nor viscosity need of a kernel.
+/// The effects in a set that concern voxels without fibres and viscosity.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes);
-/// What voxels need of one.
+/// The effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
@@ -269,7 +268,7 @@ constexpr Effects voxel_part(Effects set)
 /// How the step kernel is launched for a model.
 struct StepLaunch
 {
-  bool patches;  ///< a block of threads a patch, many steps a launch; else a warp a strip
+  bool patches;  ///< one block of threads per patch, many steps per launch; else one warp per strip
   Effects effects;
   int blocks, threads;
   // of patches
@@ -277,16 +276,17 @@ struct StepLaunch
   std::size_t shared_bytes;                          ///< of a block
 };
 
-/// Rows of a strip that the strip kernel takes, and blocks of it that a multiprocessor holds. Three rows leave room for
-/// 16 warps a multiprocessor where four would for 12; with fibres it is two.
+/// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
+/// more registers: with three rows a multiprocessor holds 16 warps, with four only 12. Other effects than neo-Hookean
+/// elasticity leave registers for two rows.
 constexpr int strip_rows(Effects effects) { return voxel_part(effects) == Effects::none ? 3 : 2; }
 constexpr int strip_blocks(Effects effects)
 {
   return (effects & (Effects::viscosity | Effects::general_element)) == Effects::none ? 4 : 3;
 }
 
-/// Shared memory [bytes] of a block: displacements of halo and nodes, velocities of nodes, forces of voxels' corners
-/// and their stiffness; where nodes slide, a queue of them.
+/// Shared memory of a block [bytes]: displacements of halo and nodes, velocities of nodes, forces on the corners of
+/// voxels and bounds of their stiffness; where nodes slide, a queue of those that ask for a plane.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes, bool slides)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
@@ -300,11 +300,11 @@ int resident_blocks(const StepLaunch& launch);
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before a plan, in patches before the first: sliding and gliding nodes that have left their planes find new ones at
-/// once. In strips they take those that were found for them first, where they need them, and who will want another
-/// before the next plan ends asks for it.
+/// Before each plan (strips), or before the first (patches): nodes that slide and have left their planes get new ones.
+/// In strips, a node first takes the plane that was found ahead for it, if that is valid, and asks for another if it
+/// will leave its plane before the next plan ends.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
-/// What was asked for; runs beside the plan's steps.
+/// Finds the planes that were asked for; runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

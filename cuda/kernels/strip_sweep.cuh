@@ -15,8 +15,8 @@ struct RowValues
   float difference[3];
 };
 
-/// The displacement of a node. The fourth word is not fetched: a register that a load in flight writes and nobody reads
-/// would be taken for something else at once, and that would wait for the load.
+/// The displacement of a node. The fourth word of the float4 is not loaded: nobody would read its register, so that the
+/// compiler would reuse it at once and the next instruction would wait for the load.
 struct Displacement
 {
   float2 xy;
@@ -61,8 +61,8 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
-/// y and z steps of the transform, the stress, and their transposes: voxel between rows a, b of the planes below,
-/// above.
+/// Forces of the voxel between rows a and b of the planes of nodes below and above: the y and z steps of the transform,
+/// the forces on the modes, and the transposed z and y steps.
 template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
                                              const Activations& activation, const RowValues& below_a,
@@ -107,7 +107,7 @@ __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
-    // the lane before the first is the last one, which never holds a voxel
+    // the first lane reads the last one, which never holds a voxel
     const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
     force[c] = row.part[c][0] - row.part[c][1] + from_left;
   }
@@ -135,11 +135,11 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
   }
 }
 
-/// Walks a strip along z. A node's force is summed in a fixed order: the voxels below it, then those above it, rows in
-/// order, right before left; no other strip adds to it, because voxels on the border are computed by both sides. Slots
-/// are fetched two planes ahead (past a strip's end lie those of the next one, or padding), displacements and words of
-/// fibres a row ahead.
-/// `slot`, `fibre_word`, `viscous_word`: the strip's, at this lane; null where it has none.
+/// Goes through a strip along z. The force on a node is summed in a fixed order: voxels below it, then above it, rows
+/// in order, right before left. No other strip adds to it, because voxels on the border are computed by both strips. To
+/// hide the latency of memory, slots are loaded two planes ahead, displacements and words of fibres one row ahead. Past
+/// the end of a strip there are slots of the next one, or padding. slot, fibre_word, viscous_word: of this lane; null
+/// where the strip has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
                                             const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
@@ -214,7 +214,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
         place.palette = here[r].y;
         voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, stiffness, force);
       }
-      // a voxel adds the same to each of its nodes
+      // a voxel adds the same stiffness to each of its nodes
       if (look && r > 0)
       {
         const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;

@@ -33,11 +33,20 @@ __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArgum
   if (v >= viscous.count)
     return;
   const ViscousVoxel voxel = viscous.voxels[v];
+  const PaletteVoxel<float, Effects::general_element> at{ g, voxel.palette, v, __ldg(g.palette + voxel.palette) };
   const auto k = kinematics_of(g, u, voxel.node);
   if (viscous.account == nullptr)
-    return relax_voxel<Effects::general_element>(g, v, voxel.palette, elapsed, k, k, nullptr);
+    return physics::relax_voxel(at, elapsed, k, [](const auto&, const auto&) {});
   const auto k_before = kinematics_of(g, u_before, voxel.node);
-  relax_voxel<Effects::general_element>(g, v, voxel.palette, elapsed, k, k_before, viscous.account);
+  double change = 0, now = 0;
+  physics::relax_voxel(at, elapsed, k,
+                       [&](const auto& before, const auto& after)
+                       {
+                         change += static_cast<double>(physics::relaxation_work(k_before, k, before, after));
+                         now += static_cast<double>(along_strain(k, after));
+                       });
+  viscous.account[2 * static_cast<std::size_t>(v)] += change;
+  viscous.account[2 * static_cast<std::size_t>(v) + 1] = now;
 }
 
 __global__ void __launch_bounds__(block)
@@ -55,19 +64,11 @@ __global__ void __launch_bounds__(block)
     const float4 fibre = g.fibres[f];
     const std::uint32_t word = g.fibre_muscle[f], muscle = word & 0x3fffffffu;
     const float begin = g.activation_begin[muscle];
-    const float a[3] = { fibre.x, fibre.y, fibre.z };
-    float squared = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-      const float along = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
-      squared += along * along;
-    }
-    const float stress =
-        physics::fibre_stress<float>(squared, k.J, fibre.w, begin + fraction * (g.activation_end[muscle] - begin),
-                                     (word & 0x40000000u) ? 1.0f : 0.0f, (word & 0x80000000u) ? 1.0f : 0.0f);
+    const auto now =
+        physics::fibre_state(fibre_of(fibre, word, begin + fraction * (g.activation_end[muscle] - begin)), k);
     const float2 memory = fibres.memory[f];
-    work -= 0.25 * (double(memory.x) + double(stress)) * (double(squared) - double(memory.y));
-    fibres.memory[f] = make_float2(stress, squared);
+    work += physics::fibre_work(memory.x, memory.y, now.stress, now.squared);
+    fibres.memory[f] = make_float2(now.stress, now.squared);
   }
   fibres.work[v] = open ? 0 : fibres.work[v] + work;
 }
@@ -84,14 +85,14 @@ __global__ void __launch_bounds__(block)
   for (int i = 0; i < 3; ++i)
   {
     const double old = g.velocity_before[i][n], free = g.velocity_free[i][n], now = g.v[i][n];
-    damped += 0.25 * (old + now) * (old + free);
-    constrained += 0.5 * (old + now) * (now - free);
-    const double beside = moved[i] - g.dt_exact * now, change = free - old + 0.5 * damping * g.kick * (old + free);
-    constrained -= change * 0.5 * (beside + account.beside[3 * n + i]) / g.kick;
+    const double beside = moved[i] - g.dt_exact * now;
+    const auto work = physics::node_work(old, free, now, beside, account.beside[3 * n + i], damping, g.kick);
+    damped += work.damping;
+    constrained += work.constraint;
     account.beside[3 * n + i] = beside;
   }
   const double mass = u.w > 0 ? 1.0 / double(u.w) : 0;
-  account.damping[n] += damping * g.kick * mass * damped;
+  account.damping[n] += mass * damped;
   account.constraint[n] += mass * constrained;
 }
 

@@ -16,7 +16,7 @@ struct ViscousVoxels
 {
   const ViscousVoxel* voxels;
   std::uint32_t count;
-  double* account;  ///< two a voxel: sum of the changes of H : E by relaxation, H : E now [J]; null: none kept
+  double* account;  ///< two per voxel: sum of the changes of H : E by relaxation, H : E now [J]; null: none kept
 };
 
 /// A voxel with fibres, whose work is accounted for.
@@ -30,7 +30,7 @@ struct FibreVoxels
 {
   const FibreVoxel* voxels;
   std::uint32_t count;
-  float2* memory;  ///< stress and squared stretch at the latest look, one a fibre entry
+  float2* memory;  ///< stress and squared stretch at the latest look, one per fibre entry
   double* work;    ///< done by the fibres of each voxel [J]
 };
 
@@ -40,21 +40,20 @@ struct NodeAccount
   std::uint32_t nodes;
   double* damping;     ///< lost to damping [J]
   double* constraint;  ///< done by constraints [J]
-  double* beside;      ///< three a node: how far constraints moved it beside dt v in the latest step [m]
+  double* beside;      ///< three per node: how far constraints moved it beside dt v in the latest step [m]
   std::uint32_t loaded_nodes;
   const std::uint32_t* loaded;  ///< device nodes
-  double* load;                 ///< done by surface loads, one a loaded node [J]
+  double* load;                 ///< done by surface loads, one per loaded node [J]
 };
 
 /// Viscous stresses relax by `elapsed` [s] towards those at displacements u (physics/viscosity.hpp); u_before: a step
 /// earlier, for the account of energies alone.
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
                               const float4* u_before, float elapsed, cudaStream_t stream);
-/// Work that fibres did since the latest look, with the activations of a step: minus the mean of stress over the change
-/// of half the squared stretch. `open`: looks for the first time.
+/// Adds the work that fibres did since the latest call, with the activations of a step. open: the account begins.
 cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels& fibres, const float4* u, int step,
                               bool open, cudaStream_t stream);
-/// Work on the nodes in a step that is over (energy_account.hpp).
+/// Adds the work on the nodes in the step that was done last (physics/element/node_motion.hpp).
 cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
                                 cudaStream_t stream);
 
@@ -66,7 +65,7 @@ cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const fl
 /// sum of squares.
 constexpr int product_blocks = 128;
 
-/// mode = (forces - present) times factor over the root of the mass, 0 of held nodes, and what there is to say of it.
+/// mode = (forces - present) times factor over the root of the mass, 0 at held nodes; seen: sums as above.
 cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
                            const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream);
 

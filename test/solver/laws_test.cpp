@@ -61,12 +61,7 @@ Vectors random_displacements(const Model& model, double amplitude)
 
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
 {
-<<<<<<< HEAD
-  const char* names[] = { "neo_hookean", "mooney_rivlin", "ogden", "fung", "holzapfel", "guccione" };
-  return std::get<0>(info.param) + "_" + names[static_cast<int>(std::get<1>(info.param))];
-=======
   return name_of(std::get<0>(info.param)) + "_" + physics::description_of(std::get<1>(info.param)).name;
->>>>>>> main
 }
 
 }  // namespace

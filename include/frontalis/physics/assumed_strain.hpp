@@ -8,11 +8,11 @@ namespace physics
 {
 
 /// Assumed-strain hourglass control of a box voxel (Belytschko & Bindeman 1993, Comput. Methods Appl. Mech. Eng.
-/// 105:225, their ASQBI field): a stiffness an axis, Poisson coupling between the two bendings of a plate, torsion by
-/// the shear modulus. The modes are pulled back by the deformation gradient, as a total Lagrangian strain has them, so
-/// that the stiffness turns with the element; the energy 1/2 r K r, r = F^T q, is frame-indifferent and its full
-/// gradient is taken, so that neither energy nor angular momentum is lost. A share of the scalar stiffness keeps
-/// crushed elements controlled.
+/// 105:225, their ASQBI field): one stiffness per axis, Poisson coupling between the two bendings of a plate, torsion
+/// by the shear modulus. The modes are pulled back by the deformation gradient, as a total Lagrangian strain has them,
+/// so that the stiffness turns with the element; the energy 1/2 r K r, r = F^T q, is frame-indifferent and its full
+/// gradient is taken, so that neither energy nor angular momentum is lost. A small part of the scalar stiffness is
+/// added, so that crushed elements stay controlled.
 template <class T>
 struct AssumedStrain
 {
@@ -22,7 +22,7 @@ struct AssumedStrain
   T warping;   ///< 2 mu (1 + nu) / 3 times tissue volume [N m]
 };
 
-/// Share of the scalar hourglass stiffness that is added.
+/// Part of the scalar hourglass stiffness that is added.
 constexpr double assumed_strain_floor = 0.02;
 
 template <class T>
@@ -40,8 +40,8 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
 /// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it
-/// with n = nu times the square of the shortest edge over that axis' edge; the plate's own where that edge is the
-/// shortest.
+/// with n = nu times the square of the ratio of the shortest edge to the edge along that axis. Where the edge along the
+/// axis is the shortest, they are those of a plate.
 template <class T>
 struct AxisBending
 {
@@ -57,7 +57,7 @@ FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* we
   if (!(weight[axis] < other))
     return { k.bending, k.coupling };
   const S ratio = weight[axis] / other;
-  // nothing is bent in a lane without a voxel
+  // a SIMD lane without a voxel has no stiffness
   const T n = T(ratio * ratio) * k.coupling / N::max(k.bending, N::of(1e-30));
   // E times tissue volume is three times the warping stiffness
   const T own = N::of(3) * k.warping / (N::of(1) - n * n);

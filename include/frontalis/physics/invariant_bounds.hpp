@@ -51,7 +51,7 @@ FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>&
   return { N::max(first, N::of(0)), second };
 }
 
-/// The same of g I1, the second being 4 at rest, as it is exactly, with what its bound has grown since.
+/// The same for g I1. The second derivative is 4 at rest, its exact value, plus the growth of its bound since.
 template <class T>
 FRONTALIS_LAW InvariantDerivatives<T> first_invariant_derivatives(const Kinematics<T>& k)
 {

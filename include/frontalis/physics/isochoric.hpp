@@ -9,9 +9,9 @@ namespace frontalis::physics
 /// Below this J the isochoric laws are continued; above it they hold exactly.
 constexpr double continuation_jacobian = 0.2;
 
-/// g(J) = J^(-2/3) and its derivative for J >= J0; below, the tangent at J0 goes on, so that g grows, stays finite
-/// through J = 0 and past it, and pushes a crushed or inverted element open (C1 in F; compare Smith, de Goes & Kim
-/// 2018, who reach the same with a regularised energy).
+/// g(J) = J^(-2/3) and its derivative for J >= J0. Below J0 it continues along its tangent there, so that it is finite
+/// at J = 0 and beyond, still grows, and pushes a crushed or inverted element open (C1 in F; Smith, de Goes & Kim 2018
+/// reach the same with a regularised energy).
 template <class T>
 struct IsochoricScale
 {
@@ -30,7 +30,7 @@ FRONTALIS_LAW IsochoricScale<T> isochoric_scale(T J)
   return { y2 + slope * N::min(J - N::of(j0), N::of(0)), slope };
 }
 
-/// g'' = 10/9 J^(-8/3) = 5/2 g'^2 / g, and 0 where g goes on as a straight line.
+/// g'' = 10/9 J^(-8/3) = 5/2 g'^2 / g, and 0 where g continues along its tangent.
 template <class T>
 FRONTALIS_LAW T isochoric_bend(const IsochoricScale<T>& g, T J)
 {

@@ -42,8 +42,8 @@ FRONTALIS_LAW T passive_tension(T l)
 /// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
 /// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. Faded out below a small J, so
 /// that a crushed element's fibres do not hold it crushed. with_length: 1 takes the tension-length relation, 0 gives
-/// the constant S = activation stress_reference; with_passive: 1 adds the passive part, which is not computed where it
-/// is known beforehand that there is none.
+/// the constant S = activation stress_reference. with_passive: 1 adds the passive part. Passive = false leaves it out
+/// at compile time.
 template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
 {
@@ -60,9 +60,9 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
 
 /// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation and no
 /// change of volume. The nominal stress is S times stretch, J f(l) at these constants: the active curve is steepest at
-/// l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)). A time step has to allow for the first where
-/// there is no passive part, else for the sum: times how far the element is deformed (physics/time_step.hpp) it holds
-/// what f |cof F| adds, up to stretches of 2.5.
+/// l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)). The time step must
+/// allow for the first where there is no passive part, else for the sum. Multiplied by the deformation of the element
+/// (physics/time_step.hpp), these bounds include what f |cof F| adds, up to stretches of 2.5.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

@@ -11,13 +11,21 @@
 #define FRONTALIS_LAW inline
 #endif
 
+// Unrolls the loop that follows where the compiler does not do so by itself: arrays that the loop indexes stay in
+// registers then.
+#if defined(__CUDACC__)
+#define FRONTALIS_UNROLL _Pragma("unroll")
+#else
+#define FRONTALIS_UNROLL
+#endif
+
 namespace frontalis
 {
 namespace physics
 {
 
-/// What a law needs of its number type beyond + - * / and comparisons. Scalars here; SIMD batches specialise it where
-/// they are used.
+/// What a law needs of its number type beyond + - * / and comparisons. This is for scalars; SIMD batches have a
+/// specialisation of their own in the CPU backend.
 template <class T>
 struct Number
 {

@@ -19,8 +19,8 @@ FRONTALIS_LAW constexpr double gauss_point(int point, int axis)
   return point & (1 << axis) ? gauss_coordinate : -gauss_coordinate;
 }
 
-/// Part of mode `mode` in the derivative along `axis` at a point: 1 for the gradient's own mode, 0 where the mode does
-/// not vary along the axis.
+/// Contribution of mode `mode` to the derivative along `axis` at a point: 1 for the gradient's own mode, 0 where the
+/// mode does not vary along the axis.
 FRONTALIS_LAW constexpr double gauss_weight(int point, int axis, int mode)
 {
   double weight = mode & (1 << axis) ? 1 : 0;
@@ -30,7 +30,7 @@ FRONTALIS_LAW constexpr double gauss_weight(int point, int axis, int mode)
   return weight;
 }
 
-/// Transformed displacements whose mean gradient is the gradient at a Gauss point: what kinematics() takes.
+/// Transformed displacements whose mean gradient is the gradient of q at a Gauss point, for kinematics().
 template <class T>
 FRONTALIS_LAW void at_gauss_point(int point, const T (&q)[3][8], T (&moved)[3][8])
 {

@@ -8,16 +8,14 @@ namespace frontalis
 namespace physics
 {
 
-/// Half of a gliding node's error, up to this [m], is left for the next step. Errors come all at once where a plane is
-/// renewed; put back all at once too, they were blows that set the tissue vibrating, each with half its stiffness times
-/// the error squared: a shell that spins on a ball gained 43 % in 40 ms, with planes that erred by
-/// up to twice this. In halves it lost 13 %.
+/// A sliding node that is off its plane goes back by half of the error per step, but for errors above twice this [m] by
+/// all beyond this. The error comes suddenly, where the tangent plane of a node is renewed. Corrected within one step
+/// it would add half the stiffness of the tissue times the error squared to the energy, and set the tissue vibrating.
 constexpr double error_left = 4.5e-6;
 
-/// Node that glides on a plane normal . u = offset (normal of length 1): takes from its velocity what leaves the plane
-/// (after Lapeer et al. 2019), and from its displacement most of it. Returns the normal velocity taken; times the mass
-/// it is the impulse of the constraint in that step: its reaction m dp/dt^2, without the jumps of dp where the plane
-/// itself is renewed.
+/// Node that slides on a plane normal . u = offset (normal of length 1): removes the velocity along the normal (after
+/// Lapeer et al. 2019) and most of the distance from the plane. Returns the normal velocity removed. Times the mass of
+/// the node it is the impulse of the constraint in this step, without the jumps where the plane itself is renewed.
 template <class T>
 FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T>& v)
 {
@@ -30,9 +28,9 @@ FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T
   return speed;
 }
 
-/// Velocity of a node that goes over from one plane to the next of a smooth surface: turned with the normal, so that it
-/// keeps its speed, where projecting it would brake it. Where the normals differ by more than 0.3 rad there is an edge,
-/// and nothing is turned.
+/// Velocity of a node whose tangent plane on a smooth surface is replaced by the next: it is turned with the normal, so
+/// that the node keeps its speed. A projection would brake it. Where the normals differ by more than 0.3 rad the
+/// surface has an edge, and nothing is turned.
 template <class T>
 FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to, const Vec3<T>& v)
 {
@@ -43,8 +41,8 @@ FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to,
   return v - (dot(sum, v) / (cosine + Number<T>::of(1))) * sum + (Number<T>::of(2) * dot(from, v)) * to;
 }
 
-/// Coulomb friction in one step: the proportion of its tangential speed that a gliding node loses, from the normal
-/// speed that the constraint took from it. 1: it sticks. The mass cancels.
+/// Coulomb friction in one step: the fraction of its tangential speed that a sliding node loses, from the normal speed
+/// that the constraint removed. 1: it sticks. The mass cancels.
 template <class T>
 FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const T& tangential_speed)
 {
@@ -55,10 +53,9 @@ FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const
   return N::select(tangential_speed > allowed, allowed / N::max(tangential_speed, allowed), N::of(1));
 }
 
-/// How much of a change of the reaction friction takes up in a step dt [s]. Friction that followed the reaction at once
-/// would feed the vibrations of an elastic body that slides (the problem is ill-posed) and take the mean of their size
-/// for the mean of the reaction; it follows within a millisecond (Prakash & Clifton's law in its simplest form, Cochard
-/// & Rice 2000).
+/// Friction follows the reaction of the surface with a delay of 1 ms: the fraction of a change of the reaction that it
+/// takes up in a step dt [s]. With friction that follows at once, sliding of an elastic body is ill-posed: friction
+/// would feed the body's vibrations. This is Prakash & Clifton's law in its simplest form (Cochard & Rice 2000).
 template <class T>
 FRONTALIS_LAW T friction_response(const T& dt)
 {

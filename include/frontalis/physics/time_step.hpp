@@ -12,12 +12,13 @@ namespace physics
 /// 2 mu diag(d)) <= V/2 (lambda sum d + 2 mu max d), exact on cubes. `along_fibre` [Pa] is stiffness that fibres add in
 /// one direction.
 ///
-/// What it is for: with k_e >= the largest eigenvalue of the stiffness K_e of voxel e, and lumped masses m_n,
+/// It bounds the highest frequency of the model. With k_e >= the largest eigenvalue of the stiffness K_e of voxel e,
+/// and lumped masses m_n,
 ///   x^T K x = sum_e x_e^T K_e x_e <= sum_e k_e |x_e|^2 = sum_n (sum of k_e over the voxels at n) |x_n|^2,
-/// so that the highest frequency of the model is bounded by
+/// so that
 ///   omega^2 <= max_n (sum of k_e over the voxels at n) / m_n,
-/// where only nodes count that can move: x_n = 0 at the others, and what constraints leave of x can only lower the
-/// largest Rayleigh quotient. This is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu &
+/// where only nodes that can move count: x_n = 0 at the others, and constraints on x can only lower the largest
+/// Rayleigh quotient. This is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu &
 /// Moran, Nonlinear Finite Elements for Continua and Structures, chapter 6) with the mass of a node split among its
 /// voxels in proportion to k_e. In a uniform block it is what a lone voxel of mass m has, 8 k / m.
 template <class T>
@@ -30,22 +31,22 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
-/// The larger one; NaN, for good, where one is NaN or infinite.
+/// The larger one; NaN where one of them is NaN or infinite.
 template <class T>
 FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 {
   return Number<T>::max(a, b) + (a - a) + (b - b);
 }
 
-/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, but for what laws beyond neo-Hookean
-/// have stiffened; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
+/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, without the stiffening of laws beyond
+/// neo-Hookean; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
 /// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
 ///
-/// Second derivatives of the neo-Hookean energy (physics/materials/neo_hookean.hpp) are bounded term by term, the
-/// volumetric part's and the isochoric part's each by itself, and what these bounds have grown since rest is added. The
-/// nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J
-/// with f and |cof F| = sqrt(3 along). At full activation they stay below what is counted at rest (muscle_fibre.hpp)
-/// times the larger of J and sqrt(along I1 / 3).
+/// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, those of the
+/// volumetric and of the isochoric part separately. The growth of these bounds since rest is added to the bound at
+/// rest. The nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J,
+/// those by J with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest
+/// (muscle_fibre.hpp) times the larger of J and sqrt(along I1 / 3).
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)

@@ -14,9 +14,7 @@ namespace physics
 template <class T>
 FRONTALIS_LAW void walsh_hadamard(T* a)
 {
-#if defined(__CUDACC__)
-#pragma unroll
-#endif
+  FRONTALIS_UNROLL
   for (int s = 1; s < 8; s *= 2)
     for (int b = 0; b < 8; ++b)
       if (!(b & s))
@@ -31,9 +29,7 @@ FRONTALIS_LAW void walsh_hadamard(T* a)
 template <class T>
 FRONTALIS_LAW void walsh_hadamard_transposed(T* a)
 {
-#if defined(__CUDACC__)
-#pragma unroll
-#endif
+  FRONTALIS_UNROLL
   for (int s = 1; s < 8; s *= 2)
     for (int b = 0; b < 8; ++b)
       if (!(b & s))

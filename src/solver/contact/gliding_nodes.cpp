@@ -1,6 +1,6 @@
 #include "solver/contact/gliding_nodes.hpp"
 
-#include "frontalis/physics/sliding.hpp"
+#include "frontalis/physics/element/sliding_node.hpp"
 
 #include <algorithm>
 
@@ -10,25 +10,6 @@ namespace
 {
 
 using Point = SurfaceContact::Point;
-
-Point rotated(const RigidTransform& pose, const Point& p)
-{
-  const auto& r = pose.rotation;
-  return { r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
-           r[6] * p.x + r[7] * p.y + r[8] * p.z };
-}
-
-Point rotated_back(const RigidTransform& pose, const Point& p)
-{
-  const auto& r = pose.rotation;
-  return { r[0] * p.x + r[3] * p.y + r[6] * p.z, r[1] * p.x + r[4] * p.y + r[7] * p.z,
-           r[2] * p.x + r[5] * p.y + r[8] * p.z };
-}
-
-Point translation(const RigidTransform& pose)
-{
-  return { pose.translation[0], pose.translation[1], pose.translation[2] };
-}
 
 }  // namespace
 
@@ -58,41 +39,29 @@ template <class Real>
 void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                                const ConstraintStep& step)
 {
-  const RigidTransform still;
   const auto nodes = range(first, last);
   for (Node* node = nodes_.data() + (nodes.first - nodes_.data()); node != nodes.second; ++node)
   {
     const auto n = node->node;
-    // what friction knows of the pressure stays too
-    const RigidTransform& now = node->bone < 0 ? still : step.bone[node->bone];
-    const RigidTransform& before = node->bone < 0 ? still : step.bone_before[node->bone];
-    // in the frame of the bone, relative to it
-    Point p = rotated_back(now, node->rest + Point{ u[0][n], u[1][n], u[2][n] } - translation(now));
-    const Point moved = rotated(now, p) + translation(now) - rotated(before, p) - translation(before);
-    node->surface_velocity = (1 / step.dt) * moved;
-    Point w = rotated_back(now, Point{ v[0][n], v[1][n], v[2][n] } - node->surface_velocity);
+    const physics::Pose now = node->bone < 0 ? physics::Pose() : pose_of(step.bone[node->bone]);
+    const physics::Pose before = node->bone < 0 ? physics::Pose() : pose_of(step.bone_before[node->bone]);
+    const physics::RelativeMotion motion = physics::relative_to(
+        now, before, 1 / step.dt, node->rest + Point{ u[0][n], u[1][n], u[2][n] }, { v[0][n], v[1][n], v[2][n] });
+    node->surface_velocity = motion.surface_velocity;
+    Point p = motion.place, w = motion.velocity;
     double taken = 0;
     if (node->plane.slip < 0 || norm(p - node->reference) > node->plane.slip)
     {
       const Point normal = node->plane.normal;
       node->plane = node->contact.renew(p);
       node->reference = p;
-      // what turns it is a part of the reaction
-      taken = dot(node->plane.normal, w);
-      w = physics::turned_with_normal(normal, node->plane.normal, w);
-      taken -= dot(node->plane.normal, w);
+      taken = physics::turn_with_plane(normal, node->plane.normal, w);
     }
     taken += physics::slide(node->plane.normal, node->plane.height, p, w);
     if (rubs_ && node->friction > 0)
-    {
-      node->pressing += physics::friction_response(step.dt) * (taken / step.dt - node->pressing);
-      const Point lost = physics::friction_loss(node->friction, step.dt * node->pressing, norm(w)) * w;
-      w = w - lost;
-      p = p - step.dt * lost;
-    }
-    const Point moved_to = rotated(now, p) + translation(now) - node->rest;
-    const Point velocity = rotated(now, w) + node->surface_velocity;
-    node->normal = rotated(now, node->plane.normal);
+      physics::rub(node->friction, physics::friction_response(step.dt), step.dt, taken / step.dt, node->pressing, p, w);
+    const Point moved_to = now.outwards(p) - node->rest, velocity = now.turned(w) + node->surface_velocity;
+    node->normal = now.turned(node->plane.normal);
     const double to[3] = { moved_to.x, moved_to.y, moved_to.z }, speed[3] = { velocity.x, velocity.y, velocity.z };
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -115,9 +84,8 @@ double GlidingNodes<Real>::friction_loss(std::int32_t first, std::int32_t last, 
     if (!rubs_ || !(node->friction > 0))
       continue;
     const auto n = node->node;
-    const Point change = at(after, n) - at(without, n);
-    const Point along = change - dot(change, node->normal) * node->normal;
-    lost -= mass[n] * dot(along, 0.5 * (at(before, n) + at(after, n)) - node->surface_velocity);
+    lost += mass[n] *
+            physics::friction_work(node->normal, node->surface_velocity, at(before, n), at(without, n), at(after, n));
   }
   return lost;
 }

@@ -1,15 +1,26 @@
 #pragma once
 
+#include "frontalis/model/surface.hpp"
+#include "frontalis/physics/pose.hpp"
 #include "solver/contact/archive_contacts.hpp"
 #include "solver/stepping/constraint_step.hpp"
 #include "frontalis/solver/allocation.hpp"
 #include "solver/contact/surface_contact.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 namespace frontalis
 {
+
+inline physics::Pose pose_of(const RigidTransform& from)
+{
+  physics::Pose pose;
+  std::copy(from.rotation.begin(), from.rotation.end(), pose.r);
+  std::copy(from.translation.begin(), from.translation.end(), pose.t);
+  return pose;
+}
 
 /// Sliding nodes whose surface follows a bone or has friction: one after the other, in double. A node's contact lives
 /// in the frame of the bone.
@@ -26,7 +37,7 @@ public:
     SurfaceContact contact;
     ContactPlane plane;
     SurfaceContact::Point reference;  // where the plane was found
-    double pressing;                  // reaction over mass that friction knows of [m/s2]
+    double pressing;                  // reaction over mass, with the delay of friction [m/s2]
     // in the latest step
     SurfaceContact::Point normal;            // outwards
     SurfaceContact::Point surface_velocity;  // [m/s]

@@ -1,28 +1,29 @@
 #pragma once
 
+#include "frontalis/physics/element/node_motion.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 #include "solver/cpu/voxel_rows.hpp"
 
 namespace frontalis
 {
 
-/// What fibres did last, a tile's lanes: for the energy ledger.
+/// Stretch and stress of the fibres of a tile when their work was computed last, for the energy ledger.
 struct FibreMemory
 {
   float squared[Tile::width];  ///< stretch squared
   float stress[Tile::width];   ///< fibre stress times weight [N m]
 };
 
-/// One time step over planes of nodes, or a part of it. Plain pointers only: the kernels are compiled once an
+/// One time step over planes of nodes, or a part of it. Plain pointers only: the kernels are compiled once per
 /// instruction set, and nothing that they instantiate may be shared with other translation units. Real is the number
 /// type of the state; parameters are floats.
 template <class Real>
-struct CpuKernelArguments
+struct CpuKernelArguments : physics::Kick<Real>
 {
   const Real* u[3];           ///< displacements [m]; readable Tile::width numbers past the end
   Real* next[3];              ///< displacements after the step [m]
   Real* v[3];                 ///< velocities [m/s]
-  Real* rounding[3];          ///< what the sums of displacements have lost [m]; null: not kept
+  Real* rounding[3];          ///< rounding errors of the displacements [m]; null: not kept
   const float* inverse_mass;  ///< [1/kg]
   const float* mobility;      ///< the same, 0 where a node is held [1/kg]
   const Tile* tiles;
@@ -32,28 +33,25 @@ struct CpuKernelArguments
   const TileStiffness* stiffness;
   const TileStabilisation* stabilisation;  ///< null: scalar hourglass control alone
   bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
-  const FibreSlot* fibres;
+  const FibreSlot* fibres;                 ///< null: fibres have no stress
   const LawSlot* laws;
   const ViscousSlot* viscous;
-  float* relaxed;              ///< relaxed stress times volume [N m], a ViscousSlot relaxed_tensors() * 6 * Tile::width
-  std::int32_t viscous_terms;  ///< 0: none
-  std::int32_t passes;         ///< bits of TilePass that run
-  bool gravity;                ///< impulse is not 0
+  float* relaxed;  ///< relaxed stress times volume [N m], relaxed_tensors() * 6 * Tile::width per ViscousSlot
+  std::int32_t viscous_terms;  ///< 0: none, or viscosity is switched off
   Real viscous_elapsed;        ///< [s] since the relaxed stresses were renewed last
-  double* viscous_work;        ///< two a plane: sum of change of H : E, and of H : E; null: not wanted
-  const float* activation;     ///< one a muscle
-  const float* with_length;    ///< one a muscle: 1 or 0
-  const float* with_passive;   ///< one a muscle: 1 or 0
-  FibreMemory* fibre_memory;   ///< one a FibreSlot; null: no ledger
-  double* muscle_work;         ///< one a plane [J]; null: fibre_memory is only renewed
+  double* viscous_work;        ///< two per plane: sums of the change of H : E, and of H : E; null: not wanted
+  const float* activation;     ///< one per muscle
+  const float* with_length;    ///< one per muscle: 1 or 0
+  const float* with_passive;   ///< one per muscle: 1 or 0
+  FibreMemory* fibre_memory;   ///< one per FibreSlot; null: no ledger
+  double* muscle_work;         ///< one per plane [J]; null: only fibre_memory is renewed
   Real scale[3];               ///< 1 / (4 h)
   Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
   Real stretch_half_sum;       ///< half of that sum [1/m2]
   Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
-  Real dt, keep, gain;         ///< v = keep v - gain f / m + impulse
-  Real kick;                   ///< for how long forces change velocities: dt, but in the first step of a plan [s]
-  Real impulse[3];             ///< gain times gravity
-  std::int32_t buffer_stride;  ///< numbers a component of a plane buffer
+  Real dt;
+  Real kick;                   ///< for how long forces change velocities: dt, except in the first step of a plan [s]
+  std::int32_t buffer_stride;  ///< numbers per component of a plane buffer
 };
 
 enum class KernelTask
@@ -72,7 +70,7 @@ using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32
 
 struct PlaneMonitor;
 
-/// Energies and worst voxels of the voxel planes [first, last) at g.u, one a plane, and the stiffness bound of each
+/// Energies and worst voxels of the voxel planes [first, last) at g.u, one per plane, and the stiffness bound of each
 /// voxel [N/m].
 using CpuMonitorKernel = void (*)(const CpuKernelArguments<double>& g, std::int32_t first, std::int32_t last,
                                   PlaneMonitor* planes, double* stiffness);

@@ -5,7 +5,7 @@
 namespace frontalis
 {
 
-/// Marches over the planes of a slab: forces of a plane of voxels go to two planes of nodes, the lower of which is then
+/// Goes through the planes of a slab: forces of a plane of voxels go to two planes of nodes, the lower of which is then
 /// complete and stepped.
 template <class Architecture, class Real>
 struct CpuKernelBody
@@ -13,38 +13,27 @@ struct CpuKernelBody
   using Element = CpuElement<Architecture, Real>;
   using Arguments = CpuKernelArguments<Real>;
   using Batch = typename Element::Batch;
-  using PassLists = typename Element::PassLists;
+  using Voxels = typename Element::Voxels;
   static constexpr int lanes = Element::lanes;
 
-  // visits the batches of a plane's tiles that hold voxels
-  template <class Visit>
-  static FRONTALIS_LAW void each_batch(const Arguments& g, const PassLists& passes, std::int32_t plane, bool owned,
-                                       bool look, Visit&& visit)
-  {
-    for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
-      for (int offset = 0; offset < Tile::width; offset += lanes)
-        if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
-          visit(typename Element::Place{ g.tiles + t, t, offset, owned, look, passes.of[g.tiles[t].passes] });
-  }
-
   template <Stabilisation Form>
-  static void plane_forces(const Arguments& g, const PassLists& passes, std::int32_t plane, Real* below, Real* above,
-                           bool owned, bool look)
+  static void plane_forces(const Arguments& g, std::int32_t plane, Real* below, Real* above, bool owned, bool look)
   {
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
-    each_batch(g, passes, plane, owned, look,
-               [&](const auto& at) { Element::template add_forces<Form>(g, at, below, above, base, work); });
+    using Batches = typename Element::template VoxelsOf<Form>;
+    Element::template each_batch<Batches>(g, plane, owned, look, &work,
+                                          [&](const Batches& at) { Element::add_forces(at, below, above, base); });
     if (g.muscle_work != nullptr && owned)
       g.muscle_work[plane] += work;
   }
 
-  /// Bound of the highest frequency squared that the nodes of a plane allow; `stiffness`: sums of their voxels'.
+  /// Bound of the highest frequency squared at the nodes of a plane. stiffness: sums of their voxels'.
   static Real plane_frequency(const Arguments& g, std::int32_t plane, const Real* stiffness)
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // as many maxima at once as a batch has lanes; what is no number shows in the sums of differences
+    // one maximum per lane, so that the loop is vectorised; a NaN shows in the sums of differences
     Real most[lanes] = {}, odd[lanes] = {};
     const auto take = [&](std::int32_t n, int lane)
     {
@@ -64,10 +53,11 @@ struct CpuKernelBody
     return result;
   }
 
-  template <bool Compensated, bool Gravity>
+  template <bool Compensated>
   static void update(const Arguments& g, std::int32_t plane, const Real* force)
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
+    const physics::Kick<Real> kick = g;
     for (int c = 0; c < 3; ++c)
     {
       const Real* f = force + c * g.buffer_stride;
@@ -76,11 +66,9 @@ struct CpuKernelBody
       Real* __restrict v = g.v[c] + first;
       Real* __restrict next = g.next[c] + first;
       Real* __restrict rounding = Compensated ? g.rounding[c] + first : nullptr;
-      const Real impulse = g.impulse[c];
       for (std::int32_t n = 0; n < count; ++n)
       {
-        const Real kept = g.keep * v[n] - g.gain * inverse_mass[n] * f[n];
-        const Real velocity = Gravity ? kept + impulse : kept;
+        const Real velocity = physics::kicked(kick, c, v[n], kick.gain * inverse_mass[n], f[n]);
         v[n] = velocity;
         if (Compensated)
         {
@@ -96,15 +84,6 @@ struct CpuKernelBody
     }
   }
 
-  static void update_as_asked(const Arguments& g, std::int32_t plane, const Real* force)
-  {
-    const bool gravity = g.gravity;
-    if (g.rounding[0] != nullptr)
-      gravity ? update<true, true>(g, plane, force) : update<true, false>(g, plane, force);
-    else
-      gravity ? update<false, true>(g, plane, force) : update<false, false>(g, plane, force);
-  }
-
   static void clear(Real* p, std::int32_t count)
   {
     for (std::int32_t i = 0; i < count; ++i)
@@ -114,19 +93,18 @@ struct CpuKernelBody
   template <Stabilisation Form>
   static Real sweep_planes(const Arguments& g, std::int32_t first, std::int32_t last, Real* buffer, KernelTask task)
   {
-    const PassLists passes = Element::pass_lists(g.passes);
     Real* below = buffer;
     Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
     const bool look = task == KernelTask::step_and_look;
     const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
-    // voxel plane k joins node planes k and k + 1; the one below the first plane is computed for its upper nodes alone
+    // voxel plane k is between node planes k and k + 1; the one below the first is computed for its upper nodes alone
     for (std::int32_t k = first - 1; k < last; ++k)
     {
       clear(above, used);
       if (k >= 0 && k < g.planes - 1)
-        plane_forces<Form>(g, passes, k, below, above, k >= first, look);
+        plane_forces<Form>(g, k, below, above, k >= first, look);
       if (k >= first)
       {
         if (look)
@@ -136,8 +114,10 @@ struct CpuKernelBody
           for (int c = 0; c < 3; ++c)
             for (std::int32_t n = g.plane_nodes[k]; n < g.plane_nodes[k + 1]; ++n)
               g.next[c][n] = below[c * g.buffer_stride + n - g.plane_nodes[k]];
+        else if (g.rounding[0] != nullptr)
+          update<true>(g, k, below);
         else
-          update_as_asked(g, k, below);
+          update<false>(g, k, below);
       }
       Real* const swapped = below;
       below = above;
@@ -153,12 +133,12 @@ struct CpuKernelBody
       double* const work = g.viscous_work == nullptr ? nullptr : g.viscous_work + 2 * static_cast<std::size_t>(k);
       if (work != nullptr)
         work[1] = 0;
-      each_batch(g, {}, k, true, false,
-                 [&](const auto& at)
-                 {
-                   if (at.tile->viscous >= 0)
-                     Element::relax(g, at, work);
-                 });
+      Element::each_batch(g, k, true, false, nullptr,
+                          [&](const Voxels& at)
+                          {
+                            if (at.tile->viscous >= 0)
+                              Element::relax(at, work);
+                          });
     }
   }
 

@@ -11,10 +11,7 @@ template <class Real>
 void CpuSolver<Real>::kick(Arguments& g, double seconds) const
 {
   g.kick = static_cast<Real>(seconds);
-  g.keep = static_cast<Real>(conditions_.keep(seconds));
-  g.gain = static_cast<Real>(conditions_.gain(seconds));
-  for (int axis = 0; axis < 3; ++axis)
-    g.impulse[axis] = static_cast<Real>(conditions_.gain(seconds) * conditions_.gravity[axis]);
+  static_cast<physics::Kick<Real>&>(g) = conditions_.template kick<Real>(seconds);
 }
 
 template <class Real>
@@ -42,14 +39,11 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.plane_nodes = rows_.plane_nodes.data();
   g.planes = rows_.planes;
   g.selective_reduced = discretisation_.selective_reduced;
-  g.fibres = rows_.fibres.data();
+  g.fibres = runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? rows_.fibres.data() : nullptr;
   g.laws = rows_.laws.data();
   g.viscous = rows_.viscous.data();
   g.relaxed = relaxed_.data();
-  g.viscous_terms = discretisation_.viscous_terms;
-  g.passes = (runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? pass_fibres : 0) |
-             (runs(Effect::viscosity) ? pass_viscosity : 0);
-  g.gravity = runs(Effect::gravity);
+  g.viscous_terms = runs(Effect::viscosity) ? discretisation_.viscous_terms : 0;
   g.activation = activation;
   g.with_length = with_length_.data();
   g.with_passive = with_passive_.data();
@@ -113,9 +107,8 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
     for (int axis = 0; axis < 3; ++axis)
     {
       const auto n = nodes[l];
-      const Real change = g.gain * inverse_mass_[n] * static_cast<Real>(loads_.forces()[l][axis]);
-      g.v[axis][n] += change;
-      g.next[axis][n] += g.dt * change;
+      physics::add_load(g.gain * inverse_mass_[n], g.dt, static_cast<Real>(loads_.forces()[l][axis]), g.next[axis][n],
+                        g.v[axis][n]);
     }
 }
 

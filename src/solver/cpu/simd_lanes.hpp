@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Loads and sums of SIMD lanes that xsimd does not name. SimdLanes are voxels along x, in strips of `Strip` lanes that
-/// lie apart in memory.
+/// Loads and sums of SIMD batches that xsimd does not have. The lanes of a batch are voxels along x, in strips of
+/// `Strip` lanes that are apart in memory.
 template <class Architecture, class Real, int Strip>
 struct SimdLanes
 {
@@ -15,7 +15,7 @@ struct SimdLanes
 
   static FRONTALIS_LAW Batch load(const Real* p) { return Batch::load_unaligned(p); }
 
-  /// Floats for a kernel in double.
+  /// Loads floats into a batch of doubles.
   template <class Narrow,
             class = std::enable_if_t<std::is_same<Narrow, float>::value && !std::is_same<Real, float>::value>>
   static FRONTALIS_LAW Batch load(const Narrow* p)
@@ -46,7 +46,7 @@ struct SimdLanes
     }
   }
 
-  /// SimdLanes of one strip, or of two.
+  /// Loads the lanes of one strip, or of two.
   static FRONTALIS_LAW Batch load(const Real* first, [[maybe_unused]] const Real* second)
   {
 #if defined(__AVX512F__)
@@ -57,7 +57,7 @@ struct SimdLanes
   }
 
   /// Adds forces to the nodes of a row: `low` to the voxels' lower nodes, `high` to the nodes next to them. Neighbours
-  /// share nodes, so the two are added up in registers first: storing one and loading the other across it would stall.
+  /// share nodes, so that the two are added in registers first: a load that overlaps a store just made would stall.
   static FRONTALIS_LAW void add(Real* first, [[maybe_unused]] Real* second, const Batch& low, const Batch& high)
   {
     alignas(64) Real last[count];

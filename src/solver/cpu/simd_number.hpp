@@ -9,7 +9,7 @@ namespace frontalis
 namespace physics
 {
 
-/// SIMD lanes as the number type of a law, one voxel a lane.
+/// A SIMD batch as the number type of a law, one voxel per lane.
 template <class Architecture>
 struct Number<xsimd::batch<float, Architecture>>
 {

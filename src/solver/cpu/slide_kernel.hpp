@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes, and the planes that those among them that slide keep to: normal . u = offset. The
-/// others have a normal of 0 and an endless slip.
+/// Up to `width` neighbouring nodes and the tangent planes normal . u = offset of those that slide. The others have a
+/// normal of 0 and an infinite slip.
 template <class Real>
 struct SlidingBlock
 {
@@ -15,7 +15,7 @@ struct SlidingBlock
   Real normal[3][width];
   Real offset[width];
   Real reference[3][width];  ///< displacement at the latest exact closest point
-  Real slip_squared[width];  ///< how far the node may have moved since; < 0: there is none yet
+  Real slip_squared[width];  ///< squared distance over which the plane is valid; < 0: there is no plane yet
 };
 
 /// Puts the sliding nodes of blocks [first, last) back to their planes. Plain pointers, as for CpuKernel.
@@ -34,7 +34,7 @@ struct SlideArguments
 template <class Real>
 using SlideKernel = void (*)(const SlideArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 
-/// One node after the other, in any precision.
+/// The same without SIMD, in any precision.
 template <class Real>
 void slide_plainly(const SlideArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 

@@ -164,7 +164,6 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
     add_fibres(model, voxels, tile, fibres);
     add_laws(voxels, tile, laws);
     add_viscosity(voxels, tile, viscous);
-    tile.passes = (tile.fibre_begin < tile.fibre_end ? pass_fibres : 0) | (tile.viscous >= 0 ? pass_viscosity : 0);
     stiffness.push_back(stiffness_of(voxels));
     if (discretisation.assumed_strain)
       stabilisation.push_back(stabilisation_of(voxels));

@@ -8,14 +8,6 @@
 namespace frontalis
 {
 
-/// Effects that add to the stress of a tile in a pass of their own.
-enum TilePass : std::int32_t
-{
-  pass_fibres = 1,
-  pass_viscosity = 2,
-  pass_combinations = 4
-};
-
 /// Voxels that the CPU kernel takes together: two strips of up to eight neighbours along x, in one plane. The nodes of
 /// a strip lie one after the other in each of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
 struct Tile
@@ -31,7 +23,6 @@ struct Tile
   std::int32_t law_begin;  ///< range of LawSlots
   std::int32_t law_end;
   std::int32_t viscous;  ///< ViscousSlot; -1: none
-  std::int32_t passes;   ///< bits of TilePass: what is added to the elastic stress
 
   /// Voxel of a lane, or -1.
   std::int32_t voxel(int lane) const

@@ -1,5 +1,7 @@
 #include "solver/energy/energy_account.hpp"
 
+#include "frontalis/physics/element/node_motion.hpp"
+
 #include <algorithm>
 
 namespace frontalis
@@ -46,20 +48,17 @@ void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Rea
     {
       const Real* const old = before_[axis].data();
       const Real* const free = free_[axis].data();
-      double damped = 0, constrained = 0, displaced = 0;
+      physics::NodeWork sum{ 0, 0 };
       for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
       {
-        const double impulse = mass_[n] * 0.5 * (double(old[n]) + double(v[axis][n]));
-        damped += impulse * 0.5 * (double(old[n]) + double(free[n]));
-        constrained += impulse * (double(v[axis][n]) - double(free[n]));
         const double apart = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
-        const double change =
-            double(free[n]) - double(old[n]) + 0.5 * damping * kick * (double(old[n]) + double(free[n]));
-        displaced += mass_[n] * change * 0.5 * (apart + beside[axis][n]);
+        const auto work = physics::node_work(old[n], free[n], v[axis][n], apart, beside[axis][n], damping, kick);
+        sum.damping += mass_[n] * work.damping;
+        sum.constraint += mass_[n] * work.constraint;
         beside[axis][n] = apart;
       }
-      planes[k].damping += damping * kick * damped;
-      planes[k].constraint += constrained - displaced / kick;
+      planes[k].damping += sum.damping;
+      planes[k].constraint += sum.constraint;
     }
 }
 

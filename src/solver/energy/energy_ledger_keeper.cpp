@@ -77,7 +77,7 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
   backend_.get(NodalField::velocities, v);
   backend_.internal_forces(nullptr, internal);
   const NodalVectors external = external_forces(time, u);
-  const double keep = conditions_.keep(dt), gain = conditions_.gain(dt);
+  const physics::Kick<double> kick = conditions_.kick<double>(dt);
   const bool weighs = conditions_.running.has(Effect::gravity);
   Work work;
   l.kinetic = l.gravity = 0;
@@ -87,8 +87,8 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
     const double weight = mass * (discretisation_.weight_share.empty() ? 1.0 : double(discretisation_.weight_share[n]));
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double acceleration = conditions_.gravity[axis] + (external[n][axis] - internal[n][axis]) / mass;
-      const double next = keep * v[n][axis] + gain * acceleration;
+      const double next =
+          physics::kicked(kick, axis, v[n][axis], kick.gain / mass, internal[n][axis] - external[n][axis]);
       l.kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       l.gravity += weight * pull * u[n][axis];

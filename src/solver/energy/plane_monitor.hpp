@@ -1,18 +1,23 @@
 #pragma once
 
-#include "frontalis/physics/number.hpp"
+#include "frontalis/physics/element/voxel_look.hpp"
 #include "frontalis/solver/solver.hpp"
 
 namespace frontalis
 {
 
-/// What a look at the voxels of a plane, or of any part of a model, finds.
+/// Energies and the worst voxel of a plane of a model, or of any part of it.
 struct PlaneMonitor
 {
   double kinetic = 0, internal = 0, hourglass = 0;  ///< [J]
   double worst_jacobian = 1e300;
   std::int64_t inverted = 0;
   std::int32_t worst_voxel = -1;
+
+  static FRONTALIS_LAW PlaneMonitor of_voxel(const physics::VoxelLook<double>& look, std::int32_t voxel)
+  {
+    return { 0, look.internal, look.hourglass, look.jacobian, look.jacobian <= 0 ? 1 : 0, voxel };
+  }
 
   /// Parts must be added in the order of their voxels. Numbers that are not finite count as the worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)

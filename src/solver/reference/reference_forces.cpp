@@ -1,15 +1,35 @@
-#include "frontalis/physics/assumed_strain.hpp"
-#include "frontalis/physics/time_step.hpp"
+#include "frontalis/physics/element/relaxation.hpp"
+#include "solver/model_voxel.hpp"
 #include "solver/reference/reference_solver.hpp"
-#include "solver/stepping/step_bound.hpp"
-#include "solver/energy/voxel_monitor.hpp"
-#include "solver/reference/voxel_stress.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace frontalis
 {
+namespace
+{
+
+// with the viscous stresses that the solver keeps of it
+struct ViscousVoxel : ModelVoxel
+{
+  std::array<physics::Symmetric3<double>, 2>& stresses;
+
+  static int viscous_terms() { return 2; }
+  physics::ViscousTerm<double> viscous_term(int n) const
+  {
+    return { properties.viscous_share[n], properties.viscous_rate[n] };
+  }
+  physics::Symmetric3<double> relaxed(int n) const { return stresses[n]; }
+  void keep_relaxed(int n, const physics::Symmetric3<double>& H) const
+  {
+    // their sum is not kept
+    if (n < 2)
+      stresses[n] = H;
+  }
+};
+
+}  // namespace
 
 // N_b = (1 + xi xi_b)(1 + eta eta_b)(1 + zeta zeta_b) / 8, dxi/dX = 2/h
 void ReferenceSolver::shape_derivatives(const double (&at)[3], Derivatives& out) const
@@ -52,31 +72,23 @@ physics::Kinematics<double> ReferenceSolver::kinematics(std::size_t e, const Der
   return k;
 }
 
-physics::Matrix3<double> ReferenceSolver::elastic(std::size_t e, double kappa, const Kinematics& k) const
+void ReferenceSolver::note_fibres(const ModelVoxel& voxel, const Kinematics& k)
 {
-  return elastic_stress(voxels_[e], kappa, k);
-}
-
-void ReferenceSolver::add_fibres(std::size_t e, const Kinematics& k, const std::vector<float>& activation, Stress& P)
-{
-  for (auto entry = model_->fibre_begin[e]; entry < model_->fibre_begin[e + 1]; ++entry)
+  for (auto entry = model_->fibre_begin[voxel.index]; entry < model_->fibre_begin[voxel.index + 1]; ++entry)
   {
-    const FibreState fibre = add_fibre_stress(*model_, entry, k, activation, effects(), P);
-    if (!accounting_)
-      continue;
+    const auto now = physics::fibre_state(voxel.fibre(entry), k);
     auto& last = fibre_memory_[entry];
-    const double now = fibre.stress * voxels_[e].tissue_volume;
-    account_->muscle[model_->voxels[e][2]] -= 0.25 * (last[1] + now) * (fibre.stretch_squared - last[0]);
-    last = { { fibre.stretch_squared, now } };
+    account_->muscle[model_->voxels[voxel.index][2]] += physics::fibre_work(last[1], last[0], now.stress, now.squared);
+    last = { { now.squared, now.stress } };
   }
 }
 
-void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivatives& derivative, double volume)
+void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivatives& derivative, double share)
 {
   for (int i = 0; i < 3; ++i)
     for (int b = 0; b < 8; ++b)
       for (int j = 0; j < 3; ++j)
-        f_[i][model_->voxel_nodes[e][b]] += volume * P.a[i][j] * derivative[b][j];
+        f_[i][model_->voxel_nodes[e][b]] += share * P.a[i][j] * derivative[b][j];
 }
 
 void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k)
@@ -104,39 +116,34 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
         f_[i][nodes[b]] += hourglass_shape_[m][b] * mode[i][mode_of_shape[m]];
 }
 
-void ReferenceSolver::look(std::size_t e, const Kinematics& k)
-{
-  stiffness_[e] = physics::larger_or_none(stiffness_[e], stiffness_now(discretisation_, voxels_[e], k));
-}
-
 void ReferenceSolver::add_element(std::size_t e, const Components& u, const std::vector<float>& activation)
 {
-  const VoxelProperties& voxel = voxels_[e];
+  const ModelVoxel voxel{ *model_, discretisation_, voxels_[e], e, &activation, effects() };
   const Kinematics k = kinematics(e, centre_, u);
-  Stress P{};
+  Stress P;
   if (discretisation_.selective_reduced)
   {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        P.a[i][j] = voxel.kappa * (k.J - 1) * k.cofactor.a[i][j];
+    P = physics::volumetric_stress(voxel.material(), k);
     for (const auto& derivative : gauss_)
     {
       const Kinematics at_point = kinematics(e, derivative, u);
-      add_stress(e, elastic(e, 0, at_point), derivative, voxel.tissue_volume / 8);
-      look(e, at_point);
+      add_stress(e, physics::isochoric_stress(voxel, at_point), derivative, 0.125);
+      stiffness_[e] = physics::larger_or_none(stiffness_[e], voxel.stiffness_now(at_point));
     }
   }
   else
   {
-    P = elastic(e, voxel.kappa, k);
+    P = physics::elastic_stress(voxel, voxel.material(), k);
     add_hourglass(e, u, k);
-    look(e, k);
+    stiffness_[e] = voxel.stiffness_now(k);
   }
-  add_fibres(e, k, activation, P);
+  physics::add_fibres(voxel, k, P);
+  if (accounting_)
+    note_fibres(voxel, k);
   if (relaxes())
     for (const auto& H : relaxed_[e])
       take_relaxed(k, H, P);
-  add_stress(e, P, centre_, voxel.tissue_volume);
+  add_stress(e, P, centre_, 1);
 }
 
 void ReferenceSolver::forces(const Components& u, const std::vector<float>& activation)
@@ -152,26 +159,22 @@ void ReferenceSolver::relax(double elapsed, const Components& u_before)
 {
   for (std::size_t e = 0; e < relaxed_.size(); ++e)
   {
-    const Kinematics k = kinematics(e, centre_, u_);
-    const auto S = second_piola(k, elastic(e, 0, k));
-    const auto before = relaxed_[e];
-    for (std::size_t term = 0; term < 2; ++term)
-      physics::relax(voxels_[e].viscous_share[term], std::exp(-elapsed * voxels_[e].viscous_rate[term]), S,
-                     relaxed_[e][term]);
+    const Kinematics k = kinematics(e, centre_, u_), k_before = kinematics(e, centre_, u_before);
+    double change = 0, now = 0;
+    const ViscousVoxel voxel{ { *model_, discretisation_, voxels_[e], e }, relaxed_[e] };
+    physics::relax_voxel(voxel, elapsed, k,
+                         [&](const auto& before, const auto& after)
+                         {
+                           change += physics::relaxation_work(k_before, k, before, after);
+                           now += along_strain(k, after);
+                         });
     if (!account_)
       continue;
-    const Kinematics k_before = kinematics(e, centre_, u_before);
-    double change = 0, now = 0;
-    for (std::size_t term = 0; term < 2; ++term)
-    {
-      now += along_strain(k, relaxed_[e][term]);
-      change += physics::relaxation_work(k_before, k, before[term], relaxed_[e][term]);
-    }
     const auto plane = static_cast<std::size_t>(model_->voxels[e][2]);
     if (e == 0 || model_->voxels[e - 1][2] != model_->voxels[e][2])
       account_->viscous[2 * plane + 1] = 0;
-    account_->viscous[2 * plane] += change * voxels_[e].tissue_volume;
-    account_->viscous[2 * plane + 1] += now * voxels_[e].tissue_volume;
+    account_->viscous[2 * plane] += change;
+    account_->viscous[2 * plane + 1] += now;
   }
 }
 

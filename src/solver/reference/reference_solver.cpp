@@ -165,7 +165,7 @@ double ReferenceSolver::run(const StepPlan& plan)
   for (int step = 0; step < plan.steps; ++step)
   {
     const double kick = step == 0 ? plan.first_kick : plan.dt;
-    const double keep = conditions_.keep(kick), gain = conditions_.gain(kick);
+    const physics::Kick<double> factors = conditions_.kick<double>(kick);
     plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
     forces(u_, activation);
@@ -181,8 +181,8 @@ double ReferenceSolver::run(const StepPlan& plan)
     for (int axis = 0; axis < 3; ++axis)
       for (std::size_t n = 0; n < model_->nodes.size(); ++n)
       {
-        const double acceleration = conditions_.gravity[axis] - f_[axis][n] / discretisation_.node_mass[n];
-        v_[axis][n] = keep * v_[axis][n] + gain * acceleration;
+        v_[axis][n] =
+            physics::kicked(factors, axis, v_[axis][n], factors.gain / discretisation_.node_mass[n], f_[axis][n]);
         u_[axis][n] += plan.dt * v_[axis][n];
       }
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };

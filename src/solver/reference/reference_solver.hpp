@@ -7,6 +7,8 @@
 namespace frontalis
 {
 
+struct ModelVoxel;
+
 /// Double, plain loops, kinematics by textbook shape-function derivatives (not by the Walsh-Hadamard form, so that a
 /// wrong transform is found): the oracle of the other backends.
 class ReferenceSolver : public StepBackend
@@ -39,14 +41,12 @@ private:
   EffectSet effects() const { return conditions_.running; }
   void shape_derivatives(const double (&at)[3], Derivatives& out) const;
   Kinematics kinematics(std::size_t e, const Derivatives& derivative, const Components& u) const;
-  Stress elastic(std::size_t e, double kappa, const Kinematics& k) const;
-  void add_fibres(std::size_t e, const Kinematics& k, const std::vector<float>& activation, Stress& P);
-  void add_stress(std::size_t e, const Stress& P, const Derivatives& derivative, double volume);
+  void note_fibres(const ModelVoxel& voxel, const Kinematics& k);
+  void add_stress(std::size_t e, const Stress& P, const Derivatives& derivative, double share);
   void add_hourglass(std::size_t e, const Components& u, const Kinematics& k);
   void add_element(std::size_t e, const Components& u, const std::vector<float>& activation);
   void forces(const Components& u, const std::vector<float>& activation);
   void rest();
-  void look(std::size_t e, const Kinematics& k);
   void mix_voxels();
   bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void relax(double elapsed, const Components& u_before);  // u_before: a step earlier
@@ -58,7 +58,7 @@ private:
   double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
   RestrictedNodes<double> restricted_;
   NodalLoads loads_;
-  Relaxed relaxed_;  // viscous stresses [Pa], one per voxel
+  Relaxed relaxed_;  // viscous stresses of each voxel times its volume [N m]
   std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // fibres note their work
   std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last

@@ -6,7 +6,7 @@
 #include "frontalis/physics/trilinear.hpp"
 #include "frontalis/physics/voxel_element.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "solver/reference/voxel_stress.hpp"
+#include "solver/model_voxel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,10 +107,10 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
     else
     {
       discretisation_.voxel(e, voxel);
-      Matrix3<double> P = elastic_stress(voxel, voxel.kappa, k);
-      for (auto f = model_.fibre_begin[e]; f < model_.fibre_begin[e + 1]; ++f)
-        add_fibre_stress(model_, f, k, activation, running, P);
-      value = von_mises(P, k);
+      const ModelVoxel at{ model_, discretisation_, voxel, e, &activation, running };
+      Matrix3<double> P = physics::elastic_stress(at, at.material(), k);
+      physics::add_fibres(at, k, P);
+      value = von_mises(P, k) / voxel.tissue_volume;
     }
     const double tissue = static_cast<double>(model_.fill[e]);
     for (const auto rank : corner_[v])

@@ -8,20 +8,19 @@
 namespace frontalis
 {
 
-/// Nodes that are heavier than gravity should feel, because their mass is scaled and others' is not.
+/// Nodes whose mass is scaled while others' is not: gravity on them is too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
-/// What gravity is less on such a node [N].
+/// Force that corrects gravity on such a node [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
-/// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding. Forces are added
-/// in a fixed order. Where selective mass scaling has made nodes heavier under gravity, the weight that is too much is
-/// taken off them again.
+/// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding, added in a fixed
+/// order; and the correction of gravity where selective mass scaling has made nodes heavier.
 class NodalLoads
 {
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
 
-  /// Loads, and what gravity is less, count only where their effects run.
+  /// Loads and the correction of gravity act only while their effects run.
   void run(EffectSet running);
   void list_allocations(AllocationList& list) const;
   bool idle() const
@@ -30,9 +29,9 @@ public:
     return !loaded && !(relieves_ && !relief_.empty());
   }
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
-  const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one a loaded node
+  const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one per loaded node
 
-  /// The same without what mass scaling takes off.
+  /// The same without the correction of gravity.
   const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
   /// Forces at a time, from the present nodal displacements.
@@ -57,7 +56,7 @@ private:
   const Model& model_;
   std::vector<std::int32_t> nodes_;
   std::vector<std::array<double, 3>> surface_forces_, forces_;
-  std::vector<std::array<double, 3>> relief_;  // one a loaded node; empty where nothing is too heavy
+  std::vector<std::array<double, 3>> relief_;  // one per loaded node; empty where nothing is too heavy
   std::vector<Surface> surfaces_;
   bool runs_ = true, relieves_ = true;
 };

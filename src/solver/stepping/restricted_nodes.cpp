@@ -1,7 +1,8 @@
 #include "solver/stepping/restricted_nodes.hpp"
 
+#include "frontalis/physics/element/node_motion.hpp"
+#include "frontalis/physics/element/sliding_node.hpp"
 #include "frontalis/physics/ramp.hpp"
-#include "frontalis/physics/sliding.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +74,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// blocks begin at the first node that is in none yet and stay within its node plane: they go back a little where it
-// ends
+// a block begins at the first sliding node that is in no block yet, or earlier where the node plane ends: it stays
+// within the plane
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -210,10 +211,8 @@ void RestrictedNodes<Real>::follow_paths(std::int32_t first, std::int32_t last, 
     const double now = physics::ramped(step.time, load.ramp);
     for (int axis = 0; axis < 3; ++axis)
       if (load.fixed[axis])
-      {
-        u[axis][p->node] = static_cast<Real>(load.value[axis] * now);
-        v[axis][p->node] = (u[axis][p->node] - before[axis][p->node]) / static_cast<Real>(step.dt);
-      }
+        physics::move_to(load.value[axis] * now, before[axis][p->node], static_cast<Real>(step.dt), u[axis][p->node],
+                         v[axis][p->node]);
   }
 }
 
@@ -231,15 +230,10 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
       continue;
     }
     const auto rest = rest_position(model_, r->node);
-    const RigidTransform& pose = step.bone[r->bone];
+    const Point p{ rest[0], rest[1], rest[2] }, moved = pose_of(step.bone[r->bone]).outwards(p) - p;
+    const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
-    {
-      double x = pose.translation[axis] - rest[axis];
-      for (int j = 0; j < 3; ++j)
-        x += pose.rotation[3 * axis + j] * rest[j];
-      u[axis][r->node] = static_cast<Real>(x);
-      v[axis][r->node] = (u[axis][r->node] - before[axis][r->node]) / static_cast<Real>(step.dt);
-    }
+      physics::move_to(to[axis], before[axis][r->node], static_cast<Real>(step.dt), u[axis][r->node], v[axis][r->node]);
   }
 }
 

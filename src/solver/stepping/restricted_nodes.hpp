@@ -22,7 +22,7 @@ public:
     SurfaceTree::Point rest;
     SurfaceContact contact;
   };
-  /// What sliding nodes know of their surfaces.
+  /// State of sliding nodes on their surfaces.
   struct Contacts
   {
     GlidingNodes<Real> gliding;    ///< those whose surface follows a bone or has friction
@@ -37,7 +37,7 @@ public:
     }
   };
 
-  /// The kernel may read and write, unchanged, what lies between sliding nodes of one node plane.
+  /// The kernel may read other nodes between sliding nodes of one node plane and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset();
@@ -59,7 +59,7 @@ public:
   {
     return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
   }
-  /// Sliding and friction where they run; nodes know of nothing before.
+  /// Switches sliding and friction, and forgets all contacts.
   void run(EffectSet running);
   void list_allocations(AllocationList& list) const;
   bool idle() const

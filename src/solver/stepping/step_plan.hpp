@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "solver/stepping/constraint_step.hpp"
@@ -15,9 +16,11 @@ struct Conditions
   double damping = 0;               ///< mass-proportional [1/s]
   std::vector<float> activation;    ///< of each muscle now, as its fibres feel it: 0 where contraction is off
 
-  /// Damped central difference over `seconds`: v = keep * v + gain * force / mass.
-  double keep(double seconds) const { return (1 - 0.5 * damping * seconds) / (1 + 0.5 * damping * seconds); }
-  double gain(double seconds) const { return seconds / (1 + 0.5 * damping * seconds); }
+  template <class Real>
+  physics::Kick<Real> kick(double seconds) const
+  {
+    return physics::kick_of<Real>(damping, seconds, gravity);
+  }
 };
 
 /// Part of a motion in equal steps, over which activations and bone poses go linearly from begin to end.

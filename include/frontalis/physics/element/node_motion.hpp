@@ -1,0 +1,79 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+// How forces and prescribed motions move a node in one step. Displacement and velocity are those of one axis, u [m] and
+// v [m/s]; a backend goes through nodes and axes.
+
+/// What a step of the damped central difference does to velocities: v = keep v + impulse - gain f / m.
+template <class T>
+struct Kick
+{
+  T keep, gain;  ///< [-], [s]
+  T impulse[3];  ///< gain times gravity [m/s]
+};
+
+/// `damping`: proportional to mass [1/s]; `seconds`: for how long forces change velocities; gravity [m/s2].
+template <class T, class Gravity>
+Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
+{
+  const double gain = seconds / (1 + 0.5 * damping * seconds);
+  Kick<T> kick{ static_cast<T>((1 - 0.5 * damping * seconds) / (1 + 0.5 * damping * seconds)),
+                static_cast<T>(gain),
+                {} };
+  for (int axis = 0; axis < 3; ++axis)
+    kick.impulse[axis] = static_cast<T>(gain * gravity[axis]);
+  return kick;
+}
+
+/// Velocity of a free node after a step; gain_over_mass: Kick::gain over the node's mass. Two multiply-adds, with
+/// gravity or without.
+template <class T>
+FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T force)
+{
+  return (kick.keep * v + kick.impulse[axis]) - gain_over_mass * force;
+}
+
+/// The step is linear in the force, so that loads [N] may be added after it.
+template <class T>
+FRONTALIS_LAW void add_load(T gain_over_mass, T dt, T force, T& u, T& v)
+{
+  const T change = gain_over_mass * force;
+  v += change;
+  u += dt * change;
+}
+
+/// A node that moves as it is told, on a bone or on a prescribed path. before: its displacement before the step.
+template <class T>
+FRONTALIS_LAW void move_to(double to, T before, T dt, T& u, T& v)
+{
+  u = static_cast<T>(to);
+  v = (u - before) / dt;
+}
+
+/// Work on a node in a step along one axis, over the node's mass [m2/s2].
+struct NodeWork
+{
+  double damping;     ///< lost to damping
+  double constraint;  ///< done by constraints
+};
+
+/// From the velocities before the step, without constraints (`free`) and after it [m/s]. Each impulse works along the
+/// mean of the velocities before and after the step: with that the change of kinetic energy is the sum of works
+/// exactly. beside: how far constraints moved the node beside dt v, in this step and in the one before [m]. Along that
+/// the other forces worked too, by the mean of those of two steps, and the constraints took it away. damping [1/s],
+/// kick [s]: as in kick_of().
+FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
+                                 double damping, double kick)
+{
+  const double mean = 0.5 * (before + after), damped = 0.5 * damping * kick * (before + free);
+  return { mean * damped, mean * (after - free) - (free - before + damped) * 0.5 * (beside + beside_before) / kick };
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "solver/material_laws.hpp"
+
+namespace frontalis
+{
+
+/// A law beyond neo-Hookean that a voxel has in part, as the functions of physics/element/ call it.
+template <class T>
+struct LawShare
+{
+  Law law;
+  T weight;          ///< proportion times tissue volume [m3]
+  T at_rest;         ///< tangent stiffness at rest [Pa]
+  T per_tangent;     ///< LawPart::per_tangent [m]
+  T parameters[11];  ///< order: Law
+
+  FRONTALIS_LAW void add_stress(const physics::Kinematics<T>& k, physics::Matrix3<T>& P) const
+  {
+    add_law_stress(law, parameters, weight, k, P);
+  }
+  FRONTALIS_LAW T stiffening(const physics::Kinematics<T>& k) const
+  {
+    return law_stiffening(law, parameters, at_rest, per_tangent, k);
+  }
+  /// [J]; in a batch, 0 where a voxel does not have the law, whatever its parameters are there.
+  FRONTALIS_LAW T energy(const physics::Kinematics<T>& k) const
+  {
+    using N = physics::Number<T>;
+    T sum = N::of(0);
+    visit_law(law, parameters,
+              [&](const auto& material, const auto&... families)
+              { sum = N::select(weight > N::of(0), weight * physics::energy(material, k, families...), N::of(0)); });
+    return sum;
+  }
+};
+
+}  // namespace frontalis
