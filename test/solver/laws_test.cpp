@@ -61,7 +61,7 @@ Vectors random_displacements(const Model& model, double amplitude)
 
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
 {
-  return name_of(std::get<0>(info.param)) + "_" + physics::description_of(std::get<1>(info.param)).name;
+  return std::get<0>(info.param) + "_" + physics::description_of(std::get<1>(info.param)).name;
 }
 
 }  // namespace
