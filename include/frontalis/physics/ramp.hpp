@@ -7,7 +7,7 @@ namespace frontalis
 namespace physics
 {
 
-/// Part of a load that acts at a time: it grows linearly from 0 to 1 over the ramp, and is 1 without a ramp. Both in
+/// Fraction of a load that acts at a time: it grows linearly from 0 to 1 over the ramp; 1 without a ramp. Both in
 /// seconds.
 FRONTALIS_LAW double ramped(double time, double ramp) { return ramp > 0 && time < ramp ? time / ramp : 1.0; }
 
