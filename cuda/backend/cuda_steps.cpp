@@ -181,8 +181,8 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // The host normally waits for the plan before, so that the device always has work. If the motion changes fast, it
-  // waits for the present plan.
+  // The host waits for the previous plan, so that the device always has work; for the present one if motion changes
+  // fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);

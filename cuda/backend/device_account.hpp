@@ -31,8 +31,7 @@ public:
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
   /// Adds the work that fibres did since the last call, up to displacements `u`.
   void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
-  /// To be called before and after each step. g.first selects the buffer of displacements before the step, then after
-  /// it.
+  /// To be called before and after each step. g.first selects the displacements before the step, then after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
   const DeviceBook& book() const { return book_; }

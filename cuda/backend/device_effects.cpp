@@ -7,8 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off leaves all arrays in place. Their entries then say that a strip has no fibres, a muscle no
-// passive part or a node no task.
+// Switching an effect off keeps all arrays. Entries then mark strips without fibres, nodes without tasks and so on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {

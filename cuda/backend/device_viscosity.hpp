@@ -34,8 +34,7 @@ public:
   /// Sets the relaxed stresses and the account of their work to zero.
   void reset();
   void reset_account();
-  /// Relaxes stresses by `elapsed` [s] towards those at displacements `u`. `u_before`: displacements one step earlier,
-  /// needed only for the account of work.
+  /// Relaxes stresses by `elapsed` [s] towards those at `u`. `u_before`: one step earlier, for the account only.
   void relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed, cudaStream_t stream);
   /// Starts an account of the work of viscous stresses.
   void keep_account();

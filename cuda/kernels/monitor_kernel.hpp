@@ -23,8 +23,7 @@ struct MonitorVoxels
   float* node_stiffness;  ///< scratch: sum of the bounds at each node [N/m]
 };
 
-/// The highest frequency bound, squared [1/s2], among the nodes of some voxels, and the stiffest voxel at the node that
-/// sets it.
+/// The highest squared frequency bound [1/s2] among the nodes of some voxels, and the stiffest voxel at that node.
 struct StiffestVoxel
 {
   float frequency_squared = 0;

@@ -61,8 +61,7 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// Functions by NodeEffect. They are called through this table so that they take no registers of the kernels. `With`:
-/// the effects of nodes.
+/// Functions by NodeEffect. Calls through a table keep their registers out of the kernels. `With`: effects of nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {

@@ -18,8 +18,7 @@ template <class T>
 static __device__ __noinline__ T law_stiffening_apart(const StepArguments& g, std::uint32_t palette,
                                                       const physics::Kinematics<T>& k);
 
-/// Material of the voxels of a palette entry, in the form that physics/element/ reads. T is float in a step and double
-/// in the monitor.
+/// Material of a palette entry, in the form that physics/element/ reads. T: float in a step, double in the monitor.
 template <class T, Effects With>
 struct PaletteVoxel
 {
@@ -139,8 +138,7 @@ static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, s
   physics::gauss_forces(palette_voxel<float>(g, palette), mode, look, stiffness);
 }
 
-/// Relaxation within a step is rare. It works on a copy of the deformation, so that other voxels keep theirs in
-/// registers.
+/// Relaxation within a step is rare. It works on a copy, so that other voxels keep their deformation in registers.
 template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t palette, std::uint32_t viscous,
                                                float elapsed, const physics::Kinematics<float>& k)

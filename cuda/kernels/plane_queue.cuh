@@ -144,8 +144,7 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
   }
 }
 
-/// Waits for the plane that a node requested. Returns whether it is valid where the node will be one step later; if so,
-/// the node has it.
+/// Waits for the plane that a node requested and applies it if it is valid one step later. Returns whether it is.
 template <Effects With>
 __device__ __forceinline__ bool take_asked(const StepArguments& g, std::int32_t contact, const float (&u)[3],
                                            float (&v)[3])

@@ -32,8 +32,7 @@ __device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& 
 __device__ __forceinline__ float squared(const float* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
 /// How far ahead of a node its next plane is searched, as a fraction of a plan: half the distance over which its last
-/// plane was valid, but at most half a plan. `goes`: distance travelled in a plan [m]. `served`: squared distance over
-/// which the last plane was valid [m2].
+/// plane was valid, at most half a plan. `goes`: distance per plan [m]; `served`: squared distance of validity [m2].
 __device__ __forceinline__ float share_before(float goes, float served)
 {
   // a node may have had no plane, and may not move

@@ -111,8 +111,7 @@ struct GlidingSearch
 struct TangentPlane
 {
   float4 normal_offset;
-  float4 reference;  ///< displacement where it was found; w: square of ContactPlane::limit [m2], negative if there is
-                     ///< no plane yet
+  float4 reference;  ///< displacement where found; w: square of ContactPlane::limit [m2], < 0: no plane
 };
 
 /// Values of TangentPlane::reference.w in StepArguments::planes_ahead: no plane, or a plane is requested.

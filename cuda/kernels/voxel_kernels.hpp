@@ -61,8 +61,7 @@ cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccoun
 cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
                             float amount, float4* out, cudaStream_t stream);
 
-/// Blocks of launch_product(), which store two numbers each: largest component over the root of the mass, and sum of
-/// squares.
+/// Blocks of launch_product(). Each stores the largest component over the root of the mass, and a sum of squares.
 constexpr int product_blocks = 128;
 
 /// mode = (forces - present) * factor / sqrt(mass), 0 at held nodes. `seen`: the numbers above.

@@ -28,8 +28,8 @@ __device__ __forceinline__ T largest_of_warp(T value)
 #endif
 }
 
-/// The team of SurfaceContact::renew that is a whole warp, of a block of at most `Warps` warps. All lanes call each of
-/// its functions.
+/// A whole warp as the team of SurfaceContact::renew, in a block of at most `Warps` warps. All lanes call its
+/// functions.
 template <int Warps>
 struct Warp
 {
@@ -112,8 +112,7 @@ private:
 template <int Warps>
 __device__ void Warp<Warps>::near(const SurfaceSearch& surface, const SurfaceSearch::Point& p, NearTriangles& out)
 {
-  // At most `wide` boxes are processed in parallel. Beyond that they are processed one by one, up to the depth of a
-  // tree.
+  // At most `wide` boxes are processed in parallel; more are processed one by one, up to the depth of a tree.
   constexpr int wide = 2 * size, deepest = 64;
   constexpr double nowhere = 1e300;
   __shared__ std::int32_t waiting[Warps][wide + deepest];
@@ -215,8 +214,8 @@ __device__ __noinline__ ContactPlane find_together(bool asks, SurfaceContact* co
   return own;
 }
 
-/// Finds the tangent plane at `at`. If it is not valid at the node's position `p`, finds it at `p` instead and sets
-/// `at` to `p`.
+/// Finds the tangent plane at `at`. If it is not valid at the node's position `p`, finds it at `p` and sets `at` to
+/// `p`.
 template <int Warps>
 __device__ __forceinline__ ContactPlane find_before(bool asks, SurfaceContact* contact, const SurfaceContact::Point& p,
                                                     SurfaceContact::Point& at)

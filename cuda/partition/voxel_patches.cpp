@@ -13,8 +13,7 @@ namespace frontalis
 namespace
 {
 
-// Cost of a fibre entry, of viscosity and of a node relative to a plain voxel, measured on blocks in which all voxels
-// or none have the effect.
+// Cost relative to a plain voxel, measured on blocks in which all voxels or none have the effect.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -126,8 +125,7 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// Divides the model into parts of about equal cost. Weights are corrected a few times, because the voxels that parts
-// share are known only after a cut.
+// Divides the model into parts of about equal cost, in a few iterations, because shared voxels depend on the cut.
 std::vector<std::uint32_t> partition(const Model& model, int parts)
 {
   std::vector<float> weight(model.nodes.size(), node_cost);
@@ -158,8 +156,7 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// Nodes with effects other than sliding on a fixed surface. They are numbered contiguously, because a warp takes as
-// long for one of them as for 32.
+// Nodes with other effects, numbered contiguously because a warp takes as long for one of them as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);

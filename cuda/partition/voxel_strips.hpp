@@ -43,8 +43,7 @@ struct Strip
 /// First fibre entry of a voxel * 16 + number of entries; 0: none. Throws Error if there are more than 15.
 std::uint32_t fibre_word(const Model& model, std::uint32_t voxel);
 
-/// The strips of a model. Device nodes are numbered from 1 in the order in which strips own them; node 0 is a
-/// placeholder that never moves.
+/// The strips of a model. Device nodes are numbered from 1 in the order of the strips; node 0 is a fixed placeholder.
 struct VoxelStrips
 {
   VoxelStrips(const Model& model, const StripSettings& settings);

@@ -70,8 +70,7 @@ TEST_F(Shell, MovesAsTheReferenceDoes)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
 }
 
-// Without sliding, because backends change contact planes at different times, which moves the skin by micrometres in
-// any precision.
+// Without sliding, because backends change contact planes at different times, which moves the skin by micrometres.
 TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;

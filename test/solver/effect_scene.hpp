@@ -39,8 +39,7 @@ inline std::vector<unsigned> every_combination()
   return combinations;
 }
 
-/// Strips of several lengths, so that tiles are full, half full and empty in places. Each effect has its own part of
-/// it.
+/// Strips of several lengths, so that tiles are full, half full and empty. Each effect has its own part of the scene.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {

@@ -19,8 +19,8 @@ FRONTALIS_LAW constexpr double gauss_point(int point, int axis)
   return point & (1 << axis) ? gauss_coordinate : -gauss_coordinate;
 }
 
-/// Contribution of mode `mode` to the derivative along `axis` at a point: 1 for the gradient's own mode, 0 if the mode
-/// does not vary along the axis.
+/// Contribution of a mode to the derivative along `axis` at a point: 1 for the gradient's own mode, 0 if it is
+/// constant.
 FRONTALIS_LAW constexpr double gauss_weight(int point, int axis, int mode)
 {
   double weight = mode & (1 << axis) ? 1 : 0;

@@ -18,8 +18,7 @@ struct Symmetric3
 FRONTALIS_LAW constexpr int symmetric_row(int i) { return i < 3 ? i : i - 3; }
 FRONTALIS_LAW constexpr int symmetric_column(int i) { return i < 3 ? i : (i - 2) % 3; }
 
-/// Second Piola-Kirchhoff stress S = F^-1 P = (cof F)^T P / J. The divisor is at least continuation_jacobian, so that S
-/// is finite.
+/// Second Piola-Kirchhoff stress S = F^-1 P = (cof F)^T P / J. The divisor is kept above continuation_jacobian.
 template <class T>
 FRONTALIS_LAW Symmetric3<T> second_piola(const Kinematics<T>& k, const Matrix3<T>& P)
 {

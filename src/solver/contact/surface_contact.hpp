@@ -41,8 +41,7 @@ class SurfaceContact
 public:
   using Point = SurfaceTree::Point;
 
-  /// Error of the plane at which a new one is requested [m]. Each change of plane excites vibrations, so it must be
-  /// small.
+  /// Error of the plane at which a new one is requested [m]: small, because each change of plane excites vibrations.
   static constexpr double plane_error = 0.5e-6;
   /// Largest error of planes that are found beside the steps and may therefore come late [m].
   static constexpr double late_error = 1e-6;

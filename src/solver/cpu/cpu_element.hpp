@@ -221,8 +221,7 @@ struct CpuElement
     return physics::kinematics(mode[0], mode[1], mode[2], at.g.scale);
   }
 
-  /// Relaxes viscous stresses towards those at the present displacements. `work`: sums of the plane or null, see
-  /// CpuKernelArguments::viscous_work.
+  /// Relaxes viscous stresses to the present displacements. `work`: see CpuKernelArguments::viscous_work; may be null.
   static __attribute__((noinline)) void relax(const Voxels& at, double* work)
   {
     const Kinematics k = kinematics(at, at.g.u);

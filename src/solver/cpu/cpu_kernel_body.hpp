@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Processes the planes of a slab in order. Forces of a plane of voxels go to two planes of nodes, the lower of which
-/// is then complete and is stepped.
+/// Steps a slab plane by plane. Each plane of voxels completes the forces of its lower plane of nodes, which then
+/// moves.
 template <class Architecture, class Real>
 struct CpuKernelBody
 {
@@ -99,8 +99,7 @@ struct CpuKernelBody
     const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
-    // Voxel plane k lies between node planes k and k + 1. The plane below the first is computed only for its upper
-    // nodes.
+    // Voxel plane k lies between node planes k and k + 1. The plane below the first serves only its upper nodes.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
       clear(above, used);

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes and the tangent planes normal . u = offset of those that slide. The other nodes
-/// have a zero normal and an infinite slip.
+/// Up to `width` neighbouring nodes and the planes normal . u = offset of those that slide; zero normals for the
+/// others.
 template <class Real>
 struct SlidingBlock
 {

@@ -7,8 +7,7 @@
 namespace frontalis
 {
 
-// The architecture is part of every type, so that translation units of different instruction sets share no
-// instantiation.
+// The architecture is part of every type, so that instruction sets share no template instantiation.
 template <class Architecture>
 struct SlideKernelBody
 {

@@ -18,8 +18,7 @@ struct LawPart
   double weight;  ///< fraction of the voxel's tissue
   std::array<double, 11> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-  double per_tangent;  ///< stiffness of the voxel per tangent: weight times tissue volume over h^2 of the shortest edge
-                       ///< [m]
+  double per_tangent;     ///< weight times tissue volume over h^2 of the shortest edge: voxel stiffness per tangent [m]
   std::int32_t material;  ///< -1: averaged
 };
 

@@ -74,8 +74,7 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// A block starts at the first sliding node that is in no block yet, or earlier at the end of a node plane, because it
-// must stay within the plane.
+// A block starts at the first sliding node that is in no block yet, or earlier to stay within the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {

@@ -11,8 +11,7 @@ namespace physics
 // One step of a node that slides on a surface: slide() moves it back to its tangent plane, rub() applies friction. On a
 // bone, the step is done in the bone's frame: relative_to() converts to it, and the pose converts back.
 
-/// Turns the velocity of a node with its plane. Returns the normal speed that this removes, which is part of the
-/// surface's reaction.
+/// Turns the velocity of a node with its plane. Returns the removed normal speed, a part of the surface's reaction.
 template <class T>
 FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>& v)
 {
@@ -49,8 +48,8 @@ struct RelativeMotion
   Vec3<double> surface_velocity;  ///< velocity of the bone at the node, in the scene's frame [m/s]
 };
 
-/// now, before: pose of the bone at the end and at the start of the step; rate: 1 / dt; place, v: position and velocity
-/// of the node after its update.
+/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: of the node after its
+/// update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)
 {
