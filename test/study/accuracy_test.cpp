@@ -253,7 +253,7 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
   const auto whole = files_in(plan.folder + "/variants", ".motion");
   plan.folder = folder + "/parts";
   int checkpoints = 0, calls = 0;
-  // some 17 calls a turn: within a variant's 30 slices, or while it settles, from the begin of which it goes on
+  // about 17 calls per round: it ends within a variant's 30 slices, or while it settles, which then starts again
   for (bool complete = false; !complete; ++calls)
   {
     ASSERT_LT(calls, 1000);

@@ -15,7 +15,7 @@ using namespace frontalis;
 namespace
 {
 
-// what an effect costs where times are not measured but set: a step takes the sum over the effects that run [s]
+// Prescribed cost of an effect [s]. A step takes the sum over the running effects.
 double price_of(Effect effect) { return 1e-6 * std::pow(2, static_cast<int>(effect)); }
 
 double price_of(EffectSet effects)
