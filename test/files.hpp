@@ -19,7 +19,7 @@ inline std::string text_of(const std::string& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// a folder of its own, removed with its contents
+// A temporary folder that is removed with its contents.
 class TemporaryFolder
 {
 public:
@@ -35,7 +35,7 @@ public:
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   std::string operator/(const std::string& name) const { return path_ / name; }
-  /// Writes a file and says its path.
+  /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& text) const
   {
     const std::filesystem::path path = path_ / name;

@@ -6,10 +6,10 @@ namespace frontalis
 namespace cuda
 {
 
-// The bounds that the latest plans saw limit the steps of later plans, so they are part of the motion.
+// The frequency bounds that the latest plans reported limit the steps of later plans, so they belong to the state.
 struct CudaSolver::State : BackendState
 {
-  cudaStream_t stream = nullptr;  // on which it is filled
+  cudaStream_t stream = nullptr;  // stream on which the copy is queued
   DeviceArray<float4> u;
   DeviceArray<float> v[3];
   DeviceModel::Contacts contacts;

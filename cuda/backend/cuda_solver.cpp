@@ -35,7 +35,7 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
   for (const auto node : device_.still_nodes())
     still.push_back(device_.device_node()[node]);
   still_ = DeviceArray<std::uint32_t>(still);
-  // ordered with the default stream, so that events recorded there enclose this solver's work
+  // A stream that synchronises with the default stream, so that events recorded there enclose this solver's work.
   require(cudaStreamCreate(&stream_), "making a stream");
   require(cudaStreamCreateWithFlags(&beside_, cudaStreamNonBlocking), "making a stream");
   for (cudaEvent_t* const event : { &asked_, &found_ })
@@ -112,7 +112,7 @@ void CudaSolver::effect_switched(Effect effect)
     device_.viscosity().reset();
   if (effect == Effect::sliding || effect == Effect::friction)
     device_.reset_contacts();
-  // the bounds that plans under way will report are those of other effects
+  // The bounds of the plans under way belong to other effects, so they are not used.
   plans_ = 0;
 }
 
@@ -207,10 +207,9 @@ void CudaSolver::skin(SkinState& out)
   take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
 }
 
-// Long plans hide the work between them, but the time step must follow a tissue that stiffens: half a millisecond is
-// short enough. Searches that run beside a plan take about 64 steps. Looks at all displacements and checks wait for the
-// device, which takes some 40 us; a step of a small model takes 2 us. The host's look at millions of nodes takes as
-// long as a hundred steps.
+// Long plans hide the host's work between them, but the time step must follow a tissue that stiffens: plans of 0.5 ms
+// are short enough for that. Searches for tangent planes run beside a plan and take about 64 steps. Checks, and looks
+// at all displacements, wait for the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};

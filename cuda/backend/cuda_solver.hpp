@@ -12,7 +12,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// The controls of one plan on their way to the device, and the frequency bound that its last step reports.
+/// The input of one plan on its way to the device, and the frequency bound that its last step reports.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -21,13 +21,13 @@ struct PlanSlot
   cudaEvent_t done = nullptr;
 };
 
-/// Single precision, on one NVIDIA GPU. Steps are queued without waiting for them: the frequency bound that a plan's
-/// last step reports limits the plan after the next. The host waits only for that bound and for results that it asks
-/// for.
+/// The backend for one NVIDIA GPU, in single precision. Steps are queued without waiting: the frequency bound that a
+/// plan's last step reports limits the plan after the next. The host waits only for that bound and for requested
+/// results.
 class CudaSolver : public StepBackend
 {
 public:
-  /// `remark` is added to its description.
+  /// `remark` is appended to the solver's description.
   CudaSolver(const BackendInput& input, const std::string& remark);
   ~CudaSolver() override;
 
@@ -56,7 +56,7 @@ private:
   void rest();
   void queue_forces(float4* at, const float* activation, float4* out);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
-  /// No values stand for zeros.
+  /// An empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
@@ -67,7 +67,7 @@ private:
     void operator()(Mode* mode) const;
   };
 
-  const std::string remark_;  // of the description
+  const std::string remark_;  // appended to the description
   DeviceModel device_;
   DeviceArray<float4> u_[2];
   DeviceArray<float> v_[3];
@@ -77,16 +77,16 @@ private:
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
   std::uint32_t steps_before_ = 0;    // steps queued since the solver was made
   cudaStream_t stream_ = nullptr;
-  cudaStream_t beside_ = nullptr;  // searches that run beside a plan's steps, between these events
+  cudaStream_t beside_ = nullptr;  // stream of the searches that run beside a plan's steps, between these events
   cudaEvent_t asked_ = nullptr, found_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;
-  int present_ = 0;           // buffer that holds the displacements now
-  bool still_moved_ = false;  // displacements of still nodes were set from outside
+  int present_ = 0;           // index of the buffer that holds the present displacements
+  bool still_moved_ = false;  // whether displacements of still nodes were set from outside
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
   std::unique_ptr<DeviceMonitor> monitor_;   // made on first use
-  std::unique_ptr<Mode, ModeDeleter> mode_;  // of the highest frequency
+  std::unique_ptr<Mode, ModeDeleter> mode_;  // mode of the highest frequency
 };
 
 }  // namespace cuda

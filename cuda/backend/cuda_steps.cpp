@@ -11,8 +11,8 @@ namespace frontalis
 namespace cuda
 {
 
-// How many steps before a node leaves its tangent plane it asks for another. A search takes about ten microseconds;
-// with a longer lead the predicted position is wrong more often.
+// A node requests its next tangent plane this many steps before it leaves the present one, because a search takes about
+// as long as that. A longer lead makes the predicted position less accurate.
 constexpr double steps_of_lead = 10;
 
 void CudaSolver::kick(StepArguments& g, double seconds) const
@@ -42,8 +42,8 @@ StepArguments CudaSolver::arguments(double dt) const
   return g;
 }
 
-// Copies frequency bound (cleared), activations, poses and relaxation times of viscous stresses (empty where they do
-// not relax within launches) to the device at once, through page-locked memory.
+// Copies the cleared frequency bound, the activations, the poses and the relaxation times of viscous stresses to the
+// device in one transfer from page-locked memory. `relaxation` is empty if stresses do not relax within launches.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -94,7 +94,7 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-// One launch for all steps where nothing has to be done between them, else one per step.
+// Launches all steps at once if nothing has to be done between them, else one launch per step.
 void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
@@ -120,7 +120,7 @@ double CudaSolver::run(const StepPlan& plan)
   g.look_always = plan.bound_every_step;
   const bool relaxes = !device_.viscosity().idle();
   const std::vector<double> elapsed = relaxes ? plan.relaxation : std::vector<double>(plan.steps, 0);
-  // patches relax their viscous stresses within launches, unless the ledger needs the work
+  // Patches relax their viscous stresses within launches, unless the energy ledger needs the work of each relaxation.
   std::vector<float> relaxation;
   if (launch_.patches && !account_ && relaxes)
   {
@@ -134,7 +134,7 @@ double CudaSolver::run(const StepPlan& plan)
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
   const bool from_plan_to_plan = g.searches > 0;
-  // in patches only the first plan needs this: later planes are found within launches
+  // Patches need this only before the first plan: they find later planes within their launches.
   if (from_plan_to_plan || plans_ == 0)
     require(launch_renewals(g, stream_), "renewing contacts");
   if (from_plan_to_plan)
@@ -181,14 +181,15 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // waits for the plan before, so that the device always has work; for its own where the motion changes fast
+  // The host waits for the previous plan, so that the device always has work; for the present one if motion changes
+  // fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
   return before > plan.alarming_frequency_squared ? seen(plans_ - 1) : before;
 }
 
-// Internal forces at any displacements; `out` must hold zeros for nodes without voxels.
+// Computes the internal forces at any displacements. `out` must hold zeros for nodes without voxels.
 void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
 {
   StepArguments g = arguments(0);

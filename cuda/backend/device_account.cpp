@@ -92,7 +92,7 @@ void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t s
   for (const auto* values : { &book_.damping, &book_.constraint, &book_.beside, &book_.friction, &book_.load })
     if (values->size() > 0)
       require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");
-  // for nodes that are not stepped
+  // nodes that are not stepped keep zeros
   for (int axis = 0; axis < 3; ++axis)
     for (const auto* values : { &before_[axis], &free_[axis] })
       require(cudaMemsetAsync(values->data(), 0, values->bytes(), stream), "clearing an account");

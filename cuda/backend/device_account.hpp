@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Work on nodes and of fibres since the account was opened.
+/// Work on nodes and work of fibres since the account was opened.
 struct DeviceBook
 {
   DeviceArray<double> damping, constraint, beside, friction, load, fibre_work;
@@ -19,24 +19,24 @@ struct DeviceBook
   void archive(ByteArchive& archive);
 };
 
-/// Sums that work in device memory; the host adds up the parts on request.
+/// Sums of work in device memory. The host adds up the partial sums on request.
 class DeviceAccount
 {
 public:
   DeviceAccount(const Model& model, DeviceModel& device);
 
-  /// Fills in where a step stores velocities for the account.
+  /// Sets the arrays in which a step stores velocities for the account.
   void describe(StepArguments& g) const;
-  /// Begins anew at displacements u with the activations at the end of g's plan.
+  /// Starts a new account at displacements `u`, with the activations at the end of g's plan.
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
-  /// Adds the work of fibres since the last call, up to displacements u.
+  /// Adds the work that fibres did since the last call, up to displacements `u`.
   void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
-  /// Around each step: g.first is the displacements' buffer before it, after it.
+  /// To be called before and after each step. g.first selects the displacements before the step, then after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
   const DeviceBook& book() const { return book_; }
   void restore(const DeviceBook& book, cudaStream_t stream) { book_.assign(book, stream); }
-  /// All work but that of viscous stresses; the stream must be idle.
+  /// Returns all work except that of viscous stresses. The stream must be idle.
   Work work() const;
   void list_allocations(Effect of_fibres, AllocationList& list) const;
 

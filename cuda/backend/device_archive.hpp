@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// An array's values by way of the host; the device must be idle.
+/// Writes or reads an array through host memory. The device must be idle.
 template <class T>
 void to_host(DeviceArray<T>& array, ByteArchive& archive)
 {

@@ -7,7 +7,7 @@ namespace cuda
 namespace
 {
 
-// compiled for the same architectures as all kernels
+// an empty kernel, compiled for the same architectures as all others
 __global__ void probe() {}
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Fails where this build has no machine code for the device and its driver cannot compile the PTX.
+/// Returns an error if this build has no machine code for the device and the driver cannot compile its PTX.
 cudaError_t has_device_code();
 
 }  // namespace cuda

@@ -18,7 +18,7 @@ void DeviceModel::Contacts::archive(ByteArchive& archive)
     archive_contacts(entries, archive);
     contacts.upload(entries.data(), entries.size());
   };
-  // kernels keep pointers to these arrays, so their places and sizes stay
+  // kernels keep pointers to these arrays, so their addresses and sizes must not change
   const auto same_count_to_host = [&archive](auto& array, const char* what)
   {
     const std::size_t count = array.size();

@@ -7,8 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// An effect that is off leaves all arrays in place; their entries say that a strip has no fibres, a muscle no passive
-// part, a node no task.
+// Switching an effect off keeps all arrays. Entries then mark strips without fibres, nodes without tasks and so on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -54,7 +53,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // as the bound of the stiffness counts them
+  // the same stiffness as in the frequency bound
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)
@@ -107,7 +106,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// The smallest kernel that computes the running effects and walks strips of the given number of rows.
+// Chooses the smallest kernel that computes the running effects and handles strips of the given number of rows.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -14,7 +14,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Throws Error with what was tried and the CUDA runtime's message.
+/// Throws Error with the failed operation and the message of the CUDA runtime.
 inline void require(cudaError_t status, const char* what)
 {
   if (status != cudaSuccess)
@@ -60,7 +60,7 @@ public:
       require(cudaMemcpy(host.data(), data_, bytes(), cudaMemcpyDeviceToHost), "copying from the device");
   }
 
-  /// Takes size and values of another array, on the device, in the stream's order.
+  /// Copies the size and values of another array on the device, in stream order.
   void assign(const DeviceArray& from, cudaStream_t stream)
   {
     if (size_ != from.size_)
@@ -80,7 +80,7 @@ private:
   std::size_t size_ = 0;
 };
 
-/// Page-locked memory of the host, for copies while the device works.
+/// Page-locked host memory, for copies that overlap with work of the device.
 template <class T>
 class PinnedArray
 {

@@ -40,7 +40,7 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node)
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
 
-// Throws BackendUnavailable where the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
+// Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
 void expect_room(const Model& model, const VoxelCut& cut)
 {
   const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
@@ -92,7 +92,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model, cut.searches);
-  // nodes that never move have no inverse mass
+  // nodes that never move get no inverse mass
   if (discretisation.held.size() > still_nodes_.size())
   {
     const std::vector<float> of_node = mobility(discretisation);
@@ -163,7 +163,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 StepArguments DeviceModel::arguments() const { return constants_; }
 
-// Voxels of equal properties share an entry; entry 0 has no stiffness. Returns the entry of each voxel.
+// Gives voxels of equal properties a common palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
 {
   const bool stabilised = d.assumed_strain;
@@ -261,7 +261,7 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
     surfaces.push_back(
         { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
   }
-  // nodes with friction first, then in the order in which warps meet them
+  // nodes with friction come first, then the order in which warps process them
   const auto rubs = [&model](const SlidingNode& node)
   {
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
@@ -304,7 +304,7 @@ void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::v
   reset_contacts();
 }
 
-// Loads and restrictions of nodes, sorted by device node; nodes that never move are not stepped and have none.
+// Lists the loads and restrictions of nodes, sorted by device node. Nodes that never move have no tasks.
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model, std::uint32_t searches)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });

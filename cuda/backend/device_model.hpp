@@ -15,19 +15,19 @@ namespace frontalis
 namespace cuda
 {
 
-/// One word per fibre: StepArguments::fibre_muscle.
+/// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-/// The effects that the kernels of a model must have because of its voxels and its friction.
+/// The effects that a model's kernels must compute because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Patches where the shared memory holds them, else strips.
+/// Patches if they fit the shared memory, else strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };  ///< with the least number of turns that is tried; 0 turns: strips
-  std::size_t patch_bytes = 0;    ///< of shared memory that the device has for a block's patches
+  PatchSettings patches{ 0, 0 };  ///< first number of turns to try; 0 turns: use strips
+  std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
-  std::uint32_t searches = search_group;  ///< StepArguments::searches of strips
+  std::uint32_t searches = search_group;  ///< StepArguments::searches, for strips
 };
 
 /// The patches or strips of a model.
@@ -36,29 +36,29 @@ struct VoxelCut
   VoxelCut(const Model& model, const CutChoice& choice);
 
   std::unique_ptr<VoxelPatches> patches;
-  std::unique_ptr<VoxelStrips> strips;  ///< either these or patches
+  std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
   std::uint32_t searches = 0;           ///< StepArguments::searches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
-  /// 1 + the model voxel at each place; 0 where there is none.
+  /// For each place in the partition, 1 + the number of its model voxel, or 0 if it is empty.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
-/// A model in device memory: what stays constant while it runs, and the contacts of its sliding nodes.
+/// A model in device memory: its constant data and the contacts of its sliding nodes.
 class DeviceModel
 {
 public:
-  /// Throws Error with the bytes wanted and free where the device has too little memory, before anything is allocated.
+  /// Throws Error with the required and the free bytes before anything is allocated, if the memory is too small.
   DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
 
-  /// Arguments of a step with all that is constant filled in.
+  /// Returns step arguments with all constant data filled in.
   StepArguments arguments() const;
-  /// From now on only these effects act; no array changes its place or size.
+  /// Switches to these effects. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_allocations(Effect of_fibres, AllocationList& list) const;
-  /// Contacts as they are at rest.
+  /// Returns all contacts to their state at rest.
   void reset_contacts();
-  /// State of the contacts of sliding nodes.
+  /// The state of the contacts of sliding nodes.
   struct Contacts
   {
     DeviceArray<SlidingContact> sliding;
@@ -74,17 +74,17 @@ public:
   void restore(const Contacts& from, cudaStream_t stream);
 
   Effects effects() const { return effects_; }
-  /// How the step kernel is launched; the number of blocks is left open.
+  /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
   double filled() const { return filled_; }                      ///< VoxelStrips::filled()
-  std::size_t nodes() const { return device_node_.size() + 1; }  ///< with the place holder
+  std::size_t nodes() const { return device_node_.size() + 1; }  ///< including the placeholder, node 0
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   std::size_t contacts() const { return sliding_.size() + gliding_.size(); }
-  /// Entries of StepArguments::friction_work.
+  /// Number of entries of StepArguments::friction_work.
   std::size_t friction_works() const { return rubbing_.size() + gliding_.size(); }
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
@@ -104,7 +104,7 @@ private:
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
 
-  /// The arrays as they are where every effect runs; kept from the first switch on.
+  /// The arrays with all effects switched on, kept from the first switch onwards.
   struct Whole
   {
     std::vector<Strip> strips;
@@ -112,7 +112,7 @@ private:
     std::vector<std::int32_t> patch_tasks;
   };
 
-  Effects most_effects_;  // where every effect of the model runs
+  Effects most_effects_;  // all effects of the model
   Effects effects_ = Effects::none;
   StepLaunch launch_{};
   std::vector<std::uint32_t> device_node_;

@@ -9,15 +9,15 @@ namespace frontalis
 namespace cuda
 {
 
-/// Energies and the worst voxel of a model on the device. Takes 44 bytes per voxel when it is made.
+/// Computes the energies and the worst voxel of a model on the device. It allocates 44 bytes per voxel.
 class DeviceMonitor
 {
 public:
   DeviceMonitor(const Model& model, const DeviceModel& device);
 
-  /// Energies and the worst voxel at displacements u, velocities g.v; waits for the stream.
+  /// Returns energies and worst voxel at displacements `u` and velocities g.v. Waits for the stream.
   Monitor look(const StepArguments& g, const float4* u, cudaStream_t stream);
-  std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< of the device's memory
+  std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< device memory
 
 private:
   DeviceArray<MonitorVoxel> voxels_;

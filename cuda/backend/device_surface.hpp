@@ -13,7 +13,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// A surface (or points, where it has no triangles) bound to a model's voxels, in device memory.
+/// A surface, or a set of points if it has no triangles, bound to a model's voxels in device memory.
 class DeviceSurface
 {
 public:
@@ -35,14 +35,14 @@ private:
   DeviceArray<std::int32_t> around_begin_, around_;
 };
 
-/// Tractions, follower pressures, and the relief from gravity of nodes whose mass is scaled. Each node of a load takes
-/// parts of the forces at the load's vertices.
+/// Tractions, follower pressures, and the correction of gravity at nodes with scaled mass. The force on a node is a sum
+/// of parts of the forces on surface vertices.
 class DeviceLoads
 {
 public:
   DeviceLoads(const Model& model, const Discretisation& discretisation, const std::vector<std::uint32_t>& device_node);
 
-  /// Where each loaded model node's parts begin, in the order of nodes().
+  /// Index of the first part of each loaded node, in the order of nodes().
   const std::vector<std::int32_t>& nodes() const { return nodes_; }
   const std::int32_t* begin() const { return begin_.data(); }
   const LoadPart* parts() const { return parts_.data(); }
@@ -50,9 +50,9 @@ public:
   const double* relief() const { return relief_.data(); }
   const double* ramp() const { return ramp_.data(); }
 
-  /// True where forces follow the surface, so that they change with every step.
+  /// True if loads follow the surface, so that they change in every step.
   bool follow() const { return runs_ && !pressures_.empty(); }
-  /// Loads and relief from gravity act only where their effects run.
+  /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running);
   bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
   void list_allocations(AllocationList& list) const;
@@ -67,7 +67,7 @@ private:
   };
 
   bool runs_ = true, relieves_ = true;
-  std::vector<double> traction_;  // vertex forces of dead loads
+  std::vector<double> traction_;  // vertex forces of tractions
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;

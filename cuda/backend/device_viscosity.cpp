@@ -124,7 +124,7 @@ void DeviceViscosity::relax(const StepArguments& g, const float4* u, const float
             "relaxing viscous stresses");
 }
 
-// Change of H : E by relaxation since the account was opened, less its present value.
+// Change of H : E by relaxation since the account was opened, minus its present value.
 double DeviceViscosity::work() const
 {
   if (account_.size() == 0)

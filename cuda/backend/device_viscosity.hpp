@@ -12,36 +12,36 @@ namespace frontalis
 namespace cuda
 {
 
-/// Relaxed stresses of viscous voxels in device memory, and the kernel that renews them.
+/// Relaxed stresses of viscous voxels in device memory, and the kernel that updates them.
 class DeviceViscosity
 {
 public:
-  /// `voxel_at`: 1 + the model voxel at each place of the strips or patches, 0: none. `apart`: a voxel in several
-  /// places has stresses of its own in each, so that the patches that compute it need not wait for each other.
+  /// `voxel_at`: 1 + the model voxel at each place of the partition, 0 if the place is empty. `apart`: a voxel that
+  /// lies in several patches has separate stresses in each, so that patches need not wait for each other.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
                   bool apart);
 
   bool empty() const { return voxels_.size() == 0; }
-  /// Where viscosity is off nothing is read or renewed.
+  /// While viscosity is switched off, nothing is read or updated.
   void run(EffectSet running);
   bool idle() const { return empty() || !runs_; }
   void list_allocations(AllocationList& list) const;
   /// Fills in what a step needs.
   void describe(StepArguments& g) const;
-  /// To be called once the voxels' palette entries are known.
+  /// To be called once the palette entries of voxels are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
-  /// Relaxed stresses to zero, and the account of their work.
+  /// Sets the relaxed stresses and the account of their work to zero.
   void reset();
   void reset_account();
-  /// Stresses relax by `elapsed` [s] towards those at displacements u; u_before: a step earlier, for the account alone.
+  /// Relaxes stresses by `elapsed` [s] towards those at `u`. `u_before`: one step earlier, for the account only.
   void relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed, cudaStream_t stream);
-  /// Keeps an account of their work from now on.
+  /// Starts an account of the work of viscous stresses.
   void keep_account();
-  /// Work that viscous stresses have taken up since the account was opened [J].
+  /// Work that viscous stresses have absorbed since the account was opened [J].
   double work() const;
 
-  /// Relaxed stresses and their account, into `to` or back from it.
+  /// A copy of the relaxed stresses and the account of their work.
   struct Kept
   {
     DeviceArray<float> relaxed;
@@ -57,9 +57,9 @@ private:
 
   int terms_ = 0;
   bool runs_ = true;
-  std::vector<std::uint32_t> voxel_;  // model voxel of each that is kept
-  std::vector<char> counted_;         // whether it is the first of its model voxel
-  std::vector<ViscousVoxel> host_;    // until palette entries are known
+  std::vector<std::uint32_t> voxel_;  // model voxel of each viscous voxel
+  std::vector<char> counted_;         // whether it is the first copy of its model voxel
+  std::vector<ViscousVoxel> host_;    // until the palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
   DeviceArray<float4> makes_;

@@ -7,8 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-/// Mode of the highest frequency, and room for its product with the stiffness. The mode is not normalised; products are
-/// taken of the mode divided by `largest`.
+/// The mode of the highest frequency, and memory for its product with the stiffness. The mode is not normalised:
+/// products use the mode divided by `largest`.
 struct CudaSolver::Mode
 {
   DeviceArray<float4> mode, moved, forces, present;

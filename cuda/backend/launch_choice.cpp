@@ -33,7 +33,7 @@ int multiprocessors()
   return from_environment("FRONTALIS_CUDA_MULTIPROCESSORS", all, 1, all);
 }
 
-// Shared memory of a block, less the kernels' own arrays: activations, and 9 KB for searches of tangent planes.
+// Shared memory of a block minus the kernels' own arrays: activations, and 9 KB for searches of tangent planes.
 std::size_t bytes_for_patches(const Model& model)
 {
   const int all = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
@@ -42,9 +42,9 @@ std::size_t bytes_for_patches(const Model& model)
   return static_cast<std::size_t>(std::max(bytes - taken, 0));
 }
 
-// Patches per multiprocessor with which the fullest is expected to fit; 0: none do. The fullest patch of a curved shell
-// or a block has at most `uneven` times the mean's nodes, `with_border` times its voxels, and a halo of `halo_share` of
-// its nodes.
+// Number of patches per multiprocessor with which the largest patch is expected to fit; 0 if none. The estimate for a
+// curved shell or a block: the largest patch has `uneven` times the mean number of nodes, `with_border` times the mean
+// number of voxels, and a halo of `halo_share` of its nodes.
 int expected_turns(const Model& model, int processors, std::size_t bytes)
 {
   constexpr double uneven = 1.35, with_border = 1.5, halo_share = 0.7;
@@ -68,7 +68,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
   cut.searches = static_cast<std::uint32_t>(from_environment(
       "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
-  // full strips run all at once with a tenth to spare: a second round of few would take as long as the first
+  // All strips should run at once, with 10 % to spare: a second round of a few strips would take as long as the first.
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;

@@ -7,14 +7,14 @@ namespace frontalis
 namespace cuda
 {
 
-/// How a model's voxels are cut up: into as few patches per multiprocessor as its shared memory allows, large models
-/// into strips. For tests and for measuring, the environment can ask for another cut or play a smaller GPU:
-/// FRONTALIS_CUDA_PATCHES: patches per multiprocessor (0: strips); FRONTALIS_CUDA_PLANES: planes per strip;
-/// FRONTALIS_CUDA_SEARCHES: StepArguments::searches; FRONTALIS_CUDA_SHARED_BYTES and FRONTALIS_CUDA_MULTIPROCESSORS: at
-/// most so much shared memory per block and so many multiprocessors are used.
+/// Cuts a model into as few patches per multiprocessor as its shared memory allows, or into strips if the model is too
+/// large for patches. Environment variables override this for tests and measurements: FRONTALIS_CUDA_PATCHES sets the
+/// patches per multiprocessor (0: strips), FRONTALIS_CUDA_PLANES the planes per strip, FRONTALIS_CUDA_SEARCHES
+/// StepArguments::searches; FRONTALIS_CUDA_SHARED_BYTES limits the shared memory per block and
+/// FRONTALIS_CUDA_MULTIPROCESSORS the number of multiprocessors, as on a smaller GPU.
 CutChoice choose_cut(const Model& model, Effects effects);
 
-/// Throws BackendUnavailable where the device cannot hold the launch.
+/// Throws BackendUnavailable if the device cannot run the launch.
 StepLaunch choose_launch(const DeviceModel& device);
 
 }  // namespace cuda

@@ -10,7 +10,7 @@ namespace cuda
 
 using physics::Pose;
 
-/// `when`: 0 before the plan's first step, n after its n-th.
+/// Pose of a bone before the plan's first step (`when` = 0) or after its n-th step (`when` = n).
 __device__ __forceinline__ Pose pose_at(const StepArguments& g, int when, std::int32_t bone)
 {
   const double* const from = g.poses + 12 * (static_cast<std::size_t>(when) * g.bones + bone);

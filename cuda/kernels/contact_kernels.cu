@@ -5,23 +5,24 @@ namespace frontalis
 namespace cuda
 {
 
-// In strips planes are found a plan ahead, beside the steps, for nodes that would want another before the next plan
-// ends. Until it is there the old one serves, up to its limit. Patches find theirs within a launch (plane_queue.cuh).
+// In models that run as strips, tangent planes are searched for one plan ahead, beside the steps, for nodes that will
+// need another plane before the next plan ends. Until the search is done, a node uses its old plane as long as that is
+// valid. Patches find their planes within a launch (plane_queue.cuh).
 
 constexpr int block = 64;
 static_assert(search_group == 32, "a warp shares out the searches of a group");
 
-// What a node wants before a plan.
+// The planes that a node needs before a plan starts.
 struct Wish
 {
   bool now = false;
   bool ahead = false;
   SurfaceContact* contact = nullptr;
   SurfaceContact::Point here{ 0, 0, 0 };
-  SurfaceContact::Point at{ 0, 0, 0 };  ///< where the plane is found that it wants now
+  SurfaceContact::Point at{ 0, 0, 0 };  ///< where the plane is to be found that it needs now
 };
 
-// goes on with what the search ahead knows of the surface
+// Continues with what the search ahead has learned about the surface.
 template <class Contact>
 static __device__ void take_over(const StepArguments& g, Contact& s)
 {
@@ -29,9 +30,8 @@ static __device__ void take_over(const StepArguments& g, Contact& s)
   s.contact = g.searching[s.search];
 }
 
-// Planes are found where nodes will be if they go on as they do; of those found ahead only what is needed is taken.
-// What vibrates about where it rests would be kicked by each other plane, and would go on for ever: a shell at rest
-// did, by 2 um, where the plane was taken of which less was used up.
+// Planes are found where nodes are predicted to be. A plane that was found ahead is taken only if it is needed, because
+// each change of plane disturbs a node that vibrates about its equilibrium.
 
 static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t index, float (&v)[3])
 {
@@ -42,7 +42,7 @@ static __device__ Wish look_at_sliding(const StepArguments& g, std::uint32_t ind
     v[i] = g.v[i][s.node];
   const float plan = g.steps * g.dt, goes = plan * sqrtf(squared(v));
   TangentPlane plane = g.contact_planes[index];
-  // squared, after so many plans, and may be with a share of its speed more
+  // Squared distance from the plane's reference after `plans` plans, if the speed grows by the fraction `more`.
   const auto reached = [&](float plans, float more)
   {
     const float seconds = plans * plan;
@@ -138,7 +138,7 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
     g.gliding[gliding].plane = plane;
     g.gliding[gliding].reference = wish.at;
   }
-  // all that was found before is taken over first
+  // all planes found earlier are taken over before new searches are set up
   __syncwarp();
   const std::uint32_t asking = __ballot_sync(whole_warp, wish.ahead);
   const std::uint32_t place = __popc(asking & ((1u << (threadIdx.x & 31)) - 1));
@@ -158,7 +158,7 @@ __global__ void __launch_bounds__(block) renew_contacts(const __grid_constant__ 
   }
 }
 
-// in registers that a patch leaves
+// 16 blocks per multiprocessor, in the registers that a patch leaves free
 __global__ void __launch_bounds__(32, 16) renew_ahead(const __grid_constant__ StepArguments g)
 {
   const std::uint32_t all = g.sliding_count + g.gliding_count;
@@ -208,7 +208,7 @@ cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream)
 
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream)
 {
-  // about one a multiprocessor
+  // about one block per multiprocessor
   const std::uint32_t all = (arguments.sliding_count + arguments.gliding_count + 32 - 1) / 32;
   const std::uint32_t blocks = all > 132 ? 132 : all;
   if (blocks > 0)

@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Data of a voxel besides its deformation. The first of its fibres is loaded early, to hide the latency of memory.
+/// Data of a voxel apart from its deformation. Its first fibre is loaded early to hide memory latency.
 struct ElementPlace
 {
   std::uint32_t palette;
@@ -17,11 +17,11 @@ struct ElementPlace
   std::uint32_t viscous;
 };
 
-/// Activations in a step of a plan. They change evenly from its begin to its end.
+/// Activations in a step of a plan. They change linearly from its start to its end.
 struct Activations
 {
-  const float2* of;  ///< one per muscle, in shared memory: at the begin, and the change until the end
-  float fraction;    ///< of the plan at the end of the step
+  const float2* of;  ///< one per muscle, in shared memory: value at the start, and change until the end
+  float fraction;    ///< fraction of the plan that has passed at the end of the step
 
   __device__ __forceinline__ float operator[](std::uint32_t muscle) const
   {
@@ -30,7 +30,7 @@ struct Activations
   }
 };
 
-/// Called by all threads of a block once per launch, so that steps do not wait for memory.
+/// Loads activations into shared memory. All threads of a block call it once per launch.
 __device__ __forceinline__ void load_activations(const StepArguments& g, float2* to)
 {
   for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
@@ -42,7 +42,7 @@ __device__ __forceinline__ Activations activations_at(const StepArguments& g, st
   return { of, __fdiv_rn(static_cast<float>(step + 1), static_cast<float>(g.steps)) };
 }
 
-/// Without a condition on the voxel: places without fibres load the first entry.
+/// There is no branch on the voxel: places without fibres load the first entry.
 __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_t word, ElementPlace& place)
 {
   place.fibre_word = word;
@@ -50,7 +50,7 @@ __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_
   place.muscle_word = __ldg(g.fibre_muscle + (word >> 4));
 }
 
-/// An entry of StepArguments::fibres and its word of ::fibre_muscle.
+/// Combines an entry of StepArguments::fibres and its word of fibre_muscle.
 __device__ __forceinline__ physics::Fibre<float, float> fibre_of(const float4& entry, std::uint32_t word,
                                                                  float activation)
 {
@@ -59,7 +59,7 @@ __device__ __forceinline__ physics::Fibre<float, float> fibre_of(const float4& e
   };
 }
 
-/// A voxel in a step, as physics/element/ reads it.
+/// A voxel in a step, in the form that physics/element/ reads.
 template <Effects With>
 struct ElementVoxel : PaletteVoxel<float, With>
 {
@@ -70,7 +70,7 @@ struct ElementVoxel : PaletteVoxel<float, With>
 
   const ElementPlace& place;
   const Activations& activation;
-  float relaxes;  ///< seconds by which viscous stresses relax first
+  float relaxes;  ///< time by which viscous stresses relax first [s]
 
   template <class Visit>
   __device__ __forceinline__ void each_fibre(Visit&& visit) const
@@ -100,7 +100,7 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
   __device__ __forceinline__ void gauss_forces(float (&mode)[3][8], bool look, float& stiffness) const
   {
-    // a copy, so that the modes of others stay in registers
+    // a copy, so that the modes of other voxels stay in registers
     float force[3][8];
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
@@ -112,9 +112,9 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
 };
 
-/// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: seconds by which
-/// viscous stresses relax first. Palette entry 0 has no stiffness, so that places without a voxel give exact zeros.
-/// stiffness: 0 before; the bound now [N/m] where `look` asks for it.
+/// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: time by which viscous
+/// stresses relax first [s]. Palette entry 0 has no stiffness, so that empty places yield exact zeros. `stiffness` is 0
+/// before the call; if `look` is set it becomes the present stiffness bound [N/m].
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
                                                const Activations& activation, float relaxes, float (&mode)[3][8],
@@ -129,10 +129,10 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     physics::stress_forces(voxel, P, c, mode[c]);
 }
 
-/// Bits of a number that is not negative: they have the order of the numbers, and those of NaN are above all.
+/// Bit pattern of a non-negative number. Bit patterns are ordered like the numbers, and NaN is above all.
 __device__ __forceinline__ std::uint32_t bits_of(float x) { return __float_as_uint(x) & 0x7fffffffu; }
 
-/// Bits of the bound of the highest frequency squared at a node. stiffness: sum of its voxels'.
+/// Bits of the bound of the squared highest frequency at a node, from the summed stiffness of its voxels.
 __device__ __forceinline__ std::uint32_t frequency_bits_of(const StepArguments& g, std::uint32_t node,
                                                            float inverse_mass, float stiffness)
 {

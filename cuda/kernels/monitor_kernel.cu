@@ -10,7 +10,7 @@ namespace cuda
 
 constexpr int block = 128;
 
-/// A voxel with its geometry in double.
+/// A voxel with its geometry in double precision.
 struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
 {
   const double* grid_scale;
@@ -37,7 +37,7 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
   return PlaneMonitor::of_voxel(look, static_cast<std::int32_t>(index));
 }
 
-// each block takes its part of the voxels and of the nodes, in a fixed order
+// Each block sums its part of the voxels and nodes in a fixed order.
 __global__ void __launch_bounds__(block)
     monitor(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels, const float4* u,
             PlaneMonitor* parts)
@@ -63,14 +63,14 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
-// a node is this corner of one voxel at most, so that the order of sums is fixed
+// A node is this corner of at most one voxel, so the order of the sum is fixed.
 __global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)
     voxels.node_stiffness[voxels.voxels[e].node[corner]] += voxels.stiffness[e];
 }
 
-// of the voxels at the node with the highest bound, the stiffest
+// Finds the stiffest voxel at the node with the highest frequency bound.
 __global__ void __launch_bounds__(block)
     find_stiffest(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels,
                   const float4* u, StiffestVoxel* parts)

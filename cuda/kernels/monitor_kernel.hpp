@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// A voxel as the monitor sees it.
+/// A voxel as the monitor reads it.
 struct MonitorVoxel
 {
   std::uint32_t node[8];  ///< device nodes
@@ -19,19 +19,18 @@ struct MonitorVoxels
   std::uint32_t count;
   std::uint32_t nodes;    ///< device nodes
   double scale[3];        ///< 1 / (4 h)
-  float* stiffness;       ///< room for the bound of each voxel [N/m]
-  float* node_stiffness;  ///< and for the sum at each node
+  float* stiffness;       ///< scratch: bound of each voxel [N/m]
+  float* node_stiffness;  ///< scratch: sum of the bounds at each node [N/m]
 };
 
-/// The bound of the highest frequency squared [1/s2] of the nodes of some voxels, and the stiffest of the voxels that
-/// have the node that sets it.
+/// The highest squared frequency bound [1/s2] among the nodes of some voxels, and the stiffest voxel at that node.
 struct StiffestVoxel
 {
   float frequency_squared = 0;
   float stiffness = 0;  ///< bound [N/m]
   std::int32_t voxel = -1;
 
-  /// In any order. Numbers that are not finite count as the largest.
+  /// The result does not depend on the order of calls. Values that are not finite count as the largest.
   FRONTALIS_LAW void add(const StiffestVoxel& part)
   {
     const bool none = frequency_squared != frequency_squared;
@@ -45,7 +44,7 @@ struct StiffestVoxel
 /// Number of partial sums that launch_monitor() writes.
 constexpr int monitor_blocks = 264;
 
-/// Energies, worst voxels and stiffest voxels at displacements u, in double.
+/// Computes energies, worst voxels and stiffest voxels at displacements `u`, in double precision.
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
 

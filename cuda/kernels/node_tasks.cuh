@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Keeps a velocity for the account of work, if there is one.
+/// Stores a velocity for the account of work, if one is kept.
 __device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t node, const float* v)
 {
   if (to[0] != nullptr)
@@ -61,8 +61,7 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// Functions by NodeEffect. They are called through this table, so that they take no registers of the kernels. With:
-/// effects of nodes.
+/// Functions by NodeEffect. Calls through a table keep their registers out of the kernels. `With`: effects of nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
@@ -85,8 +84,8 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Address of a function that is called rarely, hidden from the compiler: it cannot then plan the registers of the
-/// function together with those of its caller, which would spill.
+/// Hides the address of a rarely called function from the compiler, which would otherwise allocate the registers of the
+/// function and its caller together and spill.
 template <class Function>
 __device__ __forceinline__ Function* aside(Function* function)
 {
@@ -95,13 +94,13 @@ __device__ __forceinline__ Function* aside(Function* function)
   return reinterpret_cast<Function*>(address);
 }
 
-/// Contact of a node that slides, numbered as for find_others().
+/// Contact of a sliding node, numbered as for find_others().
 __device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
 {
   return task.of[node_sliding] >= 0 ? task.of[node_sliding] : -1 - task.of[node_gliding];
 }
 
-/// Applies tasks [begin, end) to nodes after their update has been written; called by whole warps.
+/// Applies tasks [begin, end) after the updates of their nodes have been written. Whole warps call it.
 template <Effects With>
 __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
                                           const float4* u, float4* next, int step)
@@ -113,11 +112,11 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
     NodeTask task{};
     if (t < end)
     {
-      // all loads at once: most of the time here is latency of memory
+      // all loads are issued at once, because memory latency dominates here
       task = g.tasks[t];
       const float4 before = u[task.node], now = next[task.node];
       n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-      // the inverse mass is in the new buffer for sure; the old one may never have been written by a step
+      // the inverse mass is taken from the new buffer: the old one may never have been written by a step
       const float4 old = make_float4(before.x, before.y, before.z, now.w);
       const std::int32_t contact = task.of[node_sliding];
       if (has<With, Effects::sliding> && slides_only(task))
@@ -134,7 +133,7 @@ __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t 
   }
 }
 
-/// Data of a node's update, loaded before the stress is computed.
+/// Data for the update of a node, loaded before the stress is computed.
 struct NodeFetch
 {
   float4 own;
@@ -143,12 +142,12 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // without a condition, so that no instruction waits for it; nodes of other strips can be read too
+  // unconditional, so that no instruction waits for the word; nodes of other strips may be read too
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }
 
-/// A node after a step of the damped central difference.
+/// Returns a node after one step of the damped central difference scheme.
 __device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32_t node, const NodeFetch& fetch,
                                              const float* force)
 {

@@ -10,7 +10,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Functions for what few voxels have are not inlined, so that it takes no registers of the others.
+// Functions for rare kinds of voxel are not inlined, so that they take no registers from the others.
 template <class T>
 static __device__ __noinline__ void add_laws_apart(const StepArguments& g, std::uint32_t palette,
                                                    const physics::Kinematics<T>& k, physics::Matrix3<T>& P);
@@ -18,14 +18,13 @@ template <class T>
 static __device__ __noinline__ T law_stiffening_apart(const StepArguments& g, std::uint32_t palette,
                                                       const physics::Kinematics<T>& k);
 
-/// What the voxels of a palette entry are made of, as physics/element/ reads it. T: float in a step, double in the
-/// monitor.
+/// Material of a palette entry, in the form that physics/element/ reads. T: float in a step, double in the monitor.
 template <class T, Effects With>
 struct PaletteVoxel
 {
   const StepArguments& g;
   std::uint32_t palette;
-  std::uint32_t viscous;  ///< viscous voxel
+  std::uint32_t viscous;  ///< number of the viscous voxel
   float4 entry;           ///< StepArguments::palette
 
   __device__ __forceinline__ const float* scale() const { return g.scale; }
@@ -111,7 +110,7 @@ struct PaletteVoxel
   }
 };
 
-/// A voxel of which nothing but its palette entry is asked.
+/// A voxel of which only the palette entry is known.
 template <class T>
 __device__ __forceinline__ PaletteVoxel<T, Effects::general_element> palette_voxel(const StepArguments& g,
                                                                                    std::uint32_t palette)
@@ -139,7 +138,7 @@ static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, s
   physics::gauss_forces(palette_voxel<float>(g, palette), mode, look, stiffness);
 }
 
-/// Within a step relaxation is rare. The deformation is copied, so that the numbers of others stay in registers.
+/// Relaxation within a step is rare. It works on a copy, so that other voxels keep their deformation in registers.
 template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t palette, std::uint32_t viscous,
                                                float elapsed, const physics::Kinematics<float>& k)

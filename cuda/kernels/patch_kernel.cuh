@@ -10,15 +10,13 @@ namespace frontalis
 namespace cuda
 {
 
-// A block of threads keeps its patch in shared memory, with its halo, for all steps of a launch. In a step each thread
-// computes a voxel and writes the forces on its corners to shared memory, then updates a node. Between steps only the
-// nodes on the border are exchanged with other blocks. Displacement and number of the step are written as one word of
-// 16 bytes, so that a reader waits for the data that it needs and for nothing else: there is no barrier between blocks
-// and no fence. Neighbouring patches read each other, so that a writer is at most one step ahead of its readers, and
-// two buffers are enough.
+// A block of threads keeps its patch, including the halo, in shared memory for all steps of a launch. In a step each
+// thread computes a voxel and writes the forces on its corners to shared memory, then updates a node. Between steps
+// only border nodes are exchanged with other blocks. Displacement and step number are written as one 16-byte word, so
+// that a reader waits for exactly the data it needs, without barriers between blocks or fences. Neighbouring patches
+// read each other, so a writer is at most one step ahead of its readers, and two buffers suffice.
 
-/// Number of a step, in the place of the inverse mass. The highest bit tells it from inverse masses, which are not
-/// negative.
+/// Step number, stored in place of the inverse mass. Its highest bit is set, which no inverse mass has.
 __device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
 {
   return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
@@ -58,7 +56,7 @@ __device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8
   }
 }
 
-/// Data of a voxel besides the displacements of its corners.
+/// Data of a voxel apart from the displacements of its corners.
 struct VoxelFetch
 {
   uint4 corner;
@@ -116,7 +114,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: the sum over its voxels, in the order of the corners that it is of them.
+/// Force on a node: the sum over its voxels, in the order of the corner index that the node has in them.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];
@@ -131,7 +129,7 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
   }
 }
 
-/// Bits of the highest frequency squared that a node allows; voxels as in sum_forces().
+/// Bits of the bound of the squared highest frequency at a node; `voxels` as in sum_forces().
 __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
                                                       std::uint32_t node, float inverse_mass)
 {
@@ -144,13 +142,13 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Contact of a node that slides, from its entry of StepArguments::patch_tasks; numbered as for find_others().
+/// Contact of a sliding node from its entry of StepArguments::patch_tasks, numbered as for find_others().
 __device__ __forceinline__ std::int32_t contact_of(const StepArguments& g, std::int32_t task)
 {
   return task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
 }
 
-/// Asks for a plane ahead. own: number of the node in the block.
+/// Requests a plane ahead of need. `own`: number of the node in the block.
 static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
                                               std::uint32_t own)
 {
@@ -160,8 +158,8 @@ static __device__ __noinline__ void ask_ahead(const StepArguments& g, const Step
       { memory.v[0][own], memory.v[1][own], memory.v[2][own] });
 }
 
-/// Updates a node. own: its number in the block; last: the launch ends with this step, and everything is written to
-/// memory. Returns whether the node leaves its plane.
+/// Updates a node. `own`: its number in the block. `last`: the launch ends with this step, so everything is written to
+/// global memory. Returns whether the node leaves its plane.
 template <Effects With>
 __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -207,7 +205,7 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   }
   else if (on_border)
     send(next + node, n.u, mark(g, step + 1));
-  // not in the last step: the launch would wait for the answer
+  // not in the last step, because the launch would wait for the answer
   if (has<With, Effects::sliding> && n.asks && !last)
   {
     const std::int32_t contact = contact_of(g, task);
@@ -217,9 +215,9 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   return n.leaves;
 }
 
-/// Called by whole warps: nodes that leave their planes get new ones. Neighbours do not wait for this, because the
-/// nodes' displacements are sent before. own: as for step_patch_node(). PatchMemory is not an argument: passed by
-/// reference, the whole kernel would keep it in local memory. With: effects of nodes.
+/// Gives new planes to the nodes that leave theirs. Whole warps call it. Neighbours do not wait, because displacements
+/// have been sent before. `own`: as for step_patch_node(). PatchMemory is not an argument, because passing it by
+/// reference would force the whole kernel to keep it in local memory. `With`: effects of nodes.
 template <Effects With>
 static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
                                                  std::uint32_t node, std::uint32_t own, bool last)
@@ -301,7 +299,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     {
       const Patch patch = g.patches[p];
       VoxelFetch voxel{};
-      // voxels with fibres or viscosity come first; whole warps of the others compute neither
+      // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
       const auto fetch = [&](std::uint32_t v) {
         return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
@@ -362,7 +360,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   }
 }
 
-/// The patch kernel for a set of effects. Nodes: the effects of nodes in it.
+/// The patch kernel for a set of effects. `Nodes`: the effects of nodes in it.
 template <Effects Nodes, int... Voxels>
 const void* patch_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {
@@ -375,8 +373,8 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// In translation units of their own: nvcc gives every kernel that calls through a table the registers of the largest
-/// function in all tables of the unit.
+/// These are separate translation units, because nvcc gives every kernel that calls through a table the registers of
+/// the largest function in all tables of the unit.
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 

@@ -7,13 +7,13 @@ namespace frontalis
 namespace cuda
 {
 
-/// A block's shared memory: see patch_bytes().
+/// Layout of the shared memory of a block; see patch_bytes().
 struct PatchMemory
 {
-  float4* place;        // halo, then own nodes: displacement; of own nodes also the inverse mass
-  float* v[3];          // of own nodes
+  float4* place;        // displacements of halo nodes, then of own nodes with their inverse mass
+  float* v[3];          // velocities of own nodes
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
-  std::uint32_t width;  // of a row of `force`
+  std::uint32_t width;  // length of a row of `force`
 };
 
 __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
@@ -31,7 +31,7 @@ __device__ __forceinline__ PlaneQueue plane_queue(const StepLaunch& launch)
   return plane_queue(reinterpret_cast<std::int32_t*>(memory.force + 25 * memory.width), launch.most_nodes);
 }
 
-/// Threads of a block that take part in steps, and where they wait for each other.
+/// Number of threads of a block that take part in steps, and their barrier.
 template <Effects With>
 __device__ __forceinline__ std::uint32_t stepping_threads(const StepLaunch& launch)
 {

@@ -7,23 +7,23 @@ namespace frontalis
 namespace cuda
 {
 
-// Where nodes slide, the last warp of a patch's block takes no part in its steps: it finds planes. A node that would
-// leave its plane StepArguments::lead later asks for another, and goes on; when it leaves, the plane is there. Each
-// node waits for no more than one plane, so that a queue as long as there are nodes never runs over. What is found
-// depends on where it was asked for and on nothing else: the whole warp finds each, whoever waits beside.
+// If a model has sliding nodes, the last warp of a patch's block takes no part in its steps but searches for tangent
+// planes. A node that would leave its plane StepArguments::lead later requests another one and continues, so that the
+// plane is ready when the node needs it. Each node waits for at most one plane, so a queue with one place per node
+// never overflows. The result depends only on the requested position, because the whole warp works on each search.
 
-/// Where nobody waits in a queue.
+/// Value of an empty place in a queue.
 constexpr std::int32_t nobody = -0x7fffffff;
 
-/// Between two looks at something, for those who wait [ns].
+/// Pauses between two polls by waiting threads [ns].
 constexpr unsigned long_sleep = 400, short_sleep = 50;
 
-/// A block's queue in its shared memory. All that happens in it is atomic.
+/// The queue of a block in shared memory. All accesses are atomic.
 struct PlaneQueue
 {
-  std::int32_t* done;     // all steps are
-  std::uint32_t* asked;   // how many have
-  std::int32_t* contact;  // as find_others() takes it, in a ring
+  std::int32_t* done;     // nonzero when all steps are done
+  std::uint32_t* asked;   // number of requests so far
+  std::int32_t* contact;  // ring of contacts, numbered as for find_others()
   std::uint32_t size;
 
   __device__ __forceinline__ std::int32_t* place(std::uint32_t index) const { return contact + index % size; }
@@ -45,8 +45,8 @@ __device__ __forceinline__ void clear(const PlaneQueue& queue)
   }
 }
 
-// How far it is with the plane that a contact asked for: nothing_ahead, wanted_ahead, else it is there. Written last
-// and read first by warps that do not wait for each other otherwise.
+// State of the plane that a contact requested: nothing_ahead, wanted_ahead, or any other value if it is ready. It is
+// written last and read first, because the warps have no other synchronisation.
 __device__ __forceinline__ float* state_of(const StepArguments& g, std::int32_t contact)
 {
   return contact >= 0 ? &g.planes_ahead[contact].reference.w : &g.gliding_searches[-1 - contact].state;
@@ -64,11 +64,11 @@ __device__ __forceinline__ void show(float* state, float value)
   asm volatile("st.relaxed.cta.global.f32 [%0], %1;" ::"l"(state), "f"(value) : "memory");
 }
 
-/// For a node that does not wait yet.
+/// Requests a plane for a node that does not wait for one yet.
 __device__ __forceinline__ void ask(const StepArguments& g, const PlaneQueue& queue, std::int32_t contact,
                                     const float (&u)[3], const float (&v)[3])
 {
-  // where glide() says, or:
+  // the position was stored by glide(), or else:
   if (contact >= 0)
   {
     const float seconds = g.dt + g.lead + time_before(g, v, g.contact_planes[contact].reference.w);
@@ -80,7 +80,7 @@ __device__ __forceinline__ void ask(const StepArguments& g, const PlaneQueue& qu
   atomicExch(queue.place(atomicAdd(queue.asked, 1)), contact);
 }
 
-// by a whole warp
+// Finds the requested plane. A whole warp calls it.
 static __device__ __forceinline__ void find_asked(const StepArguments& g, std::int32_t contact)
 {
   using Team = Warp<most_patch_threads / 32>;
@@ -99,7 +99,7 @@ static __device__ __forceinline__ void find_asked(const StepArguments& g, std::i
     at = g.gliding_searches[-1 - contact].ahead;
   }
   const ContactPlane plane = on->renew<true, Team>(at);
-  // what all lanes wrote to the contact is shown by one
+  // One lane publishes what all lanes wrote to the contact.
   __syncwarp();
   if (Team::rank() == 0)
   {
@@ -119,7 +119,7 @@ static __device__ __forceinline__ void find_asked(const StepArguments& g, std::i
   __syncwarp();
 }
 
-/// By the warp that finds planes, until all steps are done.
+/// Loop of the warp that finds planes, until all steps are done.
 static __device__ __noinline__ void find_planes(const StepArguments& g, const PlaneQueue& queue)
 {
   for (std::uint32_t next = 0;; ++next)
@@ -129,7 +129,7 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
       for (bool done = false; !done && contact == nobody;)
       {
         done = atomicOr(queue.done, 0) != 0;
-        // what was asked before all was done is seen
+        // makes all requests visible that were made before the last step ended
         __threadfence_block();
         contact = atomicExch(queue.place(next), nobody);
         if (!done && contact == nobody)
@@ -144,8 +144,7 @@ static __device__ __noinline__ void find_planes(const StepArguments& g, const Pl
   }
 }
 
-/// For a node that leaves its plane: waits for what it asked for. Whether that serves where the node will be a step
-/// later; the node has it then.
+/// Waits for the plane that a node requested and applies it if it is valid one step later. Returns whether it is.
 template <Effects With>
 __device__ __forceinline__ bool take_asked(const StepArguments& g, std::int32_t contact, const float (&u)[3],
                                            float (&v)[3])

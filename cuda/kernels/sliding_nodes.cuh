@@ -15,8 +15,8 @@ struct NodeState
 {
   float u[3];
   float v[3];
-  bool leaves = false;  ///< in the next step it will be farther from the plane's reference than the plane is valid
-  bool asks = false;    ///< it will be so within StepArguments::lead
+  bool leaves = false;  ///< in the next step it leaves the range in which its plane is valid
+  bool asks = false;    ///< it will leave that range within StepArguments::lead
 };
 
 __device__ __forceinline__ physics::Vec3<float> normal_of(const float4& normal_offset)
@@ -31,9 +31,8 @@ __device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& 
 
 __device__ __forceinline__ float squared(const float* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
-/// How far ahead of a node its next plane is searched, as a fraction of a plan: where the node will be after half of
-/// the distance over which its last plane was valid, but at most half a plan later. goes: distance in a plan [m];
-/// served: squared distance over which the last plane was valid [m2].
+/// How far ahead of a node its next plane is searched, as a fraction of a plan: half the distance over which its last
+/// plane was valid, at most half a plan. `goes`: distance per plan [m]; `served`: squared distance of validity [m2].
 __device__ __forceinline__ float share_before(float goes, float served)
 {
   // a node may have had no plane, and may not move
@@ -48,7 +47,7 @@ __device__ __forceinline__ float time_before(const StepArguments& g, const float
   return plan * share_before(plan * sqrtf(squared(v)), served);
 }
 
-/// The plane of a node in the form that a step needs, from the one that was found at `at`. serves: see SlidingContact.
+/// Converts the plane that was found at `at` to the form that a step needs. `serves`: see SlidingContact.
 __device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
                                                       const SurfaceContact::Point& at, float& serves)
 {
@@ -65,7 +64,7 @@ __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
   return static_cast<std::uint32_t>(index) < g.rubbing_count;
 }
 
-/// Gives a node another plane, and turns its velocity with it. With: effects of nodes.
+/// Gives a node another plane and turns its velocity with it. `With`: effects of nodes.
 template <Effects With>
 __device__ __forceinline__ void change_plane(const StepArguments& g, std::int32_t index, const TangentPlane& to,
                                              float* v)
@@ -81,7 +80,7 @@ __device__ __forceinline__ void change_plane(const StepArguments& g, std::int32_
   g.contact_planes[index] = to;
 }
 
-/// The same with the plane that was found at `at`.
+/// The same for a plane that was found at `at`.
 template <Effects With>
 __device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
                                        const SurfaceContact::Point& at, float* v)
@@ -100,7 +99,7 @@ __device__ __forceinline__ float slip_squared(const float4& reference, const flo
 struct SlidingFetch
 {
   TangentPlane plane;
-  RubbingContact rubbing;  ///< if it has friction
+  RubbingContact rubbing;  ///< only if the node has friction
 };
 
 template <Effects With>
@@ -112,7 +111,7 @@ __device__ __forceinline__ SlidingFetch fetch_contact(const StepArguments& g, st
   return contact;
 }
 
-/// A node in a step. before: displacement before the step, and inverse mass.
+/// A node in a step. `before`: displacement before the step, and inverse mass.
 struct NodeStep
 {
   float4 before;
@@ -120,7 +119,7 @@ struct NodeStep
   int step;
 };
 
-/// Energy that friction takes from a node [J]; see physics::friction_work().
+/// Energy dissipated by friction at a node [J]; see physics::friction_work().
 static __device__ __forceinline__ double lost_to_friction(const StepArguments& g, const NodeStep& at,
                                                           const SurfaceContact::Point& normal,
                                                           const SurfaceContact::Point& surface_velocity,
@@ -132,7 +131,7 @@ static __device__ __forceinline__ double lost_to_friction(const StepArguments& g
   return physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
 }
 
-/// Friction on a surface that is still. taken: normal speed that the plane removed in this step.
+/// Applies friction on a fixed surface. `taken`: normal speed that the plane removed in this step.
 static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                            const SlidingFetch& contact, float taken, physics::Vec3<float>& u,
                                            physics::Vec3<float>& v, const float (&free)[3])
@@ -149,7 +148,7 @@ static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t 
                                                { free[0], free[1], free[2] }, { v.x, v.y, v.z });
 }
 
-/// Step of a node that slides on a surface that is still.
+/// Step of a node that slides on a fixed surface.
 template <Effects With>
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                       const SlidingFetch& contact, NodeState& n)
@@ -176,7 +175,7 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   slide<With>(g, index, at, fetch_contact<With>(g, index), n);
 }
 
-/// Step of a node that slides on a surface that follows a bone, in double as in gliding_nodes.cpp.
+/// Step of a node that slides on a surface moving with a bone, in double precision as in gliding_nodes.cpp.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {
@@ -201,7 +200,7 @@ static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t i
     physics::rub(s.friction, g.friction_response, g.dt_exact, taken * g.rate, s.pressing, p, w);
   const Point next = p + g.dt_exact * w, slipped = next - s.reference;
   const bool leaves = dot(slipped, slipped) > s.plane.limit * s.plane.limit;
-  // the next plane is searched there
+  // position at which the next plane is searched
   if (leaves)
     s.reference = next;
   const Point further = next + double(g.lead) * w, gone = further - s.reference;
@@ -220,8 +219,8 @@ static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t i
         asks };
 }
 
-/// Called by whole warps after a step: nodes that leave their planes get new ones. contact: index into
-/// StepArguments::sliding, or -1 - index into ::gliding.
+/// Gives new planes to nodes that left theirs in a step. Whole warps call it. `contact`: index into
+/// StepArguments::sliding, or -1 minus an index into gliding.
 template <int Warps, Effects With>
 __device__ __noinline__ void find_others(const StepArguments& g, bool leaves, std::int32_t contact, const float (&u)[3],
                                          float (&v)[3])

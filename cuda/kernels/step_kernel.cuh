@@ -9,8 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-// One warp per strip. Look: bounds of the stiffness are wanted; a kernel of its own, because they take registers. Set:
-// an int, because nvcc has no name for a combination of enumerators.
+// One warp per strip. Look: whether stiffness bounds are computed; this is a separate kernel because they take
+// registers. Set is an int, because nvcc cannot name a combination of enumerators.
 template <int Rows, bool Look, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)
@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
 
 using StepKernel = void (*)(StepArguments);
 
-/// The strip kernel for a set of effects. Nodes: the effects of nodes in it.
+/// The strip kernel for a set of effects. `Nodes`: the effects of nodes in it.
 template <Effects Nodes, bool Look, int... Voxels>
 StepKernel step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {
@@ -69,7 +69,7 @@ StepKernel step_kernel_of(Effects effects, bool look)
   return look ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
 }
 
-/// In translation units of their own, as those of patches.
+/// Separate translation units, for the same reason as those of patches.
 StepKernel sliding_step_kernel(Effects effects, bool look);
 StepKernel friction_step_kernel(Effects effects, bool look);
 

@@ -13,7 +13,7 @@
 namespace frontalis
 {
 
-/// Effects on nodes besides the forces of their voxels, in the order in which they are applied.
+/// Effects on nodes other than the forces of their voxels, in the order in which they are applied.
 enum NodeEffect : std::uint8_t
 {
   node_load,        ///< into StepArguments::load_begin
@@ -21,17 +21,17 @@ enum NodeEffect : std::uint8_t
   node_gliding,     ///< into StepArguments::gliding
   node_prescribed,  ///< into StepArguments::prescribed
   node_rigid,       ///< into StepArguments::rigid
-  node_effects      ///< how many there are
+  node_effects      ///< number of effects
 };
 
 /// The effects of one node.
 struct NodeTask
 {
   std::uint32_t node;             ///< device node
-  std::int32_t of[node_effects];  ///< index of each NodeEffect; negative: the node does not have it
+  std::int32_t of[node_effects];  ///< index of each NodeEffect; negative if the node does not have it
 };
 
-/// Whether the node slides on a surface that is still, and has no other effect.
+/// Whether the node slides on a fixed surface and has no other effect.
 __host__ __device__ inline bool slides_only(const NodeTask& task)
 {
   static_assert(node_effects == 5, "each of them is tested below");
@@ -39,11 +39,11 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
 
-/// Part of a vertex's force that a node takes.
+/// The part of a vertex's force that a node takes.
 struct LoadPart
 {
   std::int32_t vertex;  ///< into StepArguments::vertex_force
-  std::int32_t load;    ///< whose ramp it follows
+  std::int32_t load;    ///< load whose ramp it follows
   float weight;
 };
 
@@ -61,105 +61,104 @@ struct RigidMotion
 };
 
 /// In models that run as strips, new tangent planes are searched for while a plan's steps run. Nodes in
-/// StepArguments::sliding, then in ::gliding, form groups of `search_group`; each group has room for `group_searches`
+/// StepArguments::sliding, then in gliding, form groups of `search_group`. A group has room for `group_searches`
 /// searches at a time, because one search takes 296 bytes. Models of up to `small_model` such nodes have room for all.
 constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
 
-/// A node on a still surface: what an exact closest point needs.
+/// A node on a fixed surface: data for the search of its closest point.
 struct SlidingContact
 {
   double rest[3];  ///< [m]
   SurfaceContact contact;
   std::uint32_t node;
-  std::int32_t search;         ///< index into StepArguments::searching while a plane is searched for beside the steps
+  std::int32_t search;         ///< index into StepArguments::searching during a search beside the steps
   float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
 };
 
-/// What friction on a still surface needs in addition.
+/// Additional data for friction on a fixed surface.
 struct RubbingContact
 {
   float friction;  ///< coefficient
-  float pressing;  ///< reaction over mass, with the delay of friction [m/s2]
-  float turning;   ///< normal speed removed by changes of the plane; part of the next reaction [m/s]
+  float pressing;  ///< reaction per mass, delayed as friction needs it [m/s2]
+  float turning;   ///< normal speed removed by changes of plane, counted in the next reaction [m/s]
 };
 
-/// A node on a surface that follows a bone: what each step needs of it, in the frame of the bone.
+/// A node on a surface that moves with a bone: data for each step, in the frame of the bone.
 struct GlidingContact
 {
   double rest[3];  ///< [m]
   std::int32_t bone;
   double friction;
-  double pressing;  ///< reaction over mass, with the delay of friction [m/s2]
+  double pressing;  ///< reaction per mass, delayed as friction needs it [m/s2]
   ContactPlane plane;
   SurfaceContact::Point reference;  ///< where the plane was found
   SurfaceContact::Point turned_to;  ///< normal of the plane to which its velocity is parallel
 };
 
-/// What a search for its exact closest point needs, and the plane that was found before it is needed.
+/// Data for the search of its closest point, and the plane that was found ahead of need.
 struct GlidingSearch
 {
   SurfaceContact contact;
   std::uint32_t node;
   std::int32_t search;  ///< as SlidingContact::search
-  float state;          ///< nothing_ahead, wanted_ahead, or 0: found
+  float state;          ///< nothing_ahead, wanted_ahead, or 0 if found
   SurfaceContact::Point ahead;
   ContactPlane found;
 };
 
-/// What a step needs of a sliding node: the tangent plane of the offset surface at the latest exact closest point. A
-/// displacement u keeps its distance where normal . u + offset = 0.
+/// Data of a sliding node for each step: the tangent plane of the offset surface at the latest closest point. A
+/// displacement u lies on the plane if normal . u + offset = 0.
 struct TangentPlane
 {
   float4 normal_offset;
-  float4 reference;  ///< displacement there; w: square of ContactPlane::limit [m2], negative: there is no plane yet
+  float4 reference;  ///< displacement where found; w: square of ContactPlane::limit [m2], < 0: no plane
 };
 
-/// Values of TangentPlane::reference.w of planes in StepArguments::planes_ahead: none is there, or one is asked for.
+/// Values of TangentPlane::reference.w in StepArguments::planes_ahead: no plane, or a plane is requested.
 constexpr float nothing_ahead = -1, wanted_ahead = -2;
 
-/// A law beyond neo-Hookean of a part of a voxel's tissue.
+/// A law other than neo-Hookean that a voxel's tissue contains.
 struct LawEntry
 {
   std::int32_t law;
-  float weight;          ///< proportion times tissue volume [m3]
+  float weight;          ///< fraction times tissue volume [m3]
   float per_tangent;     ///< LawPart::per_tangent [m]
   float at_rest;         ///< tangent stiffness at rest [Pa]
   float parameters[11];  ///< order: Law
 };
 
-/// Steps of equal length, or the internal forces alone. Pointers are to device memory.
+/// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.
 struct StepArguments : physics::Kick<float>
 {
-  // the partition: patches or strips
+  // The partition: patches or strips.
   const Patch* patches;
   std::uint32_t patch_count;
   const uint4* patch_corners;       ///< VoxelPatches::corner
-  const uint2* patch_makes;         ///< per voxel of a patch: palette entry, word of its fibres
+  const uint2* patch_makes;         ///< per voxel of a patch: palette entry, fibre word
   const std::uint32_t* halo;        ///< VoxelPatches::halo
   const uint4* node_voxels;         ///< VoxelPatches::node_voxel
   const std::int32_t* patch_tasks;  ///< per device node: see patch_task
   const Strip* strips;
   const uint2* slots;  ///< StripSlot: node and palette entry
   std::uint32_t strip_count;
-  float4* u[2];  ///< displacement [m] and inverse mass [1/kg], 0 of still nodes; u[first] holds the present ones
-  float* v[3];   ///< velocity [m/s]
-  const float* mobility;  ///< inverse mass of nodes that are not held, 0 of those that are [1/kg]; null: that of u
+  float4* u[2];           ///< displacement [m] and inverse mass [1/kg], 0 of still nodes; u[first] is current
+  float* v[3];            ///< velocity [m/s]
+  const float* mobility;  ///< inverse mass [1/kg], 0 for held nodes; null: that of u
   std::int32_t first;
 
-  // materials of voxels: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
-  // largest eigenvalue of the stiffness at rest [N/m]; entry 0 has no stiffness
+  // Materials of voxels: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
+  // largest eigenvalue of the stiffness at rest [N/m]. Entry 0 has no stiffness.
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
-  const std::uint32_t* law_begin;  ///< laws beyond neo-Hookean of each palette entry; null: none in the model
+  const std::uint32_t* law_begin;  ///< laws other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
-  bool selective_reduced;  ///< isochoric stress at eight points
-  const std::uint32_t*
-      viscous_words;  ///< laid out as slots or patch_makes: 1 + viscous voxel, 0: none; null: no voxel is viscous
-  float* relaxed;  ///< [term, then their sum where there are two][component][viscous voxel] times tissue volume [N m]
-  const float4* viscous_makes;  ///< of each viscous voxel: share of two terms, rate of two terms [1/s]
+  bool selective_reduced;              ///< isochoric stress at eight points
+  const std::uint32_t* viscous_words;  ///< 1 + viscous voxel or 0, laid out as slots or patch_makes; null if none
+  float* relaxed;  ///< [term, then their sum if there are two][component][viscous voxel] times tissue volume [N m]
+  const float4* viscous_makes;  ///< of each viscous voxel: fraction of two terms, rate of two terms [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
-  const float* relaxation;  ///< of each step: seconds by which viscous stresses relax before it; null: not in a launch
+  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: not in launches
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
@@ -167,28 +166,28 @@ struct StepArguments : physics::Kick<float>
   const float* activation_begin;
   const float* activation_end;
 
-  // restricted and loaded nodes
+  // Restricted and loaded nodes.
   const NodeTask* tasks;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
   const double* load_ramp;     ///< one per load [s]
-  const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; null: none
+  const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; or null
   SlidingContact* sliding;
   TangentPlane* contact_planes;
-  TangentPlane* planes_ahead;  ///< found before they are needed; reference.w: nothing_ahead, wanted_ahead or as above
+  TangentPlane* planes_ahead;  ///< planes found ahead; reference.w: nothing_ahead, wanted_ahead or as above
   std::uint32_t sliding_count;
-  RubbingContact* rubbing;  ///< of the first `rubbing_count` nodes in ::sliding, which have friction
+  RubbingContact* rubbing;  ///< of the first `rubbing_count` nodes in `sliding`, which have friction
   std::uint32_t rubbing_count;
   GlidingContact* gliding;
   GlidingSearch* gliding_searches;
   std::uint32_t gliding_count;
-  SurfaceContact* searching;  ///< `searches` for each search_group
-  std::uint32_t searches;     ///< 0: planes are asked for within launches (plane_queue.cuh), not between plans
-  float lead;                 ///< another plane is asked for this long before a node leaves its plane [s]; 0: never
+  SurfaceContact* searching;  ///< `searches` entries per search_group
+  std::uint32_t searches;     ///< 0: planes are requested within launches (plane_queue.cuh), not between plans
+  float lead;                 ///< time before a node leaves its plane at which it requests another [s]; 0: never
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
-  const double* poses;  ///< [step][bone][12]: rotation row by row, translation; before the first step, after each
+  const double* poses;  ///< [step][bone][12]: rotation by rows, translation; before the first step, then after each
   std::int32_t bones;
 
   float scale[3];             ///< 1 / (4 h)
@@ -198,35 +197,35 @@ struct StepArguments : physics::Kick<float>
   float dt;
   double time, dt_exact;
   double rate, friction_response;            ///< 1 / dt_exact; physics::friction_response
-  double kick;                               ///< for how long forces change velocities in each of these steps [s]
-  std::int32_t step_begin, step_end, steps;  ///< this launch runs [step_begin, step_end) of the plan's steps
-  std::uint32_t* look;         ///< bits of the bound of the highest frequency squared, at the plan's last step
-  bool look_always;            ///< the same at all steps of the plan
-  bool forces_only;            ///< internal forces into u[1 - first], nothing updated
-  float* velocity_before[3];   ///< velocities before the update; null: no account of work is kept
-  float* velocity_free[3];     ///< after it and the loads, before constraints
-  double* friction_work;       ///< lost to friction [J] per node of ::rubbing, then of ::gliding; or null
+  double kick;                               ///< time over which forces change velocities in each of these steps [s]
+  std::int32_t step_begin, step_end, steps;  ///< this launch makes steps [step_begin, step_end) of the plan
+  std::uint32_t* look;                       ///< bits of the squared frequency bound at the plan's last step
+  bool look_always;                          ///< computes the bound at all steps of the plan
+  bool forces_only;                          ///< writes internal forces to u[1 - first] and updates nothing
+  float* velocity_before[3];                 ///< velocities before the update; null without an account of work
+  float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
+  double* friction_work;       ///< dissipated energy [J] per node of `rubbing`, then of `gliding`; or null
   std::uint32_t steps_before;  ///< number of steps in earlier launches of this solver
 };
 
-/// Threads of a block of the strip kernel; each warp takes one strip.
+/// Threads per block of the strip kernel. Each warp processes one strip.
 constexpr int step_block = 128;
 
-/// Planes of slots that a warp fetches past the end of its strip.
+/// Planes of slots that a warp loads beyond the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads of a block of the patch kernel. Where nodes slide, its last warp finds their planes (plane_queue.cuh).
+/// Most threads per block of the patch kernel. If nodes slide, its last warp finds their planes (plane_queue.cuh).
 constexpr std::uint32_t most_patch_threads = 512;
 /// Threads of the warp that finds planes.
 constexpr std::uint32_t finding_threads = 32;
-/// Most patches that a block takes in turn.
+/// Most patches that a block processes in turn.
 constexpr int most_turns = 8;
 
-/// Most muscles that a model may have on the GPU: their activations lie in shared memory.
+/// Most muscles that a model may have on the GPU, because their activations lie in shared memory.
 constexpr int most_muscles = 512;
 
-/// Entries of patch_tasks. 0 or more: the node slides on this contact and has no other effect; none: it has no effect;
-/// still: it never moves; other - i: it has NodeTask i.
+/// Entries of patch_tasks. 0 or more: contact on which the node slides, as its only effect. none: no effect. still: the
+/// node never moves. other - i: the node has NodeTask i.
 namespace patch_task
 {
 constexpr std::int32_t none = -1;
@@ -234,19 +233,19 @@ constexpr std::int32_t other = -2;
 constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
-/// Effects that a kernel computes. There is a kernel for each set, so that effects which a model does not have take
-/// neither registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
+/// Effects that a kernel computes. There is one kernel per set of effects, so that absent effects take neither
+/// registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
 enum class Effects : std::uint8_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
   fibres = 1,
   viscosity = 2,
-  general_element = 4,  ///< laws beyond neo-Hookean, other hourglass controls and integrations
+  general_element = 4,  ///< other laws, hourglass controls and integrations
   sliding = 8,          ///< on surfaces
   tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
   friction = 32         ///< of sliding nodes
 };
-constexpr int voxel_sets = 8;  ///< number of sets of the effects of voxels, the first three bits
+constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
 // variables, because device code cannot call the functions above
@@ -256,10 +255,10 @@ template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
 /// Effects of nodes.
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// The effects in a set that concern voxels without fibres and viscosity.
+/// Effects of a set that concern voxels without fibres and viscosity.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes);
-/// The effects of voxels in a set.
+/// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
@@ -268,16 +267,15 @@ constexpr Effects voxel_part(Effects set)
 /// How the step kernel is launched for a model.
 struct StepLaunch
 {
-  bool patches;  ///< one block of threads per patch, many steps per launch; else one warp per strip
+  bool patches;  ///< one block per patch and many steps per launch, else one warp per strip
   Effects effects;
   int blocks, threads;
-  // of patches
   std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
-  std::size_t shared_bytes;                          ///< of a block
+  std::size_t shared_bytes;                          ///< per block
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
-/// more registers: with three rows a multiprocessor holds 16 warps, with four only 12. Other effects than neo-Hookean
+/// more registers: with three rows a multiprocessor holds 16 warps, with four only 12. Effects other than neo-Hookean
 /// elasticity leave registers for two rows.
 constexpr int strip_rows(Effects effects) { return voxel_part(effects) == Effects::none ? 3 : 2; }
 constexpr int strip_blocks(Effects effects)
@@ -285,26 +283,26 @@ constexpr int strip_blocks(Effects effects)
   return (effects & (Effects::viscosity | Effects::general_element)) == Effects::none ? 4 : 3;
 }
 
-/// Shared memory of a block [bytes]: displacements of halo and nodes, velocities of nodes, forces on the corners of
-/// voxels and bounds of their stiffness; where nodes slide, a queue of those that ask for a plane.
+/// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
+/// corners of voxels and their stiffness bounds, and the queue of requested planes if nodes slide.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes, bool slides)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
          25 * sizeof(float) * (most_voxels + 1) + (slides ? sizeof(std::int32_t) * (2 + most_nodes) : 0);
 }
 
-/// Blocks of the patch kernel that a device holds at once; 0 where it has no code for the device.
+/// Number of blocks of the patch kernel that the device runs at once; 0 if it has no code for the device.
 int resident_blocks(const StepLaunch& launch);
 
-/// Launches steps [step_begin, step_end) of the plan; several of them need patches.
+/// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 
-/// Before each plan (strips), or before the first (patches): nodes that slide and have left their planes get new ones.
-/// In strips, a node first takes the plane that was found ahead for it, if that is valid, and asks for another if it
-/// will leave its plane before the next plan ends.
+/// Gives new planes to sliding nodes that have left theirs: before each plan with strips, before the first with
+/// patches. With strips, a node first takes the plane that was found ahead for it, if that is valid, and requests
+/// another if it will leave its plane before the next plan ends.
 cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
-/// Finds the planes that were asked for; runs beside the plan's steps.
+/// Finds the requested planes. It runs beside the plan's steps.
 cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

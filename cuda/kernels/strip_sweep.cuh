@@ -8,15 +8,15 @@ namespace frontalis
 namespace cuda
 {
 
-/// One row of nodes after the x step of the Walsh-Hadamard transform: sum and difference with the neighbour in x.
+/// A row of nodes after the x step of the Walsh-Hadamard transform: sum and difference with the neighbour in x.
 struct RowValues
 {
   float sum[3];
   float difference[3];
 };
 
-/// The displacement of a node. The fourth word of the float4 is not loaded: nobody would read its register, so that the
-/// compiler would reuse it at once and the next instruction would wait for the load.
+/// The displacement of a node. The fourth word of the float4 is not loaded: the compiler would reuse its unread
+/// register at once, and the next instruction would wait for the load.
 struct Displacement
 {
   float2 xy;
@@ -43,7 +43,7 @@ __device__ __forceinline__ RowValues transform_x(const Displacement& u)
   return row;
 }
 
-/// Forces on a row of nodes before the transposed x step: component, then sum and difference.
+/// Forces on a row of nodes before the transposed x step: [component][sum, difference].
 struct RowForces
 {
   float part[3][2];
@@ -61,8 +61,8 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
-/// Forces of the voxel between rows a and b of the planes of nodes below and above: the y and z steps of the transform,
-/// the forces on the modes, and the transposed z and y steps.
+/// Forces of the voxel between rows a and b of the lower and upper planes of nodes: y and z steps of the transform,
+/// forces on the modes, transposed z and y steps.
 template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
                                              const Activations& activation, const RowValues& below_a,
@@ -113,7 +113,7 @@ __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int
   }
 }
 
-/// The transposed x step, then the update of the node or its force alone.
+/// Applies the transposed x step, then updates the node or stores its force.
 __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
                                           const NodeFetch& fetch, const RowForces& row)
 {
@@ -135,11 +135,11 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
   }
 }
 
-/// Goes through a strip along z. The force on a node is summed in a fixed order: voxels below it, then above it, rows
-/// in order, right before left. No other strip adds to it, because voxels on the border are computed by both strips. To
-/// hide the latency of memory, slots are loaded two planes ahead, displacements and words of fibres one row ahead. Past
-/// the end of a strip there are slots of the next one, or padding. slot, fibre_word, viscous_word: of this lane; null
-/// where the strip has none.
+/// Walks a strip along z. The force on a node is summed in a fixed order: voxels below it before those above, rows in
+/// order, right before left. No other strip adds to it, because both strips compute the voxels on their border. To hide
+/// memory latency, slots are loaded two planes ahead, displacements and fibre words one row ahead. Beyond the end of a
+/// strip lie slots of the next strip, or padding. slot, fibre_word, viscous_word: those of this lane; null if the strip
+/// has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
                                             const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,

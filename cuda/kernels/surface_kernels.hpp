@@ -8,24 +8,24 @@
 namespace frontalis
 {
 
-/// A triangulated surface whose vertices are tied to voxels. Pointers are to device memory.
+/// A triangulated surface whose vertices are bound to voxels. Pointers are to device memory.
 struct BoundSurface
 {
   std::uint32_t vertex_count;
   const std::uint32_t* nodes;  ///< eight device nodes per vertex
-  const float* coordinates;    ///< three per vertex, in its voxel
+  const float* coordinates;    ///< three per vertex, within its voxel
   const double* rest;          ///< three per vertex [m]
   const int3* triangles;
-  const std::int32_t* around_begin;  ///< triangles around each vertex, ascending: around[around_begin[v]] ..
+  const std::int32_t* around_begin;  ///< triangles around vertex v, ascending: around[around_begin[v]] ..
   const std::int32_t* around;
 };
 
-/// Positions of the vertices at displacements u, three per vertex [m].
+/// Computes positions of the vertices at displacements `u`, three per vertex [m].
 cudaError_t launch_place(const BoundSurface& surface, const float4* u, float* positions, cudaStream_t stream);
-/// Unit normals from positions: area-weighted mean of the triangles', three per vertex.
+/// Computes unit normals from positions: the area-weighted mean over the adjacent triangles, three per vertex.
 cudaError_t launch_normals(const BoundSurface& surface, const float* positions, float* normals, cudaStream_t stream);
-/// Force on each vertex of a follower pressure [Pa] at displacements u: a third of its triangles', in
-/// double [N].
+/// Computes the force of a follower pressure [Pa] on each vertex at displacements `u`, in double precision [N]. A
+/// vertex takes a third of the force on each adjacent triangle.
 cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double pressure, double* positions,
                             double* forces, cudaStream_t stream);
 /// Sets the displacement of nodes that never move to 0.

@@ -10,12 +10,12 @@ namespace frontalis
 namespace cuda
 {
 
-// A closest point takes a thread some hundred microseconds, most of it waiting. A warp takes a few: each lane has one
-// of the triangles nearby, or one of the tree's boxes.
+// Closest-point searches by a whole warp, in which each lane tests one nearby triangle or one box of the tree. Most of
+// a search is memory latency, so a warp takes a few microseconds and a single thread over a hundred.
 
 constexpr unsigned whole_warp = 0xffffffffu;
 
-/// The largest value of a warp's lanes; GPUs before compute capability 8.0 have no instruction for it.
+/// The largest value among the lanes of a warp. GPUs below compute capability 8.0 have no instruction for it.
 template <class T>
 __device__ __forceinline__ T largest_of_warp(T value)
 {
@@ -28,8 +28,8 @@ __device__ __forceinline__ T largest_of_warp(T value)
 #endif
 }
 
-/// The team of SurfaceContact::renew that is a whole warp, of a block of at most so many; all of its lanes call each of
-/// these.
+/// A whole warp as the team of SurfaceContact::renew, in a block of at most `Warps` warps. All lanes call its
+/// functions.
 template <int Warps>
 struct Warp
 {
@@ -60,17 +60,17 @@ struct Warp
   static __device__ __forceinline__ T of_least(double key, const T& value)
   {
     const T there = from(__ffs(__ballot_sync(whole_warp, key == least(key))) - 1, value);
-    // whoever goes on may write what others still read
+    // lanes that continue may overwrite what others still read
     __syncwarp();
     return there;
   }
 
-  /// SurfaceSearch::near(), of equally near triangles those with the lowest numbers.
+  /// SurfaceSearch::near(). Of equally near triangles, those with the lowest numbers are taken.
   static __device__ __noinline__ void near(const SurfaceSearch& surface, const SurfaceSearch::Point& p,
                                            NearTriangles& out);
 
 private:
-  // one of the triangles found, a lane each, nearest first
+  // One of the triangles found. Each lane holds one, nearest first.
   struct Entry
   {
     double distance;
@@ -80,20 +80,20 @@ private:
   {
     return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
   }
-  // of this lane's entry and the one `apart` the nearer or the farther
+  // Returns the nearer or the farther of this lane's entry and that of the lane at distance `apart`.
   static __device__ __forceinline__ Entry sorted(const Entry& own, int apart, bool nearer)
   {
     const Entry other{ __shfl_xor_sync(whole_warp, own.distance, apart),
                        __shfl_xor_sync(whole_warp, own.triangle, apart) };
     return before(own, other) == nearer ? own : other;
   }
-  // the nearest of both, of which `list` is sorted: bitonic networks
+  // Returns the nearest entries of `list`, which is sorted, and `found`, by bitonic networks.
   static __device__ __forceinline__ Entry merged(const Entry& list, Entry found)
   {
     const int lane = rank();
     for (int run = 2; run <= size; run *= 2)
       for (int apart = run / 2; apart > 0; apart /= 2)
-        // falling, so that with the list it first rises and then falls
+        // sorted in descending order, so that both lists form a bitonic sequence
         found = sorted(found, apart, ((lane & apart) == 0) != ((lane & run) == 0));
     Entry nearest = before(found, list) ? found : list;
     for (int apart = size / 2; apart > 0; apart /= 2)
@@ -112,13 +112,13 @@ private:
 template <int Warps>
 __device__ void Warp<Warps>::near(const SurfaceSearch& surface, const SurfaceSearch::Point& p, NearTriangles& out)
 {
-  // up to twice as many boxes as lanes are taken at once; from there on one after the other, as deep as trees are
+  // At most `wide` boxes are processed in parallel; more are processed one by one, up to the depth of a tree.
   constexpr int wide = 2 * size, deepest = 64;
   constexpr double nowhere = 1e300;
   __shared__ std::int32_t waiting[Warps][wide + deepest];
   std::int32_t* const stack = waiting[threadIdx.x / size];
   const int lane = rank();
-  // the list that was: as many triangles are at least as near as those, and one as the nearest of them
+  // The previous list bounds the search: its triangles give upper limits of the distances to be found.
   const double known = lane < out.count ? distance(surface, out.triangle[lane], p) : nowhere;
   double bound = least(known) + NearTriangles::reach;
   if (out.count == NearTriangles::capacity)
@@ -186,15 +186,15 @@ __device__ void Warp<Warps>::near(const SurfaceSearch& surface, const SurfaceSea
   __syncwarp();
 }
 
-/// Each lane that asks gets the plane of its contact at its p. All lanes call it.
+/// Finds the plane of each asking lane's contact at its `p`. All lanes call it.
 template <int Warps>
 __device__ __noinline__ ContactPlane find_together(bool asks, SurfaceContact* contact, const SurfaceContact::Point& p)
 {
-  // more are found sooner by a lane each: before plans of the draft forehead it took 39 us, and 213 one after the other
+  // most searches that a warp does one by one; more of them finish sooner with one lane each
   constexpr int few = 5;
   using Team = Warp<Warps>;
   ContactPlane own;
-  // what a lane wrote to its contact is there for all
+  // makes visible to all lanes what a lane wrote to its contact
   __syncwarp();
   const unsigned asking = __ballot_sync(whole_warp, asks);
   if (__popc(asking) > few)
@@ -214,7 +214,8 @@ __device__ __noinline__ ContactPlane find_together(bool asks, SurfaceContact* co
   return own;
 }
 
-/// The same at `at`, before a node that is at p; where that plane does not serve at p, of p, and `at` is p then.
+/// Finds the tangent plane at `at`. If it is not valid at the node's position `p`, finds it at `p` and sets `at` to
+/// `p`.
 template <int Warps>
 __device__ __forceinline__ ContactPlane find_before(bool asks, SurfaceContact* contact, const SurfaceContact::Point& p,
                                                     SurfaceContact::Point& at)

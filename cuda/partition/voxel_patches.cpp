@@ -13,8 +13,7 @@ namespace frontalis
 namespace
 {
 
-// Cost of a fibre entry, of viscosity and of a node, in plain voxels; measured on blocks of which all voxels or none
-// had the effect.
+// Cost relative to a plain voxel, measured on blocks in which all voxels or none have the effect.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -24,7 +23,7 @@ float voxel_cost(const Model& model, std::size_t e)
   return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
 }
 
-// Recursive bisection of nodes by weight, each time along the plane with the fewest nodes.
+// Recursive bisection of nodes by weight. Each cut takes the plane with the fewest nodes.
 class Bisection
 {
 public:
@@ -93,7 +92,7 @@ private:
     const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
                end = order_.begin() + static_cast<std::ptrdiff_t>(last);
-    // nodes of the plane stay in the model's order, so that it is divided along a row
+    // nodes of the plane stay in the model's order, so that the plane is divided along a row
     const auto within = std::stable_partition(begin, end, [&](std::uint32_t n) { return coordinate(n) < plane.at; });
     const auto after = std::stable_partition(within, end, [&](std::uint32_t n) { return coordinate(n) == plane.at; });
     auto middle = within;
@@ -112,7 +111,7 @@ private:
   double missing_ = 0;
 };
 
-// Calls with (part, voxel) once for each part that owns a corner of the voxel.
+// Calls call(part, voxel) once for each part that owns a corner of the voxel.
 template <class Call>
 void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, const Call& call)
 {
@@ -126,8 +125,7 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// Parts of about equal cost. Weights are corrected a few times, since the voxels that a part shares with its neighbours
-// are known only after the cut.
+// Divides the model into parts of about equal cost, in a few iterations, because shared voxels depend on the cut.
 std::vector<std::uint32_t> partition(const Model& model, int parts)
 {
   std::vector<float> weight(model.nodes.size(), node_cost);
@@ -158,8 +156,7 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// Nodes that do more than slide on a still surface. They are numbered together, because a warp takes as long for one of
-// them as for 32.
+// Nodes with other effects, numbered contiguously because a warp takes as long for one of them as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
@@ -206,7 +203,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
     most_voxels = std::max(most_voxels, static_cast<std::uint32_t>(voxels_of[p].size()));
   }
 
-  // halos in the order of device nodes, so that neighbouring threads read neighbouring nodes
+  // halos are sorted by device node, so that neighbouring threads read neighbouring nodes
   std::vector<std::vector<std::uint32_t>> halo_of(parts);
   for (int p = 0; p < parts; ++p)
   {

@@ -9,45 +9,44 @@
 namespace frontalis
 {
 
-/// How the nodes of a model are distributed: each of `blocks` blocks of threads takes `turns` patches in turn.
+/// Distribution of the nodes: each of `blocks` blocks of threads processes `turns` patches in turn.
 struct PatchSettings
 {
   int blocks = 132;
   int turns = 1;
 };
 
-/// A compact part of the model that a block of threads keeps in its shared memory: the nodes that it owns, all their
-/// voxels, and the halo, which is what else those voxels touch.
+/// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the
+/// halo, which is the other nodes of those voxels.
 struct Patch
 {
-  std::uint32_t first_node;   ///< device node; those that it owns follow each other
-  std::uint32_t nodes;        ///< number that it owns
-  std::uint32_t border;       ///< so many of them, the first, are in other patches' halos
+  std::uint32_t first_node;   ///< device node; own nodes are contiguous
+  std::uint32_t nodes;        ///< number of own nodes
+  std::uint32_t border;       ///< number of leading own nodes that lie in halos of other patches
   std::uint32_t voxel_begin;  ///< into VoxelPatches::voxel
   std::uint32_t voxels;
-  std::uint32_t special;     ///< so many of them, the first, have fibres or viscosity
+  std::uint32_t special;     ///< number of leading voxels that have fibres or viscosity
   std::uint32_t halo_begin;  ///< into VoxelPatches::halo
   std::uint32_t halo;
 };
 
-/// The patches of a model. Patch p belongs to block p % blocks. Device nodes are numbered patch by patch, from 1; node
-/// 0 is a place holder. In the shared memory of a block the halo of the present patch lies first, at places 0 ..
+/// The patches of a model. Patch p belongs to block p % blocks. Device nodes are numbered patch by patch from 1; node 0
+/// is a placeholder. In the shared memory of a block the halo of the present patch comes first, at places 0 ..
 /// most_halo - 1, then the nodes of all its patches in order.
 struct VoxelPatches
 {
   VoxelPatches(const Model& model, const PatchSettings& settings);
 
   std::vector<Patch> patches;
-  std::vector<std::uint32_t> voxel;                  ///< model voxel; in each patch viscous ones first, then by fibres
+  std::vector<std::uint32_t> voxel;  ///< model voxel; in each patch viscous ones first, then by number of fibres
   std::vector<std::array<std::uint16_t, 8>> corner;  ///< places of its corners
   std::vector<std::uint32_t> halo;                   ///< device nodes
-  /// Of each device node: the voxel, counted within its patch, of which it is corner 0, 1, ... 7; most_voxels: there is
-  /// none.
+  /// For each device node, the voxels of its patch of which it is corner 0 .. 7; most_voxels if there is none.
   std::vector<std::array<std::uint16_t, 8>> node_voxel;
   std::vector<std::uint32_t> device_node;  ///< of each model node
 
-  std::uint32_t most_voxels = 0, most_halo = 0;  ///< of a patch
-  std::uint32_t most_nodes = 0;                  ///< of all patches of a block
+  std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
+  std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
 
 private:
   void number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of);

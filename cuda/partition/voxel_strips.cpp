@@ -11,12 +11,12 @@ namespace
 {
 
 constexpr int lanes = 32;
-// A plane with fibres costs so much more than one without. Strips that take longest begin first.
+// Additional cost of a plane with fibres relative to one without. The most expensive strips start first.
 constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
 
-// Where each row (j,k) begins in a list sorted by k, j, i.
+// Index of the start of each row (j,k) in a list sorted by k, j, i.
 class RowIndex
 {
 public:
@@ -28,7 +28,7 @@ public:
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   }
 
-  /// Calls with (lane, index) for the cells of row (j,k) with i in [first, first + count).
+  /// Calls call(lane, index) for the cells of row (j,k) with i in [first, first + count).
   template <class Call>
   void each(std::int32_t j, std::int32_t k, std::int32_t first, std::int32_t count, const Call& call) const
   {
@@ -54,11 +54,11 @@ private:
 // Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), as many as fit a warp.
 struct Piece
 {
-  std::int32_t i, lanes;              // columns, halo included
-  std::int32_t own_first, own_count;  // columns owned, from i
-  std::int32_t j;                     // first owned row
-  std::int32_t k, planes;             // first plane; number of planes, halo included
-  std::int32_t own_k, own_planes;     // of the tile
+  std::int32_t i, lanes;              // columns, including the halo
+  std::int32_t own_first, own_count;  // own columns, relative to i
+  std::int32_t j;                     // first own row
+  std::int32_t k, planes;             // first plane; number of planes, including the halo
+  std::int32_t own_k, own_planes;     // those of the tile
   double cost;                        // in planes without fibres
 };
 
@@ -94,7 +94,7 @@ struct Builder
                      lowest = std::min(lowest, k);
                      highest = std::max(highest, k);
                    });
-    // one plane more where the tile ends within the tissue
+    // one more plane if tissue continues beyond the tile
     const auto is_there = [](std::uint32_t) { return true; };
     p.k = lowest == p.own_k && any_voxel(p, lowest - 1, is_there) ? lowest - 1 : lowest;
     const bool above = highest == p.own_k + p.own_planes - 1 && any_voxel(p, highest, is_there);
@@ -106,7 +106,7 @@ struct Builder
     pieces.push_back(p);
   }
 
-  // cuts a run of columns into pieces that fit the lanes, with one column more on each side where tissue goes on
+  // Cuts a run of columns into pieces that fit a warp, with one more column on each side where tissue continues.
   void add_run(std::int32_t first, std::int32_t last, Piece tile)
   {
     for (std::int32_t begin = first; begin <= last;)
@@ -166,7 +166,7 @@ struct Builder
 // Packs pieces of about equal length into warps, in order.
 std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
 {
-  // a few warps stay open, so that a large piece does not close one that small ones could fill
+  // A few warps stay open, so that a large piece does not close one that small pieces could fill.
   constexpr std::size_t open_warps = 16;
   std::vector<std::vector<Piece>> warps;
   std::vector<std::int32_t> used;
@@ -210,7 +210,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   const auto warps = pack(builder.pieces);
   builder.pieces = {};
 
-  // owned nodes, numbered as a warp meets them
+  // own nodes are numbered in the order in which a warp processes them
   device_node.assign(model.nodes.size(), 0);
   strip_of_node.assign(model.nodes.size(), 0);
   std::uint32_t next = 1;

@@ -9,42 +9,41 @@
 namespace frontalis
 {
 
-/// How the voxels of a model are cut up for warps. A strip is a bundle of 32 node columns, `rows` rows deep in y, that
-/// a warp walks along z: lanes are neighbours in x, each lane holds its rows in registers. The lanes of a strip may
-/// belong to several pieces of the model, so that thin curved shells fill them.
+/// Cuts the voxels of a model into strips. A strip is a bundle of 32 node columns, `rows` deep in y, that a warp walks
+/// along z: lanes are neighbours in x, and each lane holds its rows in registers. The lanes of a strip may belong to
+/// several pieces of the model, so that thin curved shells fill them.
 struct StripSettings
 {
   int rows = 4;     ///< rows of nodes that a strip owns
-  int planes = 64;  ///< most planes of nodes that it owns
+  int planes = 64;  ///< most planes of nodes that a strip owns
 };
 
-/// One place of a strip: a node, and the voxel whose lower corner it is.
+/// One place of a strip: a node, and the voxel of which it is the lower corner.
 struct StripSlot
 {
   static constexpr std::uint32_t owned = 0x80000000u;    ///< this strip computes the node's force
-  static constexpr std::uint32_t updated = 0x40000000u;  ///< and its motion
+  static constexpr std::uint32_t updated = 0x40000000u;  ///< this strip also updates the node
   static constexpr std::uint32_t node_mask = 0x3fffffffu;
 
-  std::uint32_t node;   ///< device node, with flags; 0: none
-  std::uint32_t voxel;  ///< 0: none, else 1 + the model's voxel (or what the caller puts in its place)
+  std::uint32_t node;   ///< device node with flags; 0: none
+  std::uint32_t voxel;  ///< 1 + model voxel, or the caller's replacement; 0: none
 };
 
 struct Strip
 {
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  std::uint32_t slot_begin;  ///< slots lie [plane][row 0 .. rows + 1][lane]
+  std::uint32_t slot_begin;  ///< layout of slots: [plane][row 0 .. rows + 1][lane]
   std::uint32_t planes;
-  std::uint32_t fibre_begin;  ///< of words laid out [plane][row 0 .. rows][lane], none without fibres
+  std::uint32_t fibre_begin;  ///< layout of words: [plane][row 0 .. rows][lane]; no words without fibres
   std::uint32_t task_begin;   ///< restricted or loaded nodes that this strip owns
   std::uint32_t task_end;
 };
 
-/// First fibre entry of a voxel * 16 + number of entries; 0: none. Throws Error where there are more than 15.
+/// First fibre entry of a voxel * 16 + number of entries; 0: none. Throws Error if there are more than 15.
 std::uint32_t fibre_word(const Model& model, std::uint32_t voxel);
 
-/// The strips of a model. Device nodes are numbered in the order in which strips own them, from 1; node 0 is a place
-/// holder that never moves.
+/// The strips of a model. Device nodes are numbered from 1 in the order of the strips; node 0 is a fixed placeholder.
 struct VoxelStrips
 {
   VoxelStrips(const Model& model, const StripSettings& settings);
@@ -52,11 +51,11 @@ struct VoxelStrips
   int rows = 0;
   std::vector<Strip> strips;  ///< in descending order of cost
   std::vector<StripSlot> slots;
-  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of the voxel in the place; 0: none
+  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of each place; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
-  std::vector<std::uint32_t> strip_of_node;  ///< that owns the model node
+  std::vector<std::uint32_t> strip_of_node;  ///< strip that owns each model node
 
-  /// Share of the places that hold a voxel.
+  /// Fraction of the places that hold a voxel.
   double filled() const;
 };
 

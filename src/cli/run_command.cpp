@@ -45,7 +45,7 @@ struct RunOptions
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
 };
 
-// ends the run before a frame of a motion that diverged is written
+// Ends the run before a frame of a diverged motion is written.
 void check_motion(const Monitor& monitor, const SkinState& skin, double time)
 {
   if (!monitor.finite || !is_finite(skin))

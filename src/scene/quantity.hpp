@@ -6,8 +6,7 @@
 namespace frontalis
 {
 
-/// What a number of a scene measures, with the units that it may carry; behind the semicolon, what a plain number
-/// means.
+/// The quantity of a number in a scene, with the units that it may have; after the semicolon, the default unit.
 enum class Dimension
 {
   number,       ///< no unit

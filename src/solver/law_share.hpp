@@ -5,12 +5,12 @@
 namespace frontalis
 {
 
-/// A law beyond neo-Hookean that a voxel has in part, as the functions of physics/element/ call it.
+/// A law other than neo-Hookean of a part of a voxel, in the form that physics/element/ calls.
 template <class T>
 struct LawShare
 {
   Law law;
-  T weight;          ///< proportion times tissue volume [m3]
+  T weight;          ///< fraction times tissue volume [m3]
   T at_rest;         ///< tangent stiffness at rest [Pa]
   T per_tangent;     ///< LawPart::per_tangent [m]
   T parameters[11];  ///< order: Law

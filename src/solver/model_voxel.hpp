@@ -9,8 +9,8 @@
 namespace frontalis
 {
 
-/// A voxel of the model in double, as the functions of physics/element/ read it: for the reference backend, the monitor
-/// and the output fields. `activation` and `running` are needed for fibres alone, `grid_scale` not by stresses.
+/// A voxel of the model in double precision, in the form that physics/element/ reads, for the reference backend, the
+/// monitor and the output fields. Only fibres need `activation` and `running`; stresses do not need `grid_scale`.
 struct ModelVoxel
 {
   const Model& model;

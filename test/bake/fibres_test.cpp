@@ -1,4 +1,4 @@
-// fibre fields beside the analytic ones of simple shapes, and what is said where none can be found
+// Fibre fields compared with the analytic ones of simple shapes, and the messages if none can be found.
 
 #include "bake/scene_pieces.hpp"
 #include "files.hpp"
@@ -54,7 +54,7 @@ std::string block_file(const std::string& name, int n, const Map& map)
   return path;
 }
 
-/// A muscle alone: the tissue is the muscle.
+/// A scene whose tissue is a single muscle.
 Scene muscle_scene(const Surface& surface, double voxel)
 {
   Scene scene = plain_scene(voxel);
@@ -227,7 +227,7 @@ TEST(Fibres, RunFromOriginToInsertion)
       },
       5);
 
-  // wider than long: its shape alone would not do
+  // wider than long, so that its shape alone does not determine the direction
   scene = muscle_scene(fan(45), 1e-3);
   for (int k = -4; k <= 4; ++k)
   {

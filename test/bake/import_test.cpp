@@ -1,4 +1,4 @@
-// what is repaired in meshes and listed, and what is data; what is refused stands in test/model/bad
+// Meshes that are repaired, and the list of repairs. Meshes that are refused are in test/model/bad.
 
 #include "bake/mesh/load_surface.hpp"
 #include "bake/mesh/mesh_faults.hpp"
@@ -139,7 +139,7 @@ TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
 
 TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
 {
-  // an edge's middle belongs to one of its two sides alone: a triangle without area fills the crack
+  // the midpoint of an edge belongs to only one of its sides: a triangle without area fills the crack
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
   const Triangle split = mesh.triangles[0];
   const auto middle = static_cast<std::int32_t>(mesh.vertices.size());

@@ -45,7 +45,7 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
   scene.volumes = { volume_inside("tissue", { "head" }, "fat", true) };
   BakeReport report;
   const Model model = bake(scene, &report);
-  // the cap of the neck is 0.7 % of the ball; the surface across it may bulge, no more
+  // the cap over the neck is 0.7 % of the ball; the surface that closes it may bulge by no more
   EXPECT_NEAR(tissue_volume(model) / (4.0 / 3 * pi * 8e-6), 1, 0.02);
   bool reported = false;
   for (const std::string& finding : report.findings)
@@ -56,7 +56,7 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
 TEST_F(OpenSurfaces, GapsBetweenTwoBonesLetNothingThrough)
 {
   Scene scene = plain_scene(1e-3);
-  // two halves of a skull, half a millimetre apart, around what must not become tissue
+  // two halves of a skull, 0.5 mm apart, around a space that must not become tissue
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),
                      sphere_file("upper", 14e-3, [](const Vector3& v) { return v[2] < 0.03; }),
                      sphere_file("lower", 14e-3, [](const Vector3& v) { return v[2] > -0.03; }) };
@@ -85,7 +85,7 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   const auto ball = [](double r) { return 4.0 / 3 * pi * r * r * r; };
   // without a depth everything inside the skin and outside the bone is tissue, the cavity too
   EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3) + ball(13e-3)), 1, 0.01);
-  // with one, only what the skin sees: the cavity from 10 to 13 mm is as near as 10 mm, but behind the bone
+  // with a depth, only what the skin sees: the cavity from 10 to 13 mm is near enough, but behind the bone
   scene.volumes[0].within = "skin";
   scene.volumes[0].depth_max = 10e-3;
   EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3)), 1, 0.01);

@@ -121,7 +121,7 @@ TEST(Materials, FibreFamiliesFollowASurface)
       p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
     out = transformed(model.to_scene, p);
     const double radius = std::sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    // deep inside the mesh's facets rule
+    // at a small radius the facets of the mesh dominate
     if (radius < 4e-3)
       continue;
     const auto& d = model.material_directions[e];
@@ -138,7 +138,7 @@ TEST(Materials, FibreFamiliesFollowASurface)
       between += double(d[a]) * double(d[3 + a]);
     EXPECT_NEAR(between, 0.28, 1e-5);
   }
-  // the normals of a mesh with edges of 0.5 mm are less off
+  // the normals of a mesh with edges of 0.5 mm have smaller errors
   EXPECT_LT(most_normal, 0.07);
   // on the side that the plane faces they are as given
   for (std::size_t e = 0; e < model.voxels.size(); ++e)

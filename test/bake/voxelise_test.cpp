@@ -151,7 +151,7 @@ TEST(Voxelise, MuscleWeightIsItsShareOfTheTissue)
                     { "b", "b", { 0, 1, 0 }, 0.3e6, false, true, 2 } };
   BakeReport report;
   const Model model = bake(scene, &report);
-  // clipped to the tissue; where both are, both have the whole voxel
+  // clipped to the tissue; where the two bars cross, both have the whole voxel
   EXPECT_NEAR(muscle_volume(model, 0) / (20e-3 * 4.6e-3 * 4.6e-3), 1, 0.01);
   EXPECT_NEAR(muscle_volume(model, 1) / (4.6e-3 * 12e-3 * 4.6e-3), 1, 0.01);
   bool clipped = false;

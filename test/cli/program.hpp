@@ -27,8 +27,7 @@ struct ProgramResult
   std::string errors;
 };
 
-/// Runs the program `frontalis`, without a terminal. Where `interrupt_when` names a file, sends SIGINT once that is
-/// there.
+/// Runs the program `frontalis` without a terminal. If `interrupt_when` names a file, sends SIGINT once it exists.
 inline ProgramResult run_program(std::vector<std::string> arguments, const std::string& interrupt_when = {})
 {
   const TemporaryFolder folder;
@@ -67,7 +66,7 @@ inline ProgramResult run_program(std::vector<std::string> arguments, const std::
   return result;
 }
 
-/// The content of a file written by the program, or its output; a failure where it is no JSON.
+/// The JSON in a file or in the output of the program. The test fails if it is not valid.
 inline nlohmann::json json_from(const std::string& text)
 {
   nlohmann::json json = nlohmann::json::parse(text, nullptr, false);

@@ -75,7 +75,7 @@ std::vector<std::string> names_in(const std::string& folder)
   return names;
 }
 
-// the bar's model, in a file whose name does not tell what it is
+// The bar's model, in a file whose name does not reveal its type.
 class RunModel : public testing::Test
 {
 protected:
@@ -241,7 +241,7 @@ TEST_F(RunModel, a_motion_that_diverges_ends_with_an_error_and_no_frame_of_it)
   EXPECT_EQ(result.code, 1);
   for (const char* part : { "the motion is unstable", "no longer finite", "voxel", "flesh", "load tear" })
     expect_contains(result.errors, part);
-  // without the guard it is told with less
+  // without the guard the message has fewer details
   const ProgramResult unwatched = run_program({ "run", model, "--seconds", "0.5", "--frames", frames, "--guard", "0" });
   EXPECT_EQ(unwatched.code, 1);
   expect_contains(unwatched.errors, "the motion diverged");

@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-// backends are compared on a shell with all effects: muscles, tendon, rigid and sliding nodes
+// Compares backends on a shell with all effects: muscles, tendon, rigid and sliding nodes.
 class Shell : public testing::Test
 {
 protected:
@@ -38,7 +38,7 @@ protected:
     return skin;
   }
 
-  // root mean square of the distances between two skins [m]
+  // Root mean square distance between two skins [m].
   static double difference(const SkinState& a, const SkinState& b)
   {
     double sum = 0;
@@ -70,7 +70,7 @@ TEST_F(Shell, MovesAsTheReferenceDoes)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
 }
 
-// sliding apart: backends renew contacts at other times, which moves the skin by micrometres whatever the precision
+// Without sliding, because backends change contact planes at different times, which moves the skin by micrometres.
 TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;
@@ -125,7 +125,7 @@ TEST_F(Shell, StartsAgainAfterReset)
   EXPECT_EQ(first.vertices, second.vertices);
 }
 
-// few enough voxels and steps for a tool that follows each access to shared memory
+// Few enough voxels and steps for a tool that checks each access to shared memory.
 TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
 {
   ShellSettings settings;
@@ -140,7 +140,7 @@ TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
   EXPECT_LT(difference(cuda, reference), 1e-3 * difference(rest, reference));
 }
 
-// at equilibrium under gravity and 30 % activation
+// At equilibrium under gravity and 30 % activation.
 TEST_F(Shell, StaysWhereItIsForAMillionSteps)
 {
   Model model = *model_;

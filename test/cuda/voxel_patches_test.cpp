@@ -14,7 +14,7 @@ using namespace frontalis;
 namespace
 {
 
-// everything that the kernel takes from the patches, followed back to the model's voxels and nodes
+// Traces everything that the kernel reads from the patches back to the model's voxels and nodes.
 void check_patches(const Model& model, const PatchSettings& settings)
 {
   const VoxelPatches patches(model, settings);

@@ -16,7 +16,7 @@ namespace
 
 constexpr int lanes = 32;
 
-// a curved thin shell with a hole: short rows in x, long ones, and pieces that share warps
+// A curved thin shell with a hole: it has short and long rows in x, and pieces that share warps.
 Model shell()
 {
   test::BlockSettings s;
@@ -29,7 +29,7 @@ Model shell()
   return test::block_model(s);
 }
 
-// what the strips say about a model: each voxel's corners as the places around it have them
+// Compares the corners of each voxel in the strips with those of the model.
 void check_strips(const Model& model, const StripSettings& settings)
 {
   const VoxelStrips strips(model, settings);
@@ -49,7 +49,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     const Strip& strip = strips.strips[s];
     const auto place = [&](std::uint32_t plane, int row, int lane) -> const StripSlot&
     { return strips.slots[strip.slot_begin + (plane * (rows + 2) + row) * lanes + lane]; };
-    // voxels around an owned node that are in reach of its lane
+    // voxels around an own node that its lane can reach
     std::map<std::uint32_t, std::set<std::uint32_t>> voxels_of;
     for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
       for (int row = 0; row < rows + 2; ++row)
@@ -80,7 +80,7 @@ void check_strips(const Model& model, const StripSettings& settings)
         EXPECT_EQ(std::count(model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end(),
                              static_cast<std::int32_t>(entry.first)),
                   1);
-    // every voxel of an owned node is there
+    // every voxel of an own node is present
     for (const auto& entry : voxels_of)
       EXPECT_EQ(entry.second.size(), static_cast<std::size_t>(valence[entry.first]));
   }
@@ -88,7 +88,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     EXPECT_EQ(owners[n], 1) << "node " << n;
 }
 
-// a fibre more in a voxel every so many voxels along x
+// Adds a fibre to every n-th voxel along x, n = `every`.
 Model with_fibres(Model model, int every)
 {
   Muscle muscle;
@@ -133,7 +133,7 @@ TEST(VoxelStrips, FillALargeBlock)
   test::BlockSettings s;
   s.voxels = { { 89, 31, 31 } };
   const VoxelStrips strips(test::block_model(s), { 4, 64 });
-  // 90 columns: 31 + 30 owned, and 29
+  // 90 columns: 31 + 30 + 29 own columns
   EXPECT_GT(strips.filled(), 0.9);
 }
 
@@ -170,7 +170,7 @@ TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
   EXPECT_GT(without, 0u);
 }
 
-// what takes longest must not begin last
+// The most expensive strips must not start last.
 TEST(VoxelStrips, BeginWithThoseThatHaveFibres)
 {
   test::BlockSettings s;

@@ -1,4 +1,4 @@
-// which effects a model has, and what is left of one that is switched off
+// The effects that a model has, and what remains of one that is switched off.
 
 #include "../solver/effect_scene.hpp"
 

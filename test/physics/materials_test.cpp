@@ -1,4 +1,4 @@
-// what must hold of every law of the table, and closed forms of some
+// Properties of every law of the table, and closed forms of some.
 
 #include "frontalis/physics/materials/lookup.hpp"
 #include "physics/every_law.hpp"
@@ -48,7 +48,7 @@ TEST_P(EveryLaw, AtRestItIsFreeOfStressAndHasItsShearModulus)
     EXPECT_GT(found, 0);
 }
 
-// that it holds in voxels that are deformed shows test/solver/voxel_bound_test.cpp
+// test/solver/voxel_bound_test.cpp shows that it holds in deformed voxels
 TEST_P(EveryLaw, TheBoundOfItsTangentStiffnessHoldsAtRestAndIsBlindToRotations)
 {
   const double at_rest = tangent_bound_at(identity());

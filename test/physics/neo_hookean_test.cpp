@@ -53,7 +53,7 @@ TEST(NeoHookean, StressIsTheGradientOfTheEnergyAlsoWhereCrushedAndInverted)
   }
 }
 
-// at a strain of 1e-5 numbers near 1 have rounding errors of a percent of it, which pressure takes 50 times
+// At a strain of 1e-5, rounding errors of numbers near 1 are 1 % of it, and pressure magnifies them 50 times.
 TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 {
   const double gradient[3][3] = { { 1.1e-5, 0.4e-5, -0.3e-5 },

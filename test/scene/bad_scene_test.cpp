@@ -1,4 +1,4 @@
-// each scene of test/scene/bad has one fault, told in its first line; reading must find that one and no other
+// Each scene of test/scene/bad has one fault, described in its first line. Reading must find that fault and no other.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/read_scene.hpp"

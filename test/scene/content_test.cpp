@@ -1,4 +1,4 @@
-// what a scene's content hash depends on
+// The data on which a scene's content hash depends.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
@@ -54,8 +54,8 @@ TEST(Content, depends_on_what_decides_the_bake_alone)
   EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
 }
 
-// each number of the file by itself, but for those of profiles that are not chosen: what a hash leaves out is missed by
-// a cache of models
+// Every number of the file changes the hash, except in profiles that are not chosen. Otherwise a cache of models would
+// return the wrong model.
 TEST(Content, depends_on_every_number)
 {
   const std::string text = text_of(source + "/test/scene/every_key.yaml");

@@ -1,4 +1,4 @@
-// what good scenes are read as
+// Results of reading valid scenes.
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
@@ -69,7 +69,7 @@ TEST(EveryKey, surfaces)
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("width"), 0.12, 1e-15);
 }
 
-// a scene with one material: `keys` are what its law asks for
+// A scene with one material; `keys` are the parameters of its law.
 std::string fault_of_material(const std::string& keys, Scene& scene)
 {
   const TemporaryFolder folder;
@@ -333,7 +333,7 @@ TEST(Options, a_file_may_hold_the_profile)
   EXPECT_EQ(read_scene(path, options).accuracy.measured.cost, 0) << "another voxel edge was not measured";
   EXPECT_EQ(read_scene(path, options).profiles.back().measured.cost, 0);
 
-  // it takes the place of one that the scene has
+  // it replaces one that the scene has
   options.voxel_quantity.clear();
   folder.write("chosen.yaml", "draft: {voxel: 1.25 mm, measured: {error: 0.1 mm, cost: 9}}\n");
   const Scene replaced = read_scene(path, options);

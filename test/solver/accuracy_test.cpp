@@ -46,7 +46,7 @@ class Accuracy : public test::EveryBackend
 {
 };
 
-// own weight w a length bends the tip by w L^4 / (8 E I), that is 3 rho g L^4 / (2 E h^2), and shears it a little
+// A weight w per length bends the tip by w L^4 / (8 E I), that is 3 rho g L^4 / (2 E h^2), and shears it a little.
 TEST_P(Accuracy, selective_reduced_integration_bends_and_does_not_lock)
 {
   for (const double poisson : { 0.3, 0.49 })
@@ -57,7 +57,7 @@ TEST_P(Accuracy, selective_reduced_integration_bends_and_does_not_lock)
     const Equilibrium found = solver->settle({}, 1e-3, 20);
     EXPECT_TRUE(found.reached) << found.residual << " left after " << found.seconds << " s";
     const double exact = -1.5 * 1000 * 0.05 * std::pow(0.1, 4) / (34e3 * 1e-4);
-    // full integration of linear elements with two through the thickness: stiff in bending, far from locked
+    // full integration of two linear elements through the thickness is stiff in bending, but far from locked
     EXPECT_GT(tip(*solver, model) / exact, 0.6) << poisson;
     EXPECT_LT(tip(*solver, model) / exact, 1.02) << poisson;
   }
@@ -114,7 +114,7 @@ TEST_P(Accuracy, a_stiff_layer_among_soft_ones_steps_longer_by_the_assembled_bou
   EXPECT_LT(assembled->monitor().kinetic, 2 * early) << "and is stable";
 }
 
-// a stiff voxel among soft ones gets mass until the wanted step is allowed; its weight stays
+// A stiff voxel among soft ones gets mass until the requested time step is allowed; its weight stays the same.
 TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
 {
   Model model = cantilever(2, 0.45);
@@ -192,7 +192,7 @@ TEST_P(Accuracy, activation_changes_no_faster_than_its_slew_limit)
 
 FRONTALIS_EVERY_BACKEND(Accuracy);
 
-// creep of 0.2 um/s in steps of two microseconds: float loses it, carried rounding errors and double keep it
+// Creep of 0.2 um/s in steps of 2 us: single precision loses it, compensated and double precision keep it.
 TEST(Precision, slow_motion_far_from_rest_is_kept_by_compensation)
 {
   test::BlockSettings settings;

@@ -11,7 +11,7 @@ namespace
 
 constexpr double rest = 4e10;  // bound at nodes [1/s2]
 
-// a search that says what it was asked for
+// a search that records its arguments
 struct Search
 {
   double found = 0.5 * rest;

@@ -35,7 +35,7 @@ TEST(Backend, AnUnknownNameIsRefusedWithThoseThatThereAre)
   }
 }
 
-// where there is a GPU, by a model that it does not take
+// On a machine with a GPU, the fallback is caused by a model that the GPU does not accept.
 TEST(Fallback, FromTheGpuIsToldOnce)
 {
   Model model = test::block_model({});

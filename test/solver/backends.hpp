@@ -12,7 +12,7 @@ namespace frontalis
 namespace test
 {
 
-/// A test of motion runs over every backend of this build.
+/// A test of motion that runs on every backend of this build.
 class EveryBackend : public testing::TestWithParam<Backend>
 {
 protected:

@@ -10,7 +10,7 @@ using namespace frontalis;
 namespace
 {
 
-// masses on springs of their own that are pulled from rest: each an oscillator, the first the slowest
+// Independent masses on springs, displaced from rest. The first oscillator is the slowest.
 struct Oscillators
 {
   std::vector<double> mass{ 2, 1, 0.5 };
@@ -42,7 +42,7 @@ struct Oscillators
     for (std::size_t n = 0; n < u.size(); ++n)
       out.push_back({ { 0, stiffness[n] * u[n], 0 } });
   }
-  // of the displacement, weighted by mass
+  // Mass-weighted norm of the displacement.
   double left() const
   {
     double apart = 0, there = 0;
@@ -55,7 +55,7 @@ struct Oscillators
   }
 };
 
-// to rest; returns the looks it took, 0 where it does not come there
+// Runs the motion to rest; returns the number of looks it took, or 0 if it does not get there.
 int settle(Oscillators& motion, double tolerance, DynamicRelaxation& relaxation, int steps_per_look)
 {
   for (int looks = 1; looks < 5000; ++looks)
@@ -140,7 +140,7 @@ TEST(DynamicRelaxation, does_not_damp_above_what_is_allowed)
   EXPECT_EQ(relaxation.damping(), 3);
 }
 
-// windows end where the change is clear of rounding errors, at the latest after so many looks, and at the end
+// Windows end when the change is clear of rounding errors, at the latest after a set number of looks, and at the end.
 TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
 {
   for (const bool last : { false, true })
@@ -151,7 +151,7 @@ TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
     int asked = 0;
     for (int look = 1; look <= 64; ++look)
     {
-      motion.time += 1e-3;  // it stands still
+      motion.time += 1e-3;  // the motion stands still
       NodalVectors u = motion.displacements();
       const auto forces = [&](NodalVectors& out)
       {

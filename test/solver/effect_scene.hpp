@@ -12,7 +12,7 @@ namespace frontalis
 namespace test
 {
 
-/// Bits of what a scene has; elasticity it always has.
+/// Bits for the effects of a scene. Elasticity is always present.
 enum SceneEffect : unsigned
 {
   viscosity = 1,
@@ -23,13 +23,13 @@ enum SceneEffect : unsigned
   pressure = 32,
   prescribed = 64,
   sliding = 128,
-  friction = 256,  ///< beside sliding
+  friction = 256,  ///< in addition to sliding
   loose = 512,     ///< no rigid nodes
   but_friction = 255,
   everything = 511
 };
 
-/// Every combination that scenes can make.
+/// Every valid combination of effects.
 inline std::vector<unsigned> every_combination()
 {
   std::vector<unsigned> combinations;
@@ -39,7 +39,7 @@ inline std::vector<unsigned> every_combination()
   return combinations;
 }
 
-/// Strips of several lengths, so that tiles are full, half full and empty in places; each effect has its own part of it
+/// Strips of several lengths, so that tiles are full, half full and empty. Each effect has its own part of the scene.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {
@@ -129,7 +129,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-/// Largest difference of a component over the largest component of b, which counts as 1 um at least.
+/// Largest difference of a component over the largest component of b, which counts as at least 1 um.
 inline double difference(const Vectors& a, const Vectors& b)
 {
   double worst = 0, largest = 1e-6;

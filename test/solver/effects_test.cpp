@@ -49,12 +49,12 @@ std::vector<const char*> instruction_sets()
     }
     catch (const Error&)
     {
-      // not on this machine
+      // this machine lacks the instruction set
     }
   return sets;
 }
 
-// no effect is dropped where another is there too
+// No effect is lost when another is present.
 TEST(Effects, every_combination_moves_like_the_reference)
 {
   std::vector<Backend> backends = available_backends();
@@ -68,7 +68,7 @@ TEST(Effects, every_combination_moves_like_the_reference)
   }
 }
 
-// energies balance whatever acts together; without a drive there are only rounding errors
+// Energies balance for every combination of effects. Without a drive there are only rounding errors.
 TEST(Effects, every_combination_balances_its_energies)
 {
   for (const Backend& backend : available_backends())

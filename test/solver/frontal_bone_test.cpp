@@ -19,7 +19,7 @@ namespace
 
 const std::string bone_file = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/../shared/data/head/bones/frontal.stl";
 
-// Triangles by their corners [mm]; equal vertices become one.
+// Builds a mesh from triangles given by their corners [mm]; equal vertices are merged.
 class MeshBuilder
 {
 public:
@@ -46,7 +46,7 @@ private:
   std::map<Corner, std::int32_t> known_;
 };
 
-// binary STL in millimetres
+// Reads a binary STL file in millimetres.
 TriangleMesh read_stl(const std::string& path)
 {
   std::ifstream in(path, std::ios::binary);
@@ -61,18 +61,18 @@ TriangleMesh read_stl(const std::string& path)
   return builder.mesh;
 }
 
-// distance of a made skull's outer or inner table from its centre, in a direction of length 1 [mm]
+// Distance of the outer or inner table of an artificial skull from its centre, along the unit vector d [mm].
 double table_radius(const Point& d, bool outer)
 {
   const double waves = std::sin(15 * d.x + 1) * std::sin(13 * d.y) * std::sin(14 * d.z + 2);
-  // a ridge at each brow, as high as wide
+  // a ridge at each brow
   const double brow = std::hypot(70 * (d.z - 0.1) / 6, 70 * (std::abs(d.y) - 0.3) / 15);
   const double ridge = d.x > 0 ? 4 * std::exp(-brow * brow) : 0;
   return outer ? 70 + waves + ridge : 64 + 0.7 * std::sin(17 * d.x) * std::sin(16 * d.y + 1) * std::sin(12 * d.z);
 }
 
-// A closed skull of two tables, 4 to 10 mm apart, with brow ridges and bumps: about as many triangles as the real bone
-// has. Made of the squares on a cube's faces, moved onto the tables.
+// An artificial closed skull of two tables, 4 to 10 mm apart, with brow ridges and bumps and about as many triangles as
+// the real bone: the squares on a cube's faces, moved onto the tables.
 TriangleMesh made_bone()
 {
   constexpr int squares = 38;
@@ -118,9 +118,9 @@ double signed_distance(const SurfaceTree& tree, const Point& p, Point& foot)
   return dot(p - c.point, c.normal) < 0 ? -distance : distance;
 }
 
-// Nodes glide over the whole bone, outside and inside, as the solver moves them: on their plane until slip is used up,
-// then on a new one. Not counted are places where a ball somewhat larger than the distance, tangent at the foot, meets
-// other parts of the bone: concavities tighter than the distance itself.
+// Nodes slide over the whole bone, outside and inside, as the solver moves them: on a plane until slip is used up, then
+// on a new one. Places are not counted where a ball somewhat larger than the distance, tangent at the foot, meets other
+// parts of the bone, because there the bone curves more tightly than the distance.
 void check_distance_is_kept(const TriangleMesh& mesh)
 {
   const SurfaceTree tree(mesh);

@@ -27,7 +27,7 @@ RigidTransform turned_about_z(double angle, const std::array<double, 3>& centre,
   return pose;
 }
 
-// a closed shell around a ball that is a bone
+// A closed shell around a ball that is a bone.
 Model shell(const std::array<double, 3>& centre, double friction, int divisions = 64)
 {
   const double radius = 4.8e-3;
@@ -58,7 +58,7 @@ Model shell(const std::array<double, 3>& centre, double friction, int divisions 
   return model;
 }
 
-// mean rotation about the ball's axis, of nodes away from it [rad]
+// Mean rotation about the ball's axis [rad], without the nodes near that axis.
 double spin(const Model& model, const Vectors& u, const std::array<double, 3>& centre,
             const std::array<double, 3>& shift)
 {
@@ -73,7 +73,7 @@ double spin(const Model& model, const Vectors& u, const std::array<double, 3>& c
   return angle / weight;
 }
 
-// a block on a plane, seen in the plane's frame
+// A block on an inclined plane, in the frame of the plane.
 Model block_on_plane(double degrees, double friction)
 {
   test::BlockSettings s;
@@ -143,7 +143,7 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
       }
     }
     EXPECT_LT(worst, 10e-6);
-    // carried along as a whole; what the edges between triangles drag with them is little
+    // the body is carried along as a whole; edges between triangles drag it a little
     EXPECT_NEAR(mean_x(u), shift[0], 0.05e-3 + (friction > 0 ? 0.1e-3 : 0));
     if (friction > 0)
       EXPECT_GT(spin(model, u, centre, shift), 0.5 * std::sin(angle));
@@ -154,13 +154,13 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
 
 TEST_P(Gliding, ABlockSticksBelowTheAngleOfFrictionAndSlidesAboveIt)
 {
-  const double friction = 0.5, settling = 0.05, time = 0.15, damping = 50;  // the angle is 26.6 degrees
+  const double friction = 0.5, settling = 0.05, time = 0.15, damping = 50;  // the friction angle is 26.6 degrees
   Vectors u;
   auto solver_ = solver(block_on_plane(22, friction));
   solver_->advance(time, {});
   solver_->displacements(u);
   double sticking = 0;
-  for (std::size_t n = 0; n < 35; ++n)  // the lowest plane of nodes
+  for (std::size_t n = 0; n < 35; ++n)  // lowest plane of nodes
     sticking = std::max(sticking, std::abs(u[n][0]));
   EXPECT_LT(sticking, 20e-6);
   for (const double degrees : { 35.0, 60.0 })
@@ -186,7 +186,7 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   for (const double friction : { 0.0, 0.4 })
   {
     Model model = shell(centre, friction);
-    // some follow another bone
+    // some nodes follow another bone
     for (std::int32_t n = 0; n < 20; ++n)
       model.rigid.push_back({ n, 0 });
     SolverSettings settings{ GetParam(), 0, 0 };
@@ -206,8 +206,8 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   }
 }
 
-// Nodes that are put back to a surface must not gain by it: not on a plane, nor where a surface is curved and the
-// tangent plane errs before a new one is found.
+// Moving nodes back to a surface must add no energy, neither on a plane nor on a curved surface, where the tangent
+// plane has an error before a new one is found.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
@@ -242,8 +242,9 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
     }
 }
 
-// A shell that spins on a ball: its nodes go from plane to plane, and what turns their velocities is a part of what
-// presses. `parts`: a rough third, a smooth one, and one on a rough ball that is a bone; else all of it is as rough.
+// A shell that spins on a ball. Its nodes change planes, and turning their velocities is part of the reaction. `parts`:
+// a third of the ball is rough, a third is smooth, and a third is a rough ball that is a bone; otherwise all of it is
+// equally rough.
 class SpinningShell : public Gliding
 {
 protected:

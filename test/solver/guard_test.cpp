@@ -44,7 +44,7 @@ double farthest(const Vectors& a, const Vectors& b)
   return worst;
 }
 
-// two planes of nodes are driven through each other: no time step helps
+// Two planes of nodes are driven through each other; no time step can handle this.
 Model crushed()
 {
   test::BlockSettings settings;
@@ -117,7 +117,7 @@ TEST_P(Guarded, motion_goes_on_where_it_was_disturbed)
     EXPECT_EQ(guard.counts().latest, kind) << words_for(guard.counts().latest);
     EXPECT_DOUBLE_EQ(solver->time(), 12e-3);
     EXPECT_LT(farthest(displacements(*solver), expected), 2e-6) << words_for(kind);
-    // back to the full time step once all has been well for a while
+    // the full time step returns after a while without disturbances
     guard.advance(4e-3, full(*solver, 0.7f));
     EXPECT_NEAR(solver->time_step(), undisturbed->time_step(), 0.1 * undisturbed->time_step());
   }
@@ -191,7 +191,7 @@ TEST_P(Guarded, a_motion_that_no_time_step_helps_is_stopped_and_explained)
       EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
   }
   EXPECT_GE(guard.counts().rollbacks, settings.tries);
-  // the last good state is there, and serves
+  // the last good state was restored, and the solver can continue from it
   EXPECT_TRUE(solver->monitor().finite);
   EXPECT_EQ(solver->monitor().inverted, 0);
   EXPECT_LT(solver->time(), 0.02);
@@ -221,12 +221,12 @@ TEST_P(Guarded, bad_input_changes_nothing)
     EXPECT_THROW(Guard(*solver, model, bad), Error);
 }
 
-/// Shows the guard what a test wants, from a time on until the guard has gone back `times` times.
+/// Shows the guard altered values from a given time until the guard has gone back `times` times.
 struct ShownOtherwise : test::WrappedSolver
 {
   using WrappedSolver::WrappedSolver;
   std::function<void(Monitor&)> change;
-  double more_work = 0;  // that the ledger does not explain [J]
+  double more_work = 0;  // work that the ledger does not explain [J]
   double from = 1;       // [s]
   int times = 1, restored = 0;
 
@@ -277,7 +277,7 @@ TEST_P(Guarded, finds_hourglass_energy_too_long_steps_and_an_unbalanced_ledger)
   }
 }
 
-// what led to the end is gone again as it was gone: no control may jump ahead
+// The motion before the failure is repeated exactly: no control may jump ahead.
 TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
 {
   struct Watched : ShownOtherwise

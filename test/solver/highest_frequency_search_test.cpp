@@ -20,14 +20,14 @@ Model bar()
   return test::block_model(settings);
 }
 
-// a bar of voxels, whose nodes hang together as one chain of springs in the order of their numbers
+// A bar of voxels whose nodes form one chain of springs in the order of their numbers.
 struct Chain
 {
   Model model;
   Discretisation discretisation;
   NodalVectors u, mode;
   int products = 0;
-  double curvature = 0;  // of the springs' law [1/m]
+  double curvature = 0;  // of the springs' force law [1/m]
   double mass = 1e-6;
 
   Chain() : model(bar()), discretisation(model), u(model.nodes.size())
@@ -38,7 +38,7 @@ struct Chain
   }
   double search(int most_iterations)
   {
-    products = -1;  // the forces at u are none
+    products = -1;  // the evaluation of the forces at u does not count
     return highest_frequency_squared(
         model, discretisation, u,
         [this](const NodalVectors& at, NodalVectors& out)
@@ -56,7 +56,7 @@ struct Chain
         },
         most_iterations, mode);
   }
-  // of a chain held at both ends
+  // Exact eigenvalue of a chain held at both ends.
   double exact() const
   {
     const double segments = static_cast<double>(u.size()) - 1;
@@ -69,7 +69,7 @@ struct Chain
 TEST(HighestFrequencySearch, finds_that_of_a_chain)
 {
   Chain chain;
-  // what is left of the other modes is little after 2000 products
+  // little is left of the other modes after 2000 products
   EXPECT_NEAR(chain.search(2000) / chain.exact(), 1, 5e-3);
   EXPECT_LE(chain.search(2000) / chain.exact(), 1 + 1e-9) << "it comes from below";
   for (const auto n : chain.discretisation.held)
@@ -90,7 +90,7 @@ TEST(HighestFrequencySearch, goes_on_from_the_latest_mode)
 TEST(HighestFrequencySearch, takes_the_curvature_of_laws_out_of_two_products)
 {
   Chain straight, curved;
-  // along the displacement of a product the stiffness changes by some tenths
+  // the stiffness changes by some tenths along the displacement of a product
   curved.curvature = 0.1 / mode_amplitude(curved.model);
   EXPECT_NEAR(curved.search(300) / straight.search(300), 1, 0.03);
 }
@@ -122,7 +122,7 @@ TEST(LargestEigenvalue, ends_where_it_has_settled)
   const auto growing = [&](double) { return std::pow(1.001, ++products); };
   largest_eigenvalue(40, 1, growing);
   EXPECT_EQ(products, 40);
-  // two values in turn: each is compared with the latest to its own side
+  // two alternating values: each is compared with the latest of its own sign
   products = 0;
   EXPECT_EQ(largest_eigenvalue(100, 1, [&](double step) { return ++products, step > 0 ? 5.0 : 3.0; }), 5);
   EXPECT_EQ(products, 9);

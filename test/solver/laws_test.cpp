@@ -23,7 +23,7 @@ Material material_of(Law law)
   return m;
 }
 
-// rows of voxels that are one law, the other, or both
+// Rows of voxels with one law, the other, or both.
 Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
 {
   test::BlockSettings s;
@@ -106,7 +106,7 @@ TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
     }
 }
 
-// a body that is turned as a whole, with a muscle in all of it, has forces that are turned with it
+// If a body with muscle everywhere is rotated as a whole, its forces rotate with it.
 TEST_P(Laws, ForcesTurnWithTheBody)
 {
   const double a = 0.9, c = std::cos(a), s = std::sin(a);
@@ -150,7 +150,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
         largest = std::max(largest, std::abs(expected));
         error = std::max(error, std::abs(f_turned[n][i] - expected));
       }
-    // single precision rounds displacements of millimetres: 1e-7 of strain times the bulk modulus
+    // single precision rounds displacements of millimetres, an error of 1e-7 in strain times the bulk modulus
     EXPECT_LT(error / largest, std::get<0>(GetParam()) == "reference" ? 1e-9 : 1e-4);
   }
 }
@@ -184,7 +184,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
   const auto solver_ = solver(model);
-  // every node by up to 0.4 of a voxel: some voxels keep little more than half of their volume
+  // moves every node by up to 0.4 voxels: some voxels keep little more than half of their volume
   solver_->set_displacements(random_displacements(model, 4e-4));
   const Monitor before = solver_->monitor();
   for (int i = 0; i < 10; ++i)
@@ -195,7 +195,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
   EXPECT_NEAR(after.worst_jacobian, 1, 0.01);
 }
 
-// nodes pass each other: voxels are crushed flat and turned inside out while a muscle in all of them pulls
+// Nodes pass each other: voxels are crushed flat and inverted, while a muscle pulls in all of them.
 TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
 {
   for (const auto integration : { Integration::one_point, Integration::selective_reduced })
@@ -222,7 +222,7 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
           ASSERT_TRUE(std::isfinite(f[n][axis])) << n << " " << axis;
           work += f[n][axis] * u[n][axis];
         }
-      // on the way back to rest they do work
+      // the voxels do work on the way back to rest
       EXPECT_GT(work, 0);
     }
 }

@@ -1,4 +1,4 @@
-// effects of a running solver: switched off, on again, and what they hold
+// Effects of a running solver: switched off and on, and their memory.
 
 #include "backends.hpp"
 #include "effect_scene.hpp"
@@ -16,7 +16,7 @@ namespace
 
 using namespace test;
 
-// as strong as they must be to be felt beside each other
+// The effects are strong enough to show beside each other.
 Model whole_scene()
 {
   Model model = scene_of(everything);
@@ -72,7 +72,7 @@ protected:
   }
 };
 
-// friction cannot stay without sliding
+// Friction requires sliding.
 void switch_live(Solver& solver, Effect effect, bool on)
 {
   if (effect == Effect::sliding && !on)
@@ -80,7 +80,7 @@ void switch_live(Solver& solver, Effect effect, bool on)
   solver.switch_effect(effect, on);
 }
 
-// else the comparisons below could not fail
+// Otherwise the comparisons below could not fail.
 TEST_P(LiveEffects, each_is_felt)
 {
   const auto whole = make(whole_scene());
@@ -127,7 +127,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
   for (const Effect effect : live_effects())
   {
     const auto solver = make(whole_scene());
-    solver->monitor();  // has memory of its own from the first time on
+    solver->monitor();  // allocates its memory on first use
     const auto bytes = bytes_of(*solver);
     go(*solver, 4e-4);
     switch_live(*solver, effect, false);
@@ -137,7 +137,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     solver->switch_effect(effect, true);
     if (effect == Effect::viscosity)
     {
-      // nothing has relaxed: the forces are those of the same shape in a body that is not viscous
+      // nothing has relaxed, so the forces are those of an elastic body of the same shape
       Model elastic = whole_scene();
       switch_off(elastic, EffectSet().with(Effect::viscosity));
       const auto other = make(elastic);
@@ -152,7 +152,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     }
     go(*solver, 4e-4);
     EXPECT_TRUE(solver->monitor().finite) << name_of(effect);
-    // reset leaves the switches alone, and motion from rest is that of a solver that never knew them
+    // reset keeps the switches, and the motion from rest is that of a solver that was never switched
     if (effect == Effect::sliding)
       solver->switch_effect(Effect::friction, true);
     solver->reset();
@@ -229,7 +229,7 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
-// nothing is stored for what is not there: with and without other effects beside it
+// Nothing is stored for an absent effect, whether other effects are present or not.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)
 {
   const std::map<Effect, unsigned> bit{ { Effect::viscosity, viscosity },
@@ -261,13 +261,13 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   switch_off(off, EffectSet().with(Effect::contraction).with(Effect::fibre_stiffness));
   auto without_fibres = bytes_of(*make(off)),
        never = bytes_of(*make(scene_of(everything & ~(contraction | passive_fibres))));
-  // muscles keep their names and take activations
+  // muscles keep their names and accept activations
   without_fibres.erase("elasticity: controls");
   never.erase("elasticity: controls");
   EXPECT_EQ(without_fibres, never);
 }
 
-// nothing that a solver keeps on request is left out of its list
+// Memory that a solver allocates on request appears in its list.
 TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
 {
   SolverSettings settings{ GetParam(), 2, dt };
@@ -276,7 +276,7 @@ TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
   const auto booked = make_solver(model, settings);
   auto with = bytes_of(*booked), without = bytes_of(*make(*model));
   EXPECT_EQ(without.count("elasticity: account of energies"), 0u);
-  // velocities before and after the update of each node at least
+  // at least the velocities before and after the update of each node
   EXPECT_GE(with["elasticity: account of energies"], 6 * sizeof(float) * model->nodes.size());
   if (GetParam() != "cuda")
     return;

@@ -9,7 +9,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-// a square on top of the block, four triangles a voxel, bound to the voxels below it; normals up
+// A square on top of the block, four triangles per voxel, bound to the voxels below it; normals point up.
 Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3>& value)
 {
   Load load;
@@ -26,7 +26,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
       load.binding.voxel.push_back(voxel(i, j));
       load.binding.coordinates.push_back({ { i == nx ? 1.0f : 0.0f, j == ny ? 1.0f : 0.0f, 1.0f } });
     }
-  // a vertex in the middle of each square: its nodes then get a quarter of its force each
+  // each square has a vertex at its centre, so that its nodes get a quarter of its force each
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i)
     {
@@ -43,7 +43,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
   return load;
 }
 
-// fixes one component on the lower face of an axis
+// Fixes one component on the lower face of an axis.
 void roller(Model& model, int axis)
 {
   Load load;
@@ -91,7 +91,7 @@ class Loads : public test::EveryBackend
 
 TEST_P(Loads, TractionStretchesAsTheUniaxialTableSays)
 {
-  // P33 / mu = 0.701838 at stretch 1.3; a dead traction is a first Piola-Kirchhoff stress
+  // P33 / mu = 0.701838 at stretch 1.3; a traction is a first Piola-Kirchhoff stress
   test::BlockSettings s;
   const double mu = test::shear_modulus(s);
   const Model model = loaded_block(Load::Kind::traction, { { 0, 0, 0.701838 * mu } }, s);

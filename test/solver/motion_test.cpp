@@ -10,7 +10,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-// prescribes the chosen components of the nodes of a face: axis, at its lower or upper end
+// Prescribes the chosen components of the nodes on the lower or upper face of an axis.
 void prescribe(Model& model, int axis, bool upper, const std::array<bool, 3>& fixed, const std::array<double, 3>& value,
                double ramp)
 {
@@ -27,7 +27,7 @@ void prescribe(Model& model, int axis, bool upper, const std::array<bool, 3>& fi
       model.prescribed.push_back({ static_cast<std::int32_t>(n), index });
 }
 
-// the planes of symmetry x = 0, y = 0, z = 0
+// The planes of symmetry x = 0, y = 0, z = 0.
 void symmetry(Model& model)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -46,7 +46,7 @@ std::size_t far_corner(const Model& model)
   return 0;
 }
 
-// runs until the kinetic energy has fallen below `share` of young times volume, or gives up
+// Runs until the kinetic energy is below `share` times Young's modulus times volume, or gives up.
 void settle(Solver& solver, const Controls& controls, double slice, double share, const test::BlockSettings& s)
 {
   const double scale = s.young * s.voxels[0] * s.voxels[1] * s.voxels[2] * s.spacing[0] * s.spacing[1] * s.spacing[2];
@@ -95,7 +95,7 @@ TEST_P(Motion, ActiveBarShortensAsTheClosedFormSays)
   {
     test::BlockSettings s;
     s.voxels = { { 4, 2, 2 } };
-    s.poisson = 0.4995;  // the closed form is incompressible
+    s.poisson = 0.4995;  // the closed form is for incompressible material
     s.damping = 3000;
     Model model = test::block_model(s);
     symmetry(model);
@@ -116,8 +116,8 @@ TEST_P(Motion, ActiveBarShortensAsTheClosedFormSays)
 
 TEST_P(Motion, CantileverBendsAsBeamTheorySays)
 {
-  // square section, length 10 heights, tip force as gravity load: q L^4 / (8 E I) with shear correction
-  // (Timoshenko: + q L^2 / (2 k G A), k = 5/6), small deflection
+  // square section, length 10 heights, tip deflection under gravity: q L^4 / (8 E I) with shear correction (Timoshenko:
+  // + q L^2 / (2 k G A), k = 5/6), small deflections
   for (const int through : { 1, 2, 4 })
   {
     test::BlockSettings s;
@@ -196,7 +196,7 @@ TEST_P(Motion, BonesCarryTheirNodes)
   pose.translation = { { 1e-3, 0, 2e-3 } };
   solver_->advance(0.02, Controls{ {}, { pose } });
   settle(*solver_, Controls{ {}, { pose } }, 0.01, 1e-11, s);
-  // once settled, all of the block has moved with its bone
+  // at rest again, the whole block has moved with its bone
   Vectors u;
   solver_->displacements(u);
   for (std::size_t n = 0; n < u.size(); ++n)
@@ -233,7 +233,7 @@ TEST_P(Motion, RefusesBadControlsAndKeepsItsState)
   bad = good;
   bad.bone[0].rotation[4] = std::nan("");
   EXPECT_THROW(solver_->advance(1e-3, bad), Error);
-  bad.bone[0].rotation[4] = -1;  // a mirror
+  bad.bone[0].rotation[4] = -1;  // a reflection
   EXPECT_THROW(solver_->advance(1e-3, bad), Error);
   solver_->displacements(after);
   EXPECT_EQ(before, after);
@@ -273,7 +273,7 @@ TEST_P(Motion, SameInputSameBits)
   }
 }
 
-// rigid nodes keep it from spreading
+// rigid nodes stop the NaN from spreading
 TEST_P(Motion, OneNodeWithoutANumberIsFound)
 {
   test::BlockSettings settings;

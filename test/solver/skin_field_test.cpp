@@ -1,4 +1,4 @@
-// strain and stress of the skin: right where they are known, and nothing until somebody asks
+// Strain and stress of the skin: compared with known values, and not computed unless requested.
 
 #include "backends.hpp"
 #include "block_model.hpp"
@@ -12,7 +12,7 @@ namespace frontalis
 namespace
 {
 
-// a block whose skin is one triangle on its top, one corner of which lies outside
+// A block whose skin is one triangle on its top, with one corner outside.
 Model block_with_skin()
 {
   Model model = test::block_model();
@@ -26,7 +26,7 @@ Model block_with_skin()
   return model;
 }
 
-// stretched along z
+// Displacements of a stretch along z.
 std::vector<std::array<double, 3>> stretched(const Model& model, double stretch)
 {
   std::vector<std::array<double, 3>> u;

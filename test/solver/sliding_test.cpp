@@ -14,7 +14,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-// a roof of two planes that meet in a ridge along y, finely triangulated across
+// A roof of two planes that meet in a ridge along y, finely triangulated across it.
 TriangleMesh roof(double slope)
 {
   TriangleMesh mesh;
@@ -26,7 +26,7 @@ TriangleMesh roof(double slope)
   return mesh;
 }
 
-// exact distance to the roof's surface at p, from above
+// Exact distance from p, above the roof, to its surface.
 double roof_distance(double slope, const std::array<double, 3>& p)
 {
   const double x = p[0] - 10e-3, length = std::sqrt(1 + slope * slope);
@@ -55,7 +55,7 @@ TEST_P(Sliding, KeepsItsDistanceOverARidge)
   s.young = 3e3;
   Model model = test::block_model(s);
   model.constraint_surfaces.push_back({ "roof", roof(slope) });
-  // the underside lies above the roof, which is lowered by 3 mm
+  // the underside lies 3 mm above the roof
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     if (model.nodes[n][2] == 0)
       model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
@@ -67,7 +67,7 @@ TEST_P(Sliding, KeepsItsDistanceOverARidge)
     p[2] += 3e-3;
     node.distance = roof_distance(slope, p);
   }
-  model.gravity = { { 40.0, 0, 0 } };  // drags it along x over the ridge
+  model.gravity = { { 40.0, 0, 0 } };  // drags the body along x over the ridge
   const auto solver_ = solver(model);
   double worst = 0, travelled = 0;
   for (int i = 0; i < 40; ++i)
@@ -89,7 +89,7 @@ TEST_P(Sliding, KeepsItsDistanceOverARidge)
   EXPECT_LT(worst, 10e-6);
 }
 
-// a cap slides on the ball: rows of every length, so that nodes are taken one by one and many at a time
+// A cap slides on the ball. Its rows have every length, so that nodes are processed one by one and many at a time.
 TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
 {
   const double radius = 9.6e-3;
@@ -133,7 +133,7 @@ TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
     }
     catch (const Error&)
     {
-      continue;  // not on this machine
+      continue;  // this machine lacks the instruction set
     }
     for (const int threads : { 2, 3, 4 })
       EXPECT_EQ(run(instructions, threads), one) << instructions << " " << threads;
@@ -145,7 +145,7 @@ TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
         largest = std::max(largest, std::abs(one[n][axis]));
       }
     EXPECT_GT(largest, 1e-3);
-    // each may be off the surface by 10 um: planes are renewed at other steps
+    // each solver may be off the surface by 10 um, because planes change in different steps
     EXPECT_LT(worst, 20e-6) << instructions;
   }
 }

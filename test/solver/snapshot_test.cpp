@@ -15,7 +15,7 @@ namespace
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-/// What a motion shows of itself.
+/// The observable results of a motion.
 struct Seen
 {
   Vectors u;
@@ -34,10 +34,10 @@ struct Variant
   std::string name;
   std::function<void(Model&)> change;
   bool ledger = false;
-  int parts = 1;  // of a play, 80 steps each
+  int parts = 1;  // number of parts of a run, 80 steps each
 };
 
-// a floor that a bone moves, with friction
+// A floor that a bone moves, with friction.
 void move_floor(Model& m)
 {
   m.bones = { "jaw" };
@@ -45,7 +45,7 @@ void move_floor(Model& m)
   m.constraint_surfaces[0].friction = 0.4;
 }
 
-// a load that follows no surface: on a GPU many steps are one launch
+// A load that does not follow the surface, so that on a GPU one launch makes many steps.
 void steady(Model& m)
 {
   for (Load& load : m.loads)
@@ -53,7 +53,7 @@ void steady(Model& m)
       load.kind = Load::Kind::traction;
 }
 
-// every effect at once; a floor that a bone moves, with friction; all precisions; what is renewed now and then
+// All effects at once, a moving floor with friction, all precisions, and the assembled time step.
 std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
@@ -113,13 +113,13 @@ TEST_P(Snapshots, motion_goes_on_with_the_same_bits)
     solver->restore(*snapshot);
     const Seen second = play(*solver, variant, 0.2f, 3e-4);
     EXPECT_TRUE(first == second) << variant.name;
-    // whatever happened in between
+    // the restored state must not depend on what happened before
     solver->set_displacements(Vectors(first.u.size(), { { 1e-5, 0, 0 } }));
     play(*solver, variant, 1, 0);
     solver->reset();
     solver->restore(*snapshot);
     EXPECT_TRUE(play(*solver, variant, 0.2f, 3e-4) == first) << variant.name;
-    // a snapshot does not show in the motion, nor does its memory in the next
+    // taking a snapshot does not change the motion, and reusing its memory does not change the next
     const auto plain = solver_of(variant);
     play(*plain, variant, 0.7f, 1e-4);
     EXPECT_TRUE(play(*plain, variant, 0.2f, 3e-4) == first) << variant.name;
@@ -146,7 +146,7 @@ TEST_P(Snapshots, a_reset_leaves_nothing_behind)
   }
 }
 
-// else the variant is the plain one
+// Otherwise the variant would be the plain one.
 TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);
@@ -164,7 +164,7 @@ TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
     const auto other = solver_of(variant);
     other->unpack(bytes);
     EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == here) << variant.name;
-    // what is no motion of its own is refused, and nothing happens
+    // a snapshot of another solver is refused, and nothing changes
     const Seen before = play(*other, variant, 0.2f, 3e-4);
     other->unpack(bytes);
     play(*other, variant, 0.2f, 3e-4);

@@ -10,7 +10,7 @@ using Point = SurfaceTree::Point;
 namespace
 {
 
-// moves a point as the solver does: on its plane until slip is used up, or `late`, its limit, then on a new one
+// Moves a point as the solver does: on its plane until slip (with `late`, limit) is used up, then on a new one.
 class Walker
 {
 public:
@@ -47,7 +47,7 @@ double unsigned_distance(const SurfaceTree& tree, const Point& p)
   return std::sqrt(tree.closest(p, 1).squared_distance);
 }
 
-// a sheet in the plane z = 0 from x = -20 to 0 mm, of squares of 2 mm, with a triangle of no area on one of its edges
+// A sheet in the plane z = 0 from x = -20 to 0 mm, of squares of 2 mm, with a triangle of zero area on an edge.
 TriangleMesh sheet()
 {
   TriangleMesh mesh;
@@ -65,7 +65,7 @@ TriangleMesh sheet()
   return mesh;
 }
 
-// a thin wedge whose edge lies along y at the origin and opens downwards
+// A thin wedge whose edge lies along y at the origin and opens downwards.
 TriangleMesh blade(double half_angle)
 {
   TriangleMesh mesh;
@@ -88,7 +88,7 @@ TEST(SurfaceContact, GoesRoundTheRimOfAnOpenSurfaceAndBelowIt)
     Point p{ 0, 0, 0 }, before{ -1e-3, 0.3e-3, distance };
     for (int i = 0; i < 1000; ++i)
     {
-      // along the surface: outwards, round the rim and back on the other side
+      // along the surface: outwards, around the rim and back on the other side
       const Point& n = walker.normal();
       p = walker.step(5e-6 * (i == 0 ? Point{ 1, 0, 0 } : Point{ n.z, 0, -n.x }));
       EXPECT_LT(norm(p - before), 20e-6) << i;
@@ -121,13 +121,13 @@ TEST(SurfaceContact, PassesOverASharpRidge)
         EXPECT_LT(norm(p - before), 20e-6) << i;
         before = p;
       }
-      // and a step over the edge
+      // and one step over the edge
       EXPECT_LT(worst, error_of(late) + 2e-6) << half_angle << " " << distance;
       EXPECT_GT(p.x, distance * std::cos(half_angle)) << half_angle << " " << distance;
     }
 }
 
-// a node between two walls keeps to the one that it began on, however near the other comes
+// A node between two walls stays with the wall on which it started, however near the other one comes.
 TEST(SurfaceContact, KeepsToItsSheetBetweenTwo)
 {
   TriangleMesh mesh = sheet();

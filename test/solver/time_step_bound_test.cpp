@@ -20,8 +20,8 @@ using test::Vectors;
 namespace
 {
 
-// fat, and stiffer and heavier things in single voxels, two in some, at random; holes; a muscle through some voxels;
-// nodes that are rigid, prescribed, or prescribed along one axis; unequal edges, all forms of the element
+// Fat with random single voxels of stiffer and heavier materials, two materials in some; holes; a muscle through some
+// voxels; nodes that are rigid, prescribed, or prescribed along one axis; unequal edges; all forms of the element.
 Model random_mixture(std::mt19937& random)
 {
   std::uniform_real_distribution<double> share(0, 1);
@@ -98,7 +98,7 @@ double critical_step(const Model& model)
   return make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 })->monitor().critical_time_step;
 }
 
-// with voxels of another material where it is asked for
+// Includes voxels of another material where `stiff` says so.
 Model with_stiff_voxels(const std::function<bool(const std::array<std::int32_t, 3>&)>& stiff)
 {
   test::BlockSettings settings;
@@ -114,7 +114,7 @@ Model with_stiff_voxels(const std::function<bool(const std::array<std::int32_t, 
 
 }  // namespace
 
-// nodes that are prescribed along one axis are free along the others
+// Nodes that are prescribed along one axis are free along the others.
 TEST(AssembledBound, holds_for_mixtures_fibres_and_constraints)
 {
   std::mt19937 random(3);
@@ -183,7 +183,7 @@ class Looks : public test::EveryBackend
 {
 };
 
-// what the kernels find where they step, not what the monitor does
+// This compares the bound from the stepping kernels with that of the monitor.
 TEST_P(Looks, find_what_the_monitor_finds)
 {
   std::mt19937 random(11);
@@ -202,7 +202,7 @@ TEST_P(Looks, find_what_the_monitor_finds)
       u[node.node] = { 0, 0, 0 };
     solver->set_displacements(u);
     const std::vector<float> activation(model.muscles.size(), 0);
-    // what was believed fades in steps in which nothing moves
+    // an old estimate decays in steps in which nothing moves
     for (int step = 0; step < 100; ++step)
       solver->advance(1e-13, { activation, {} });
     const double critical = solver->monitor().critical_time_step;

@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-/// What a scripted backend was asked for, and what it answers.
+/// Records the requests to a scripted backend and holds its answers.
 struct Script
 {
   std::vector<StepPlan> plans;
@@ -29,7 +29,7 @@ struct ScriptState : BackendState
   void archive(ByteArchive& archive) override { archive(plans); }
 };
 
-/// Moves nothing: it takes down what it is to do.
+/// Moves nothing and records what it is asked to do.
 class ScriptedBackend : public StepBackend
 {
 public:
@@ -228,9 +228,9 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   EXPECT_THROW(Stepped().solver.ledger(), Error);
 
   s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
-  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; to friction, damping, viscosity
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; lost to friction, damping, viscosity
   const EnergyLedger now = s.solver.ledger();
-  // velocities stand half a step before displacements, and gravity changes them within the step
+  // velocities are half a step behind displacements, and gravity changes them within the step
   const double mass = 1000 * 64e-9;
   EXPECT_NEAR(now.kinetic, 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
   EXPECT_NEAR(now.initial, now.kinetic + 3 + 2, 1e-12);

@@ -31,7 +31,7 @@ Matrix product(const Matrix& a, const Matrix& b)
   return c;
 }
 
-// from a random unit quaternion
+// Rotation by a random unit quaternion.
 Matrix random_rotation(std::mt19937& random)
 {
   std::normal_distribution<double> normal;
@@ -49,7 +49,7 @@ Matrix random_rotation(std::mt19937& random)
              { { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } } } };
 }
 
-// stretches up to `most` and down to its inverse, volume kept to within 2 % in three of four
+// Stretches up to `most` and down to its inverse; three of four keep their volume to within 2 %.
 Matrix random_gradient(std::mt19937& random, double most, int index)
 {
   std::uniform_real_distribution<double> value(-1, 1);
@@ -66,7 +66,7 @@ Matrix random_gradient(std::mt19937& random, double most, int index)
   return product(random_rotation(random), product(diagonal, random_rotation(random)));
 }
 
-// of a lone voxel
+// Ratio of the true eigenvalue to its bound for a single voxel.
 double true_over_bound(const Model& model, const Matrix& F)
 {
   Vectors u(8);
@@ -84,7 +84,7 @@ struct Tissue
   const char* name;
   Law law;
   double poisson;
-  physics::MaterialNumbers own;  // in place of parameters that are not 0 here
+  physics::MaterialNumbers own;  // replaces parameters that are not 0 here
   double allowed;
 };
 constexpr double mu = 34e3 / 2.98;

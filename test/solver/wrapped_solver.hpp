@@ -11,7 +11,7 @@ namespace frontalis
 namespace test
 {
 
-/// Passes everything on to another solver: what a test wants otherwise, it overrides.
+/// Forwards all calls to another solver. A test overrides the calls that it wants to change.
 class WrappedSolver : public Solver
 {
 public:

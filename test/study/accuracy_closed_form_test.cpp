@@ -55,8 +55,8 @@ double error_of(const AccuracyFindings& findings, const std::string& name)
   throw Error("no row is called " + name);
 }
 
-// each halving of the edge divides the error by about four: by 3 to 6, since at the finest the terms that small
-// deflections neglect begin to count
+// Each halving of the edge divides the error by about four: by 3 to 6, because at the finest edge the neglected
+// nonlinear terms begin to count.
 TEST_F(ClosedForms, bending_converges_with_the_second_order)
 {
   const AccuracyFindings findings = study(form("cantilever"));
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Uniform, ClosedForms, testing::Values("stretched_block"
 TEST_F(ClosedForms, voxels_that_do_not_fit_have_no_model)
 {
   ClosedForm cantilever = form("cantilever");
-  cantilever.plan.edges = { 3e-3, 2e-3, 1e-3 };  // the first of all that is measured
+  cantilever.plan.edges = { 3e-3, 2e-3, 1e-3 };  // 3 mm is measured first
   const AccuracyFindings findings = study(cantilever);
   const auto unfit = [](const AccuracyRow& row)
   { return row.fault == "no model: voxels of 3 mm do not fit an edge of 16 mm"; };

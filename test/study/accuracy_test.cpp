@@ -21,7 +21,7 @@ namespace
 
 constexpr double length = 8e-3, width = 4e-3;
 
-// a bar of flesh, held at x = 0, with a muscle in its upper half: it shortens and bends up
+// A bar of flesh, held at x = 0, with a muscle in its upper half: it shortens and bends up.
 Model bar(const AccuracySetting& setting)
 {
   const double edge = setting.profile.voxel[0];
@@ -41,7 +41,7 @@ Model bar(const AccuracySetting& setting)
     model.fibre_weight[e] = m == 1 ? 0.5F : 2 * model.voxels[e][2] >= m ? 1 : 0;
   for (const std::int32_t node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
     model.rigid.push_back({ node, -1 });
-  // skin: the upper face, at places that are corners of voxels of every size
+  // skin: the upper face, at points that are corners of voxels of every size
   for (int i = 0; i <= 2; ++i)
     for (int j = 0; j <= 1; ++j)
     {
@@ -58,7 +58,7 @@ Model bar(const AccuracySetting& setting)
   model.hourglass = setting.profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
   if (setting.profile.precision == "double")
     model.precision = Precision::double_precision;
-  // what this bar cannot be with samples other than the default
+  // this bar exists only with the default number of samples
   if (setting.profile.samples != 4)
     throw Error("no such bar");
   return model;
@@ -125,7 +125,7 @@ const AccuracyRow& row_named(const AccuracyFindings& findings, const std::string
   throw Error("no row is called " + name);
 }
 
-// of the settled skin, against a bar of half the reference's edge
+// Error of the settled skin, against a bar of half the reference's edge.
 double true_error(const AccuracySetting& setting)
 {
   AccuracySetting finer = setting;
@@ -138,7 +138,7 @@ double true_error(const AccuracySetting& setting)
     solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
     solver->skin(skins[which]);
   }
-  // a corner's share of the area is a quarter of two triangles', or of one's
+  // the area of a corner is a quarter of its two triangles, or of its one
   const double area[] = { 1, 2, 3, 3, 2, 1 };
   double sum = 0;
   for (std::size_t v = 0; v < 6; ++v)
@@ -147,7 +147,7 @@ double true_error(const AccuracySetting& setting)
   return std::sqrt(sum);
 }
 
-// a simulated second, of the motion that the study plays
+// Steps per simulated second of the motion that the study plays.
 double true_steps(const AccuracySetting& setting)
 {
   const auto solver = make_solver(std::make_shared<const Model>(bar(setting)), { "cpu", 1 });
@@ -176,13 +176,12 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_LT(true_error(chosen.setting), 1.2 * tolerance);
   EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
   const AccuracyRow& best = most_accurate_within(findings, 1e9);
-  // a dearer setting joins the front where it is a twentieth better, and what is below the reference's error is all
-  // alike
+  // a costlier setting joins the front if it is 5 % better; errors below the reference's count as equal
   EXPECT_LE(0.95 * best.error.rms, std::max(fine, findings.reference_error));
   EXPECT_TRUE(best.error.rms <= fine || best.cost <= row_named(findings, "1 mm").cost)
       << "a setting with a larger error must be cheaper";
   EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
-  // seconds are the machine's, but not how many steps they are for
+  // seconds depend on the machine, but not the number of steps
   const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
   EXPECT_EQ(quick.name, findings.rows[findings.front.front()].name);
   for (const AccuracyRow* row : { &chosen, &best, &quick })
@@ -230,7 +229,7 @@ TEST_F(Accuracy, motions_of_another_backend_serve_and_are_told)
   EXPECT_TRUE(std::any_of(there.notes.begin(), there.notes.end(), told));
 }
 
-// files by name: motions alone, for costs are never the same
+// Content of files by name; motions only, because costs differ between runs.
 std::map<std::string, std::string> files_in(const std::string& folder, const std::string& extension)
 {
   std::map<std::string, std::string> files;
@@ -253,7 +252,7 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
   const auto whole = files_in(plan.folder + "/variants", ".motion");
   plan.folder = folder + "/parts";
   int checkpoints = 0, calls = 0;
-  // some 17 calls a turn: within a variant's 30 slices, or while it settles, from the begin of which it goes on
+  // about 17 calls per round: it ends within a variant's 30 slices, or while it settles, which then starts again
   for (bool complete = false; !complete; ++calls)
   {
     ASSERT_LT(calls, 1000);
@@ -300,7 +299,7 @@ TEST_F(Accuracy, bad_plans_are_told)
   EXPECT_NE(fault().find("each smaller than the one before"), std::string::npos) << fault();
 }
 
-// costs and errors that are set, and not measured
+// Prescribed costs and errors instead of measured ones.
 AccuracyFindings four_settings()
 {
   AccuracyFindings findings;

@@ -15,7 +15,7 @@ using namespace frontalis;
 namespace
 {
 
-// what an effect costs where times are not measured but set: a step takes the sum over the effects that run [s]
+// Prescribed cost of an effect [s]. A step takes the sum over the running effects.
 double price_of(Effect effect) { return 1e-6 * std::pow(2, static_cast<int>(effect)); }
 
 double price_of(EffectSet effects)
@@ -32,8 +32,7 @@ bool is_active(const TimedSolver& timed)
   return !activation.empty() && std::all_of(activation.begin(), activation.end(), [](float a) { return a == 0.75f; });
 }
 
-// sets the price of each solver's effects as its time, with a disturbance that meets all solvers of a turn alike, and
-// notes what was compared
+// Returns prices as times, with a disturbance common to all solvers of a round, and records the comparisons.
 struct SetTimes
 {
   struct Comparison
@@ -88,7 +87,7 @@ TEST(EffectCosts, AreTheDifferenceToTheModelWithoutTheEffect)
   EXPECT_DOUBLE_EQ(all.costs.plain_step, price_of(Effect::elasticity));
   for (const EffectCost& cost : all.costs.effects)
   {
-    // there is no friction without sliding
+    // friction requires sliding
     const double price = !cost.presence.present || cost.effect == Effect::output_fields ? 0
                          : cost.effect == Effect::sliding ? price_of(Effect::sliding) + price_of(Effect::friction)
                                                           : price_of(cost.effect);
@@ -165,7 +164,7 @@ TEST(EffectCosts, OneMuscleIsTimedAgainstAll)
   EXPECT_EQ(cost.spread, 0);
 }
 
-// on a clock of any resolution: how many steps are timed follows from the clock
+// The number of timed steps follows from the resolution of the clock.
 TEST(StepTimes, HaveARowPerTurnAndAColumnPerSolver)
 {
   const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));

@@ -1,5 +1,5 @@
-// small scenes, random ones and those of them that once failed, must stay finite, explain their energy or be stopped
-// with a report, and repeat bit by bit
+// Small scenes, random ones and former failures, must stay finite, explain their energy or be stopped with a report,
+// and repeat bit by bit.
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
@@ -28,7 +28,7 @@ struct SmallScene
   std::array<std::int32_t, 3> size;
   std::array<double, 3> spacing;  // [m]
   std::vector<Material> materials;
-  int holes, seed;  // tenths of the voxels that are missing, and which
+  int holes, seed;  // tenths of the voxels that are missing, and the random seed
   double damping;
   std::array<double, 3> gravity;
   HourglassControl hourglass;
@@ -38,7 +38,7 @@ struct SmallScene
   std::vector<Muscle> muscles;  // none or one
   bool bone, floor;
   std::vector<float> activation;
-  double turn, x, y;  // of the bone when it is away [rad], shortest edges
+  double turn, x, y;  // pose of the bone when it is displaced [rad], [shortest edges]
 };
 
 Model model_of(const SmallScene& scene)
@@ -113,7 +113,7 @@ struct Outcome
   bool stopped = false;  ///< by the guard, with a report
 };
 
-// 500 steps: muscles are switched on, off and half on, a bone goes away and comes back
+// Plays 500 steps: muscles are switched on, off and half on, and a bone moves away and back.
 Outcome play(const SmallScene& scene, const std::shared_ptr<const Model>& model, int threads)
 {
   SolverSettings settings{ "cpu", threads, 0 };
@@ -144,7 +144,7 @@ Outcome play(const SmallScene& scene, const std::shared_ptr<const Model>& model,
   return outcome;
 }
 
-// what one of them did wrong; empty: nothing
+// Describes what went wrong with a scene; empty if nothing did.
 std::string fault_of(const SmallScene& scene, bool& stopped)
 {
   const auto model = std::make_shared<const Model>(model_of(scene));
@@ -170,8 +170,8 @@ void expect_sound(const SmallScene& scene)
 
 }  // namespace
 
-// Jerked by its bone, so fast that it is tossed about by what the time step can just follow: where the step was let
-// grow and shrink with every swing, each change left energy behind that nothing explained, 13 % here.
+// The bone's jerks excite vibrations near the limit of the time step. A step that grows and shrinks with every swing
+// left 13 % of the energy unexplained here.
 TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -195,7 +195,7 @@ TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
   expect_sound(scene);
 }
 
-// The same without damping and with an assembled time step: 16 %.
+// The same without damping and with an assembled time step: 16 % were unexplained.
 TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -226,7 +226,7 @@ TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 namespace
 {
 
-// whole numbers shrink well: x / scale of one from low to high
+// Integers shrink well in RapidCheck: x / scale for an integer x from low to high.
 double real(int low, int high, double scale) { return *rc::gen::inRange(low, high + 1) / scale; }
 
 Material material()
@@ -236,7 +236,7 @@ Material material()
   auto& p = result.parameters;
   const double mu = p[0];
   result.law = static_cast<Law>(*rc::gen::inRange(0, static_cast<int>(physics::material_table.size())));
-  // a law that has no numbers below takes those of its example, scaled to this shear modulus
+  // a law without its own numbers below takes those of its example, scaled to this shear modulus
   if (result.law != Law::neo_hookean)
   {
     const auto& description = physics::description_of(result.law);
@@ -301,7 +301,7 @@ SmallScene draw()
 
 TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
 {
-  // a seed and a number that stand unless the environment says otherwise (RC_PARAMS="max_success=10000")
+  // fixed seed and number of scenes, unless the environment sets them (RC_PARAMS="max_success=10000")
   ::setenv("RC_PARAMS", "seed=20261121 max_success=200", 0);
   int scenes = 0, stopped = 0;
   const bool held = rc::check(
@@ -317,7 +317,7 @@ TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
         RC_ASSERT(fault.empty());
       });
   EXPECT_TRUE(held);
-  // a guard that stopped them all would hide what the others are to show
+  // a guard that stopped all scenes would hide other faults
   EXPECT_LT(stopped, 0.2 * scenes);
   EXPECT_GT(scenes, 0);
 }

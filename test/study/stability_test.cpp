@@ -1,4 +1,4 @@
-// what a hard case takes from its file: a bound there decides, and a file that is wrong is told
+// A hard case takes its bounds from its file, and faults of the file are reported.
 
 #include "frontalis/study/stability.hpp"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path sources = fs::path(FRONTALIS_SOURCE_DIRECTORY) / "test/stability";
 
-// the files of all cases, one of them with another line
+// The files of all cases, with one line of one of them changed.
 class StabilityFile : public ::testing::Test
 {
 protected:

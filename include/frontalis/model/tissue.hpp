@@ -76,7 +76,7 @@ enum class Precision : std::uint8_t
 enum class TimeStepEstimate : std::uint8_t
 {
   element,   ///< bounded at nodes from the stiffness of their voxels: always safe
-  assembled  ///< of the assembled model, by power iteration, again as it stiffens: longer where few voxels are stiff
+  assembled  ///< of the assembled model, by power iteration; repeated as it stiffens; longer if few voxels are stiff
 };
 
 }  // namespace frontalis

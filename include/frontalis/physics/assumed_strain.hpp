@@ -8,11 +8,11 @@ namespace physics
 {
 
 /// Assumed-strain hourglass control of a box voxel (Belytschko & Bindeman 1993, Comput. Methods Appl. Mech. Eng.
-/// 105:225, their ASQBI field): one stiffness per axis, Poisson coupling between the two bendings of a plate, torsion
-/// by the shear modulus. The modes are pulled back by the deformation gradient, as a total Lagrangian strain has them,
-/// so that the stiffness turns with the element; the energy 1/2 r K r, r = F^T q, is frame-indifferent and its full
-/// gradient is taken, so that neither energy nor angular momentum is lost. A small part of the scalar stiffness is
-/// added, so that crushed elements stay controlled.
+/// 105:225, ASQBI field): one stiffness per axis, Poisson coupling between the two bendings of a plate, torsion by the
+/// shear modulus. The modes are pulled back by the deformation gradient as in a total Lagrangian strain, so that the
+/// stiffness rotates with the element. The energy 1/2 r K r, r = F^T q, is frame-indifferent and forces are its full
+/// gradient, so that energy and angular momentum are conserved. A small part of the scalar stiffness is added to
+/// control crushed elements.
 template <class T>
 struct AssumedStrain
 {
@@ -22,7 +22,7 @@ struct AssumedStrain
   T warping;   ///< 2 mu (1 + nu) / 3 times tissue volume [N m]
 };
 
-/// Part of the scalar hourglass stiffness that is added.
+/// Fraction of the scalar hourglass stiffness that is added.
 constexpr double assumed_strain_floor = 0.02;
 
 template <class T>
@@ -35,13 +35,12 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
   return { bending, nu * bending, mu * tissue_volume, twice * (N::of(1) + nu) * N::of(1.0 / 3) };
 }
 
-/// Hourglass modes in the order in which they pair with axes: yz, xz, xy, xyz (indices of the transformed
-/// displacements).
+/// Hourglass modes in the order that pairs them with axes: yz, xz, xy, xyz (indices of transformed displacements).
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
-/// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it
-/// with n = nu times the square of the ratio of the shortest edge to the edge along that axis. Where the edge along the
-/// axis is the shortest, they are those of a plate.
+/// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it,
+/// with n = nu times the squared ratio of the shortest edge to the edge along that axis. For the shortest edge they are
+/// those of a plate.
 template <class T>
 struct AxisBending
 {
@@ -64,8 +63,8 @@ FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* we
   return { own, n * own };
 }
 
-/// Forces conjugate to pulled-back modes r[pair][axis], likewise ordered; weight[i] = 1 / (4 sqrt(3) h_i): products of
-/// two are the integrals of mode derivatives over the volume, for modes of amplitude 8.
+/// Forces conjugate to pulled-back modes r[pair][axis], in the same order. weight[i] = 1 / (4 sqrt(3) h_i): products of
+/// two weights are the volume integrals of mode derivatives, for modes of amplitude 8.
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
 {
@@ -75,9 +74,9 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, 
   {
     const int j = (i + 1) % 3, l = (i + 2) % 3;
     const T wi(weight[i]), wj(weight[j]), wl(weight[l]);
-    // u_i with the mode that does not vary along i: torsion, and its coupling to the other two
+    // u_i in the mode that does not vary along i: torsion, and its coupling to the other two
     force[i][i] = k.torsion * (((wj * wj) + (wl * wl)) * r[i][i] + wi * (wj * r[j][j] + wl * r[l][l]));
-    // u_i with the modes paired with j and l: bending along i, coupled to bending along j and l
+    // u_i in the modes paired with j and l: bending along i, coupled to bending along j and l
     force[j][i] = wi * (along[l].own * wi * r[j][i] + along[l].coupled * wj * r[i][j]);
     force[l][i] = wi * (along[j].own * wi * r[l][i] + along[j].coupled * wl * r[i][l]);
     force[3][i] = k.warping * wi * wi * r[3][i];
@@ -85,7 +84,7 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, 
 }
 
 /// Replaces the hourglass modes of the transformed displacements q[axis][mode] by the forces conjugate to them, and
-/// adds to Q[i][j] the force conjugate to F_ij [N m]. scalar: hourglass_stiffness times assumed_strain_floor [N/m].
+/// adds the force conjugate to F_ij to Q[i][j] [N m]. scalar: hourglass_stiffness times assumed_strain_floor [N/m].
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const T& scalar, const S* weight, const Matrix3<T>& F,
                                     T (&q)[3][8], Matrix3<T>& Q)
@@ -107,7 +106,7 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const T& scalar, 
     }
 }
 
-/// Energy [J] of the modes q[axis][mode] before they are replaced.
+/// Energy of the modes q[axis][mode] before they are replaced [J].
 template <class T, class S>
 FRONTALIS_LAW T hourglass_energy(const AssumedStrain<T>& k, const T& scalar, const S* weight, const Matrix3<T>& F,
                                  const T (&q)[3][8])

@@ -5,11 +5,10 @@
 namespace frontalis::physics
 {
 
-/// Beyond this argument the exponentials of laws are continued along their tangent: stiff, but finite in single
-/// precision.
+/// Above this argument the exponentials of laws continue along their tangent: stiff, but finite in single precision.
 constexpr double exponent_limit = 20;
 
-/// e^x, and beyond the limit its tangent there: C1, finite.
+/// e^x up to the limit, and its tangent beyond: finite, with continuous slope.
 template <class T>
 FRONTALIS_LAW T bounded_exponential(T x)
 {

@@ -9,9 +9,9 @@ namespace frontalis::physics
 /// Below this J the isochoric laws are continued; above it they hold exactly.
 constexpr double continuation_jacobian = 0.2;
 
-/// g(J) = J^(-2/3) and its derivative for J >= J0. Below J0 it continues along its tangent there, so that it is finite
-/// at J = 0 and beyond, still grows, and pushes a crushed or inverted element open (C1 in F; Smith, de Goes & Kim 2018
-/// reach the same with a regularised energy).
+/// g(J) = J^(-2/3) and its derivative for J >= J0. Below J0 it continues along its tangent, so that it is finite at J
+/// <= 0, still grows, and opens a crushed or inverted element (C1 in F; Smith, de Goes & Kim 2018 achieve the same with
+/// a regularised energy).
 template <class T>
 struct IsochoricScale
 {

@@ -7,8 +7,7 @@ namespace frontalis
 namespace physics
 {
 
-/// Constants of the tension-length relation after Blemker, Pinsky & Delp 2005 (J. Biomech. 38:657), optimal fibre
-/// stretch 1.
+/// Constants of the tension-length relation (Blemker, Pinsky & Delp 2005, J. Biomech. 38:657), optimal fibre stretch 1.
 constexpr double fibre_optimal_stretch = 1.0;
 constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear beyond it
 constexpr double fibre_p1 = 0.05;
@@ -28,7 +27,7 @@ FRONTALIS_LAW T active_tension(T l)
   return N::select(l >= N::of(1.6), N::of(0), f);
 }
 
-/// Passive tension of a fibre over the stress reference, 0 in compression, linear with continuous slope past 1.4.
+/// Passive tension of a fibre over the stress reference: 0 in compression, linear with continuous slope above 1.4.
 template <class T>
 FRONTALIS_LAW T passive_tension(T l)
 {
@@ -40,10 +39,10 @@ FRONTALIS_LAW T passive_tension(T l)
 }
 
 /// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
-/// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. Faded out below a small J, so
-/// that a crushed element's fibres do not hold it crushed. with_length: 1 takes the tension-length relation, 0 gives
-/// the constant S = activation stress_reference. with_passive: 1 adds the passive part. Passive = false leaves it out
-/// at compile time.
+/// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. It fades out below a small J, so
+/// that fibres do not keep a crushed element crushed. with_length: 1 applies the tension-length relation, 0 gives the
+/// constant S = activation stress_reference. with_passive: 1 adds the passive part. Passive = false omits it at compile
+/// time.
 template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
 {
@@ -58,11 +57,11 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   return stress_reference * fade * (active + passive);
 }
 
-/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation and no
-/// change of volume. The nominal stress is S times stretch, J f(l) at these constants: the active curve is steepest at
-/// l = 0.6 (18 * 0.2), the passive one past l = 1.4 (p1 p2 e^(0.4 p2)). The time step must
-/// allow for the first where there is no passive part, else for the sum. Multiplied by the deformation of the element
-/// (physics/time_step.hpp), these bounds include what f |cof F| adds, up to stretches of 2.5.
+/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation and constant
+/// volume. The nominal stress is S times stretch, J f(l) at these constants: the active curve is steepest at l = 0.6
+/// (18 * 0.2), the passive one above l = 1.4 (p1 p2 e^(0.4 p2)). The time step must allow for the active slope, or for
+/// the sum if there is a passive part. Multiplied by the deformation of the element (physics/time_step.hpp), these
+/// bounds include the contribution of f |cof F| up to stretches of 2.5.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

@@ -3,18 +3,18 @@
 namespace frontalis
 {
 
-/// Parts of the solver that are taken away on purpose, to see that tests notice. Only in the tests' library
-/// frontalis_mutated_solver are these variables, set by FRONTALIS_MUTATION in the environment; elsewhere they are
-/// constants, and code that depends on them is not compiled.
+/// Parts of the solver that are removed on purpose, to check that tests notice. They are variables only in the test
+/// library frontalis_mutated_solver, set by FRONTALIS_MUTATION in the environment. Elsewhere they are constants, and
+/// code that depends on them is not compiled.
 namespace mutation
 {
 
 #if defined(FRONTALIS_MUTATIONS)
-extern const bool blind_guard;         ///< "guard": finds nothing
-extern const bool time_step_of_rest;   ///< "time_step": does not follow what stiffens
-extern const bool laws_not_continued;  ///< "material": isochoric laws end where a voxel is crushed
+extern const bool blind_guard;         ///< "guard": it detects nothing
+extern const bool time_step_of_rest;   ///< "time_step": it does not follow stiffening
+extern const bool laws_not_continued;  ///< "material": isochoric laws are not continued for crushed voxels
 extern const bool no_friction;         ///< "friction": no friction force
-extern const bool lost_corner;         ///< "patches": in patches nodes lack the force of one voxel
+extern const bool lost_corner;         ///< "patches": nodes of patches lack the force of one voxel
 extern const bool no_gpu_gravity;      ///< "gpu_gravity": gravity does not act on the GPU
 #else
 constexpr bool blind_guard = false;

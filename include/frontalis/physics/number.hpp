@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-// A law in this folder is compiled for double (reference), for SIMD batches (CPU) and for float in CUDA kernels.
+// The laws in this folder are compiled for double (reference), for SIMD batches (CPU) and for float in CUDA kernels.
 #if defined(__CUDACC__)
 #define FRONTALIS_LAW __host__ __device__ __forceinline__
 #elif defined(__GNUC__)
@@ -11,8 +11,7 @@
 #define FRONTALIS_LAW inline
 #endif
 
-// Unrolls the loop that follows where the compiler does not do so by itself: arrays that the loop indexes stay in
-// registers then.
+// Unrolls the next loop, so that arrays indexed by it stay in registers, if the compiler does not do so by itself.
 #if defined(__CUDACC__)
 #define FRONTALIS_UNROLL _Pragma("unroll")
 #else
@@ -24,14 +23,14 @@ namespace frontalis
 namespace physics
 {
 
-/// What a law needs of its number type beyond + - * / and comparisons. This is for scalars; SIMD batches have a
-/// specialisation of their own in the CPU backend.
+/// What a law needs of its number type beyond + - * / and comparisons. This version is for scalars; the CPU backend
+/// specialises it for SIMD batches.
 template <class T>
 struct Number
 {
   /// The value as a number of this type.
   static FRONTALIS_LAW T of(double value) { return static_cast<T>(value); }
-  /// `yes` where the condition holds, else `no`; both are evaluated.
+  /// `yes` if the condition holds, else `no`. Both are evaluated.
   static FRONTALIS_LAW T select(bool condition, T yes, T no) { return condition ? yes : no; }
   static FRONTALIS_LAW T max(T a, T b) { return a > b ? a : b; }
   static FRONTALIS_LAW T min(T a, T b) { return a < b ? a : b; }

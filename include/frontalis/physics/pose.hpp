@@ -7,7 +7,7 @@ namespace frontalis
 namespace physics
 {
 
-/// Place of a bone: takes points of the bone's frame to the scene's.
+/// Pose of a bone: maps points from the bone's frame to the scene's.
 struct Pose
 {
   using Point = Vec3<double>;

@@ -7,8 +7,7 @@ namespace frontalis
 namespace physics
 {
 
-/// Part of a load that acts at a time: it grows linearly from 0 to 1 over the ramp, and is 1 without a ramp. Both in
-/// seconds.
+/// Fraction of a load that acts at a time [s]: it grows linearly from 0 to 1 over the ramp [s]; 1 without a ramp.
 FRONTALIS_LAW double ramped(double time, double ramp) { return ramp > 0 && time < ramp ? time / ramp : 1.0; }
 
 }  // namespace physics

@@ -8,14 +8,15 @@ namespace frontalis
 namespace physics
 {
 
-/// A sliding node that is off its plane goes back by half of the error per step, but for errors above twice this [m] by
-/// all beyond this. The error comes suddenly, where the tangent plane of a node is renewed. Corrected within one step
-/// it would add half the stiffness of the tissue times the error squared to the energy, and set the tissue vibrating.
+/// A sliding node off its plane moves back by half of the error per step; of an error above twice this value, all but
+/// this value is removed [m]. The error arises suddenly when the tangent plane of a node is replaced. Removing it
+/// within one step would add half the stiffness of the tissue times the squared error to the energy and excite
+/// vibrations.
 constexpr double error_left = 4.5e-6;
 
-/// Node that slides on a plane normal . u = offset (normal of length 1): removes the velocity along the normal (after
-/// Lapeer et al. 2019) and most of the distance from the plane. Returns the normal velocity removed. Times the mass of
-/// the node it is the impulse of the constraint in this step, without the jumps where the plane itself is renewed.
+/// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
+/// 2019) and most of the distance from the plane. Returns the removed normal velocity. Multiplied by the node's mass it
+/// is the impulse of the constraint in this step, without the jumps at a change of plane.
 template <class T>
 FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T>& v)
 {
@@ -28,9 +29,9 @@ FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T
   return speed;
 }
 
-/// Velocity of a node whose tangent plane on a smooth surface is replaced by the next: it is turned with the normal, so
-/// that the node keeps its speed. A projection would brake it. Where the normals differ by more than 0.3 rad the
-/// surface has an edge, and nothing is turned.
+/// Turns the velocity of a node with the normal when its tangent plane on a smooth surface is replaced, so that the
+/// node keeps its speed; a projection would brake it. If the normals differ by more than 0.3 rad the surface has an
+/// edge, and nothing is turned.
 template <class T>
 FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to, const Vec3<T>& v)
 {
@@ -42,7 +43,7 @@ FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to,
 }
 
 /// Coulomb friction in one step: the fraction of its tangential speed that a sliding node loses, from the normal speed
-/// that the constraint removed. 1: it sticks. The mass cancels.
+/// that the constraint removed; 1 if it sticks. The mass cancels.
 template <class T>
 FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const T& tangential_speed)
 {
@@ -53,9 +54,9 @@ FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const
   return N::select(tangential_speed > allowed, allowed / N::max(tangential_speed, allowed), N::of(1));
 }
 
-/// Friction follows the reaction of the surface with a delay of 1 ms: the fraction of a change of the reaction that it
-/// takes up in a step dt [s]. With friction that follows at once, sliding of an elastic body is ill-posed: friction
-/// would feed the body's vibrations. This is Prakash & Clifton's law in its simplest form (Cochard & Rice 2000).
+/// Fraction of a change of the surface's reaction that friction adopts in a step dt [s]: friction follows the reaction
+/// with a delay of 1 ms. Without a delay, sliding of an elastic body is ill-posed, and friction would feed its
+/// vibrations. This is the law of Prakash & Clifton in its simplest form (Cochard & Rice 2000).
 template <class T>
 FRONTALIS_LAW T friction_response(const T& dt)
 {

@@ -15,8 +15,8 @@ struct SymmetricEigen
   Matrix3<T> vector;
 };
 
-/// Cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 8.5), a fixed number of sweeps without branches:
-/// full single precision after four, double after six.
+/// Cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 8.5) in a fixed number of sweeps without branches:
+/// full single precision after four, double precision after six.
 template <class T>
 FRONTALIS_LAW SymmetricEigen<T> symmetric_eigen(Matrix3<T> A)
 {

@@ -31,22 +31,22 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 
-/// The larger one; NaN where one of them is NaN or infinite.
+/// The larger number; NaN if one of them is NaN or infinite.
 template <class T>
 FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 {
   return Number<T>::max(a, b) + (a - a) + (b - b);
 }
 
-/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, without the stiffening of laws beyond
-/// neo-Hookean; NaN where the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: times the volume
-/// of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
+/// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, without the stiffening of laws other
+/// than neo-Hookean; NaN if the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: moduli times the
+/// volume of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
 ///
-/// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, those of the
-/// volumetric and of the isochoric part separately. The growth of these bounds since rest is added to the bound at
-/// rest. The nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J,
-/// those by J with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest
-/// (muscle_fibre.hpp) times the larger of J and sqrt(along I1 / 3).
+/// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, separately for
+/// the volumetric and the isochoric part. The growth of these bounds since rest is added to the bound at rest. The
+/// nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J
+/// with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest (muscle_fibre.hpp) times
+/// the larger of J and sqrt(along I1 / 3).
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)

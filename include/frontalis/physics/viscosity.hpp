@@ -18,8 +18,7 @@ struct Symmetric3
 FRONTALIS_LAW constexpr int symmetric_row(int i) { return i < 3 ? i : i - 3; }
 FRONTALIS_LAW constexpr int symmetric_column(int i) { return i < 3 ? i : (i - 2) % 3; }
 
-/// Second Piola-Kirchhoff stress S = F^-1 P = (cof F)^T P / J. The divisor is at least continuation_jacobian, so
-/// that S is finite.
+/// Second Piola-Kirchhoff stress S = F^-1 P = (cof F)^T P / J. The divisor is kept above continuation_jacobian.
 template <class T>
 FRONTALIS_LAW Symmetric3<T> second_piola(const Kinematics<T>& k, const Matrix3<T>& P)
 {
@@ -35,9 +34,9 @@ FRONTALIS_LAW Symmetric3<T> second_piola(const Kinematics<T>& k, const Matrix3<T
   return S;
 }
 
-/// One term of a Prony series on the isochoric stress (Taylor et al. 2009, Med. Image Anal. 13:234): the part H of the
-/// stress that has relaxed follows dH/dt = (share S - H) / time, solved here exactly for a constant S over a time
-/// `elapsed`; decay = exp(-elapsed / time). The stress in the body is S - H.
+/// One term of a Prony series on the isochoric stress (Taylor et al. 2009, Med. Image Anal. 13:234). The relaxed part H
+/// of the stress follows dH/dt = (share S - H) / time, solved exactly here for a constant S over a time `elapsed`;
+/// decay = exp(-elapsed / time). The stress in the body is S - H.
 template <class T>
 FRONTALIS_LAW void relax(const T& share, const T& decay, const Symmetric3<T>& S, Symmetric3<T>& H)
 {
@@ -46,7 +45,7 @@ FRONTALIS_LAW void relax(const T& share, const T& decay, const Symmetric3<T>& S,
     H.a[n] = decay * H.a[n] + gain * S.a[n];
 }
 
-/// Tensors that are kept per voxel: one per term, and after two terms their sum, which is all that a step reads.
+/// Number of tensors stored per voxel: one per term, and for two terms also their sum, which is all that a step reads.
 FRONTALIS_LAW constexpr int relaxed_tensors(int terms) { return terms == 2 ? 3 : terms; }
 
 /// P -= F H.
@@ -78,9 +77,9 @@ FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
   return sum;
 }
 
-/// Change of H : E, at constant strain, where the relaxed stress H changes from `before` to `after` at the end of a
+/// Change of H : E, at constant strain, when the relaxed stress H changes from `before` to `after` at the end of a
 /// step. The rest of the change of H : E is the work of the body against H, the sum of H : dE. A stress works along the
-/// mean of the motions before and after it, so that the strain here is the mean of those at the step's begin and end.
+/// mean of the motions before and after it, so the strain here is the mean of those at the start and end of the step.
 template <class T>
 FRONTALIS_LAW T relaxation_work(const Kinematics<T>& begin, const Kinematics<T>& end, const Symmetric3<T>& before,
                                 const Symmetric3<T>& after)

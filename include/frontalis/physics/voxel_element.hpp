@@ -7,9 +7,9 @@ namespace frontalis
 namespace physics
 {
 
-/// 8-point Walsh-Hadamard transform of one displacement component at the corners b = i + 2j + 4k of a box voxel, in
-/// place. Afterwards index 0 holds the sum; 1, 2, 4 hold 4 h times the mean derivative along x, y, z; 3, 5, 6, 7 the
-/// hourglass modes, which on a box are orthogonal to every linear field (one-point quadrature of the trilinear
+/// In-place 8-point Walsh-Hadamard transform of one displacement component at the corners b = i + 2j + 4k of a box
+/// voxel. Afterwards index 0 holds the sum; 1, 2, 4 hold 4 h times the mean derivative along x, y, z; 3, 5, 6, 7 hold
+/// the hourglass modes, which on a box are orthogonal to every linear field (one-point quadrature of the trilinear
 /// hexahedron, Flanagan & Belytschko 1981, specialised to boxes).
 template <class T>
 FRONTALIS_LAW void walsh_hadamard(T* a)
@@ -25,7 +25,7 @@ FRONTALIS_LAW void walsh_hadamard(T* a)
       }
 }
 
-/// Transpose of walsh_hadamard: generalised forces on the modes to forces on the corners, in place.
+/// Transpose of walsh_hadamard(), in place: converts generalised forces on the modes to forces on the corners.
 template <class T>
 FRONTALIS_LAW void walsh_hadamard_transposed(T* a)
 {
@@ -43,14 +43,14 @@ FRONTALIS_LAW void walsh_hadamard_transposed(T* a)
 /// Mode that holds the derivative along axis 0, 1, 2.
 FRONTALIS_LAW constexpr int gradient_mode(int axis) { return 1 << axis; }
 
-/// Deformation of an element at its centre, with what several laws need of it.
+/// Deformation of an element at its centre, and quantities that several laws need.
 template <class T>
 struct Kinematics
 {
   Matrix3<T> F;         ///< deformation gradient
   Matrix3<T> cofactor;  ///< dJ/dF
   T J;                  ///< det F
-  T dilatation;         ///< J - 1, without the rounding error of a number near 1
+  T dilatation;         ///< J - 1, without the rounding error of a J near 1
   T I1;                 ///< trace of F^T F
 };
 
@@ -61,7 +61,7 @@ FRONTALIS_LAW Kinematics<T> kinematics(const T* x, const T* y, const T* z, const
   Kinematics<T> k;
   const T* component[3] = { x, y, z };
   const T one = Number<T>::of(1);
-  T stretch[3];  // of the axes, less 1
+  T stretch[3];  // of the axes, minus 1
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
     {

@@ -9,20 +9,20 @@
 namespace frontalis
 {
 
-/// What a backend tells of itself. A backend NAME defines `BackendDescription NAME_backend()` and stands in the list
-/// `backends` of CMakeLists.txt, from which registered_backends() is made; nothing else names it.
+/// Description of a backend. A backend NAME defines `BackendDescription NAME_backend()` and is in the list `backends`
+/// of CMakeLists.txt, from which registered_backends() is made; nothing else names it.
 struct BackendDescription
 {
   std::string name;
-  /// Makes a solver whose description ends with `remark`. Throws BackendUnavailable where the device cannot take the
-  /// model, and Error where the model or the settings are at fault.
+  /// Makes a solver whose description ends with `remark`. Throws BackendUnavailable if the device cannot take the
+  /// model, and Error if the model or the settings are invalid.
   std::unique_ptr<Solver> (*make)(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                   const std::string& remark);
-  /// Why the backend cannot run on this machine, empty where it can; null: it always can.
+  /// Returns why the backend cannot run on this machine; empty if it can. Null: it always can.
   std::string (*missing)() = nullptr;
 };
 
-/// This machine, or a model that is too large for its device, keeps a backend from running.
+/// The backend cannot run on this machine, or the model is too large for its device.
 class BackendUnavailable : public Error
 {
 public:

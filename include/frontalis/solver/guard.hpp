@@ -11,36 +11,36 @@
 namespace frontalis
 {
 
-/// What a check of the motion may find, in the order of words_for().
+/// Findings of a check of the motion, in the order of words_for().
 enum class Instability
 {
   none,
   not_finite,  ///< a displacement is NaN or Inf
-  energy,      ///< more energy than muscles, loads and bones can have brought, or than the ledger explains
-  hourglass,   ///< the same in hourglass modes alone
-  inverted,    ///< more voxels are inside out than may be
+  energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
+  hourglass,   ///< the same in hourglass modes only
+  inverted,    ///< more voxels are inverted than allowed
   time_step    ///< steps were longer than critical
 };
 
-/// In words that go on "the motion is unstable: ".
+/// The rest of a sentence that begins with "the motion is unstable: ".
 std::string words_for(Instability instability);
 
 struct GuardSettings
 {
   int interval = 0;              ///< steps between two checks; 0: Solver::steps_per_check
   double slower = 0.5;           ///< factor on the time step after a finding, and again for each further try
-  int recovery = 4;              ///< checks without a finding before the whole time step is taken again
-  int tries = 3;                 ///< in a row, before the motion is stopped
-  double inverted_share = 0.05;  ///< of voxels that may be inside out (J <= 0), unless more were so before
-  bool ledger = false;           ///< judge energy by the ledger's imbalance: needs SolverSettings::ledger
+  int recovery = 4;              ///< checks without a finding before the full time step is used again
+  int tries = 3;                 ///< consecutive tries before the motion is stopped
+  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), unless more were before
+  bool ledger = false;           ///< judges energy by the ledger's imbalance; needs SolverSettings::ledger
 };
 
-/// What happened since the guard was made.
+/// Events since the guard was made.
 struct GuardCounts
 {
   std::int64_t checks = 0;
   std::int64_t rollbacks = 0;
-  Instability latest = Instability::none;  ///< of the latest rollback
+  Instability latest = Instability::none;  ///< finding of the latest rollback
   double seconds = 0;                      ///< wall seconds spent in checks and snapshots
 };
 
@@ -48,19 +48,19 @@ struct GuardCounts
 struct InstabilityReport
 {
   Instability kind = Instability::none;
-  double time = 0;                    ///< [s] simulated, of the finding
+  double time = 0;                    ///< simulated time of the finding [s]
   std::int32_t voxel = -1;            ///< the worst
   double jacobian = 1;                ///< its J
   std::array<double, 3> scene{};      ///< its centre at rest, scene frame [m]
   std::array<double, 3> face{};       ///< the same in the face frame [m]
-  std::vector<std::string> material;  ///< its materials, that with the largest proportion first
-  std::vector<std::string> muscle;    ///< muscles with fibres in it, that with the most tension first
-  std::string effect;                 ///< most likely at fault, by name
+  std::vector<std::string> material;  ///< its materials, the one with the largest fraction first
+  std::vector<std::string> muscle;    ///< muscles with fibres in it, the one with the highest tension first
+  std::string effect;                 ///< name of the effect that is most likely the cause
   std::string advice;                 ///< what to change
-  std::string text() const;           ///< all of it, two or three sentences
+  std::string text() const;           ///< all of it, in two or three sentences
 };
 
-/// The motion was stopped. The solver is at the latest good state, or at the one before if the latest led here too.
+/// The motion was stopped. The solver is at the latest good state, or at the previous one if the latest failed too.
 class Unstable : public Error
 {
 public:
@@ -83,23 +83,23 @@ public:
 class Guard
 {
 public:
-  /// Solver and guard belong together until the guard is gone: advance the solver through the guard alone. Throws Error
-  /// on settings out of range.
+  /// As long as the guard exists, advance the solver only through it. Throws Error if settings are out of range.
   explicit Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings = {});
   ~Guard();
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// As Solver::advance, in parts, so that checks are in time. After a rollback, controls go linearly from those of the
-  /// snapshot to `target`. Throws Error as Solver::advance does; throws Unstable when `tries` in a row have failed,
-  /// with a good state restored.
+  /// Like Solver::advance, in parts, so that checks happen in time. After a rollback, controls change linearly from
+  /// those of the snapshot to `target`. Throws Error as Solver::advance does; throws Unstable when `tries` consecutive
+  /// tries have failed, with a good state restored.
   void advance(double seconds, const Controls& target);
-  /// Checks now. After a finding it goes back to a good state, or throws Unstable.
+  /// Checks the present state. After a finding it goes back to a good state, or throws Unstable.
   void check();
-  /// As Solver::settle, watched like advance(), but not by the ledger, which begins anew after it. Throws as both do.
+  /// Like Solver::settle, with checks as in advance(), except for the ledger, which starts anew afterwards. Throws as
+  /// both do.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
-  /// The present state is good: to be called after reset(), or displacements were set.
+  /// Takes the present state as good. To be called after reset(), or after displacements were set.
   void restart();
 
   const GuardCounts& counts() const;

@@ -15,19 +15,19 @@
 namespace frontalis
 {
 
-/// Raised whenever the same model and controls give another motion than before (other steps, other laws), or
-/// Solver::pack() gives other bytes: motions that were kept by another generation are refused.
+/// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
+/// gives different bytes. Stored motions of another generation are refused.
 constexpr int motion_generation = 10;
 
-/// A name of backend_names(): "auto" (the GPU where there is one, else the CPU), "reference" (double precision, plain
-/// loops: slow on purpose, the oracle of every test), "cpu" (SIMD, all cores), "cuda".
+/// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
+/// loops; slow, the reference of every test), "cpu" (SIMD, all cores), "cuda".
 using Backend = std::string;
 
-/// What SolverSettings::backend can ask for in this build, "auto" first.
+/// The values of SolverSettings::backend in this build, "auto" first.
 std::vector<Backend> backend_names();
-/// The name itself; throws Error where it is none of backend_names().
+/// Returns the name; throws Error if it is not in backend_names().
 Backend backend_from_name(const std::string& name);
-/// The backends that can run on this machine, in the order in which "auto" prefers them.
+/// The backends that can run on this machine, in the order of preference of "auto".
 std::vector<Backend> available_backends();
 SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
 
@@ -35,21 +35,21 @@ struct SolverSettings
 {
   Backend backend = "auto";
   int threads = 0;       ///< CPU threads; 0: one per core
-  double time_step = 0;  ///< [s]; 0: found by the solver. One above the critical time step is refused
-  bool ledger = false;   ///< keep account of energies (Solver::ledger); makes steps slower
+  double time_step = 0;  ///< [s]; 0: chosen by the solver. Steps above the critical time step are refused
+  bool ledger = false;   ///< keeps account of energies (Solver::ledger); makes steps slower
 };
 
-/// What moves the model from outside.
+/// External inputs of the model.
 struct Controls
 {
   std::vector<float> activation;     ///< one per muscle, 0..1
   std::vector<RigidTransform> bone;  ///< one per bone: motion from its rest pose, in the local frame
 };
 
-/// Controls at a fraction of the way between two; bones turn about the shortest axis.
+/// Controls at a fraction of the way between two; bones rotate about the shortest axis.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
 
-/// All that the motion depends on at one moment. Its contents are known to the solver alone that made it.
+/// The complete state of a motion at one moment. Only the solver that made it can read it.
 class Snapshot
 {
 public:
@@ -63,67 +63,67 @@ public:
   using Error::Error;
 };
 
-/// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). For one caller at a time.
+/// Explicit central-difference solver of one model (Miller et al. 2007, total Lagrangian). Not thread-safe.
 class Solver
 {
 public:
   virtual ~Solver() = default;
 
-  /// Back to rest at time 0 with all controls at zero.
+  /// Returns to rest at time 0 with all controls at zero.
   virtual void reset() = 0;
 
-  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step; activations and bone
-  /// poses go linearly (poses: rotation about the shortest axis) from where they are to `target` over that time.
-  /// Throws Error, with the state untouched, on a target that is not finite, out of 0..1 or of the wrong length; throws
-  /// Diverged, after which only reset() and restore() help.
+  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Activations and bone
+  /// poses change linearly (poses: rotation about the shortest axis) to `target` over that time. Throws Error, with the
+  /// state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after which
+  /// only reset() and restore() help.
   virtual void advance(double seconds, const Controls& target) = 0;
 
-  /// Throws Error where advance() would: a state that diverged, a bad duration or target.
+  /// Throws Error if advance() would: after divergence, or for an invalid duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;
 
-  /// Dynamic relaxation (Underwood 1983): controls go to `target` at once, and the motion is damped critically for the
-  /// lowest frequency that it shows. It ends when the motion that is left, estimated from speed, damping and lowest
-  /// frequency, stays within `tolerance` of the displacement (norms weighted by mass), or after `seconds` of
-  /// simulation. Viscous stresses are fully relaxed meanwhile. `go_on` is told how far it is; false ends it. Throws
-  /// Error as advance().
+  /// Dynamic relaxation (Underwood 1983): controls go to `target` at once, and damping is critical for the lowest
+  /// frequency of the motion. It ends when the remaining motion, estimated from speed, damping and lowest frequency, is
+  /// within `tolerance` of the displacement (mass-weighted norms), or after `seconds` of simulation. Viscous stresses
+  /// are fully relaxed meanwhile. `go_on` is called with the progress and stops it by returning false. Throws Error as
+  /// advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 
-  /// Saves what the motion depends on now in `to`, whose memory is used again if it holds a snapshot of this solver.
+  /// Saves the state of the motion in `to`, whose memory is reused if it holds a snapshot of this solver.
   virtual void save(std::unique_ptr<Snapshot>& to) = 0;
-  /// Back to a snapshot of this solver; from there the motion goes on with the same bits. Throws Error on a snapshot of
+  /// Restores a snapshot of this solver; the motion then continues with the same bits. Throws Error on a snapshot of
   /// another solver.
   virtual void restore(const Snapshot& snapshot) = 0;
-  /// The same as bytes, for a solver that another process makes of an equal model, on the same machine and with the
-  /// same settings. unpack() throws Error on what is no such motion, and leaves the state as it was.
+  /// The same as bytes, for a solver of an equal model in another process, on the same machine and with the same
+  /// settings. unpack() throws Error on anything else, and leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Number of steps that take about a hundred times as long as monitor() and save() do.
+  /// Number of steps that take about a hundred times as long as monitor() and save().
   virtual int steps_per_check() const = 0;
-  /// Steps take at most this share (0..1] of the safe time step from now on; 1 at first. Throws Error.
+  /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;
 
   virtual double time() const = 0;       ///< [s] since reset
-  virtual double time_step() const = 0;  ///< [s] the largest step that would be taken now
+  virtual double time_step() const = 0;  ///< largest step that the solver would take now [s]
   virtual const Controls& controls() const = 0;
-  /// Activation of each muscle now: what the controls ask for, after the muscles' rise and fall times.
+  /// Present activation of each muscle: that of the controls, delayed by the muscles' rise and fall times.
   virtual const std::vector<float>& activation() const = 0;
 
-  /// Those of the model's effects that run now. reset() leaves them as they are.
+  /// The effects of the model that are switched on. reset() does not change them.
   virtual EffectSet effects() const = 0;
-  /// An effect that is off takes no time and keeps its memory; one that comes back has forgotten its history (viscous
-  /// stresses, friction). Time step and ledger begin anew. Throws Error where the model does not have the effect, where
-  /// another needs it, or where it cannot be switched while running.
+  /// An effect that is off takes no time and keeps its memory. One that is switched on again has lost its history
+  /// (viscous stresses, friction). Time step and ledger start anew. Throws Error if the model does not have the effect,
+  /// if another effect needs it, or if it cannot be switched while running.
   virtual void switch_effect(Effect effect, bool on) = 0;
-  /// What the solver's arrays hold now, the model not counted.
+  /// Memory of the solver's arrays, without the model.
   virtual std::vector<Allocation> allocations() const = 0;
 
   virtual void skin(SkinState& out) = 0;
-  /// One number per vertex of the skin, from the voxels' centres through means at their nodes. Nothing is stored for it
-  /// until it is asked for first. Throws Error where the scene switched output fields off.
+  /// One number per vertex of the skin, from the centres of voxels by way of means at nodes. Memory is allocated on
+  /// first use. Throws Error if the scene switched output fields off.
   virtual void skin_field(SkinField field, std::vector<float>& out) = 0;
   virtual Monitor monitor() = 0;
-  /// Throws Error where SolverSettings::ledger was not asked for or the backend keeps none.
+  /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
   virtual Profile profile() const = 0;
 
@@ -139,7 +139,7 @@ public:
   virtual std::string description() const = 0;  ///< backend, instruction set or device, threads
 };
 
-/// Makes a solver; the model is kept alive by it. Throws Error where the backend is not available here.
+/// Makes a solver, which shares ownership of the model. Throws Error if the backend is not available.
 std::unique_ptr<Solver> make_solver(std::shared_ptr<const Model> model, const SolverSettings& settings = {});
 
 }  // namespace frontalis

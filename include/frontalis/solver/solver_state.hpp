@@ -11,18 +11,18 @@ namespace frontalis
 struct SkinState
 {
   std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<float, 3>> normals;  ///< unit length, outward, area-weighted mean of the triangles'
+  std::vector<std::array<float, 3>> normals;  ///< outward unit normals, area-weighted means over triangles
   std::vector<std::array<float, 3>> landmarks;
 };
 
-/// What can be shown on the skin of the tissue below it, one number per vertex; computed only when it is asked for.
+/// Quantities of the tissue below the skin, one number per vertex; computed only on request.
 enum class SkinField
 {
   strain,  ///< largest principal Green-Lagrange strain
-  stress   ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres; viscous stresses are left out
+  stress   ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres, without viscous stresses
 };
 
-/// Energies [J], summed in double, and the state of the worst voxel.
+/// Energies [J], summed in double precision, and the state of the worst voxel.
 struct Monitor
 {
   double kinetic = 0;
@@ -31,17 +31,17 @@ struct Monitor
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
   std::int64_t inverted = 0;         ///< voxels with J <= 0
-  double critical_time_step = 0;     ///< [s] now, bounded at nodes (physics/time_step.hpp)
-  std::int32_t stiffest_voxel = -1;  ///< of those at the node that sets it
-  double step_share = 0;             ///< latest time step over the critical one now, by the model's estimate
+  double critical_time_step = 0;     ///< present value, bounded at nodes [s] (physics/time_step.hpp)
+  std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
+  double step_share = 0;             ///< latest time step over the present critical step, by the model's estimate
   bool finite = true;
 };
 
-/// How a search for equilibrium ended.
+/// Result of a search for equilibrium.
 struct Equilibrium
 {
   bool reached = false;
-  double residual = 0;  ///< estimate of the motion that is left, over the displacement
+  double residual = 0;  ///< estimate of the remaining motion over the displacement
   double seconds = 0;   ///< simulated
 };
 

@@ -18,7 +18,7 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
 void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
-  // Of triangles with the same corners, those of one orientation cancel those of the other; one of the rest stays.
+  // Triangles with the same corners and opposite orientations cancel each other. One of those that remain is kept.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {

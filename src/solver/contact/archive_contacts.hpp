@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Entries with a SurfaceContact `contact`, but for the address of its surface: read back, contacts stay on the
-/// surfaces of those that are there. Throws Error where these are not as many.
+/// Writes or reads entries that have a SurfaceContact `contact`. Addresses of surfaces are not restored: contacts keep
+/// the surfaces that they have. Throws Error if the number of entries differs.
 template <class T>
 void archive_contacts(std::vector<T>& entries, ByteArchive& archive)
 {

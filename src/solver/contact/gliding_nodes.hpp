@@ -22,8 +22,8 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface follows a bone or has friction: one after the other, in double. A node's contact lives
-/// in the frame of the bone.
+/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision. A node's
+/// contact is stored in the frame of the bone.
 template <class Real>
 class GlidingNodes
 {
@@ -31,28 +31,28 @@ public:
   struct Node
   {
     std::int32_t node;
-    std::int32_t bone;  // -1: still
+    std::int32_t bone;  // -1: the surface is fixed
     double friction;
     SurfaceContact::Point rest;
     SurfaceContact contact;
     ContactPlane plane;
     SurfaceContact::Point reference;  // where the plane was found
-    double pressing;                  // reaction over mass, with the delay of friction [m/s2]
-    // in the latest step
-    SurfaceContact::Point normal;            // outwards
+    double pressing;                  // reaction per mass, delayed as friction needs it [m/s2]
+    // values of the latest step
+    SurfaceContact::Point normal;            // outward unit normal
     SurfaceContact::Point surface_velocity;  // [m/s]
   };
 
   void add(Node node) { nodes_.push_back(std::move(node)); }
   void reset();
-  /// Whether there is friction.
+  /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_allocations(AllocationList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   bool empty() const { return nodes_.empty(); }
   void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }
-  /// Those in [first, last), by node; they were added in the order of their nodes.
+  /// Nodes whose index lies in [first, last). They are stored in the order of their nodes.
   std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
-  /// As RestrictedNodes::friction_loss.
+  /// See RestrictedNodes::friction_loss.
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const;
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step);

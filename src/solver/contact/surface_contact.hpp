@@ -5,23 +5,23 @@
 namespace frontalis
 {
 
-/// Tangent plane of the surface's offset surface, which stands for it nearby: normal . p = height.
+/// Tangent plane of the surface's offset surface, which replaces that surface nearby: normal . p = height.
 struct ContactPlane
 {
   SurfaceTree::Point normal{ 0, 0, 0 };
   double height = 0;
-  double slip = 0;   ///< how far a point may move before the plane errs by more than SurfaceContact::plane_error [m]
-  double limit = 0;  ///< or, where it is known, by more than SurfaceContact::late_error [m]
+  double slip = 0;   ///< distance within which the plane's error stays below SurfaceContact::plane_error [m]
+  double limit = 0;  ///< distance within which it stays below SurfaceContact::late_error [m], if computed
 };
 
-/// Who looks for a plane: one thread. On a GPU the lanes of a warp do it together (cuda/warp_search.cuh).
+/// A plane is searched for by one thread, or on a GPU by the lanes of a warp together (cuda/warp_search.cuh).
 struct OneThread
 {
   static constexpr int size = 1;
   static FRONTALIS_LAW int rank() { return 0; }
-  /// Over the team; all of it calls this and the others.
+  /// The least value in the team. All threads of the team call this and the following functions.
   static FRONTALIS_LAW double least(double x) { return x; }
-  /// What the first of those has whose key is least.
+  /// The value of the first thread with the least key.
   template <class T>
   static FRONTALIS_LAW const T& of_least(double, const T& value)
   {
@@ -33,27 +33,26 @@ struct OneThread
   }
 };
 
-/// One node on a surface, on the sheet of it that it met first: walls that face it from across are left alone, such as
-/// the inner table of a thin bone for a node in its outer one. Knows the triangles around it, so that most of its exact
-/// closest points need no search. Runs on host and GPU.
+/// A node's contact with a surface. The node stays on the sheet of the surface that it met first: triangles that face
+/// it from the opposite side are ignored, such as the inner table of a thin bone for a node on its outer table. The
+/// contact remembers the triangles around the node, so that most closest points need no search. Runs on host and GPU.
 class SurfaceContact
 {
 public:
   using Point = SurfaceTree::Point;
 
-  /// Error of the plane from which another is wanted [m]. It sets off vibrations, each time: with 9e-6, a motion with a
-  /// time step that is 1 % shorter ended four times farther away.
+  /// Error of the plane at which a new one is requested [m]: small, because each change of plane excites vibrations.
   static constexpr double plane_error = 0.5e-6;
-  /// Its largest error where planes are found beside the steps, and may come late [m].
+  /// Largest error of planes that are found beside the steps and may therefore come late [m].
   static constexpr double late_error = 1e-6;
-  static constexpr double longest_slip = 0.4e-3;  ///< [m]
+  static constexpr double longest_slip = 0.4e-3;  ///< largest ContactPlane::slip [m]
 
   SurfaceContact() = default;
-  /// `distance` is the one to keep [m], signed.
+  /// `distance`: signed distance to keep [m].
   SurfaceContact(const SurfaceSearch& surface, double distance) : surface_(surface), distance_(distance) {}
   SurfaceContact(const SurfaceTree& tree, double distance) : SurfaceContact(tree.search(), distance) {}
 
-  /// Plane through the exact closest point to p; with its limit, where it may be renewed late.
+  /// Returns the plane through the closest point to `p`. `Late`: computes its limit too.
   template <bool Late = false, class Team = OneThread>
   FRONTALIS_LAW ContactPlane renew(const Point& p);
   FRONTALIS_LAW void forget()
@@ -63,31 +62,31 @@ public:
     turned_ = false;
   }
 
-  /// Takes the other's surface.
+  /// Takes over the surface of another contact.
   FRONTALIS_LAW void stay_on(const SurfaceContact& other) { surface_ = other.surface_; }
 
 private:
   using N = physics::Number<double>;
   using Triangle = SurfaceSearch::Triangle;
 
-  static constexpr double apart = 36e-6;  // from here on a distance keeps its sign
+  static constexpr double apart = 36e-6;  // distances above this keep their sign [m]
 
   static constexpr double nowhere = 1e300;
 
   struct Sight
   {
     const SurfaceSearch::Triangle* triangle;
-    Point foot;       // its closest point
-    double distance;  // to that [m]
+    Point foot;       // closest point of the triangle
+    double distance;  // distance to it [m]
   };
-  // the triangles listed, as far as they matter
+  // The listed triangles that are near enough to matter.
   template <class Team>
   struct Surroundings
   {
     int count = 0;
-    Sight seen[(NearTriangles::capacity + Team::size - 1) / Team::size];  // by one of the team
-    Sight closest;                                                        // by the whole team; nowhere: none
-    double outside = 0;  // all triangles that nobody saw are at least so far [m]
+    Sight seen[(NearTriangles::capacity + Team::size - 1) / Team::size];  // by one thread of the team
+    Sight closest;       // by the whole team; at infinity if there is none
+    double outside = 0;  // lower bound of the distance to all other triangles [m]
 
     FRONTALIS_LAW bool empty() const { return closest.distance >= nowhere; }
   };
@@ -102,12 +101,12 @@ private:
 
   SurfaceSearch surface_{ nullptr, nullptr, 0 };
   double distance_ = 0;
-  Point up_{ 0, 0, 0 };  // unit vector from the latest foot; zero: there is none
-  bool turned_ = false;  // has gone round the rim of an open surface
+  Point up_{ 0, 0, 0 };  // unit vector from the latest foot; zero if there is none
+  bool turned_ = false;  // has passed around the rim of an open surface
   NearTriangles near_;
 };
 
-// from a point of a triangle to the nearest of its edges
+// Distance from a point of a triangle to its nearest edge.
 FRONTALIS_LAW double SurfaceContact::to_boundary(const Triangle& triangle, const Point& at)
 {
   double shortest = 1e300;
@@ -139,7 +138,7 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings<Team>& s) c
     const auto& corner = seen.triangle->corner;
     seen.foot = closest_point(p, corner[0], corner[1], corner[2]);
     seen.distance = norm(p - seen.foot);
-    // another sheet, across from this one
+    // another sheet, on the opposite side
     if (seen.distance > apart && dot(p - seen.foot, up_) < -0.5 * seen.distance)
       continue;
     if (seen.distance < s.closest.distance)
@@ -150,21 +149,22 @@ FRONTALIS_LAW void SurfaceContact::look(const Point& p, Surroundings<Team>& s) c
   s.outside = Team::least(s.outside);
 }
 
-// Within slip of p, on the plane at height d over the tangent plane at p's foot, distance must stay within e of d. Two
-// arguments, each of which holds by itself; the larger slip counts. D is how far a triangle is from p, gap = D - d.
-// - By distances, for a point apart from the surface. A triangle comes no nearer than d - e if it rises no more than e
-//   above the tangent plane; if slip is at most gap + e; and, distance to it being convex, if its linearisation does
-//   not. And some of the surface is within d + e: the foot's own triangle, and a circle beyond its edge.
-// - By the gradient, which is a mean of the normals of the faces around the foot: those within e / slip of the plane's
-//   normal do no harm, nor do faces that no foot reaches. A foot is within d + e, so its face has gap - e <= slip; and
-//   sideways it is within slip + r, where r^2 = (d + e)^2 - (d - rise)^2. At a rim the gradient is free.
+// Within slip of p, on the plane at distance d from the surface, the distance must stay within e of d. There are two
+// sufficient conditions, and the larger slip counts. D is the distance of a triangle from p, gap = D - d.
+// - By distances, if the point is apart from the surface. A triangle stays farther than d - e if it rises at most e
+//   above the tangent plane, if slip is at most gap + e, or if its linearised distance does, since distance is convex.
+//   Some of the surface is within d + e: the triangle of the foot, and a circle beyond its edge.
+// - By the gradient, which is a mean of the normals of the faces around the foot. Normals within e / slip of the
+//   plane's normal are harmless, and so are faces that no foot reaches. A foot is within d + e, so its face has
+//   gap - e <= slip; its lateral distance is at most slip + r, with r^2 = (d + e)^2 - (d - rise)^2. At a rim the
+//   gradient is unrestricted.
 template <class Team>
 FRONTALIS_LAW double SurfaceContact::slip(const Point& p, const Surroundings<Team>& s, const Point& normal,
                                           double error, double e) const
 {
   const Point& foot = s.closest.foot;
   const double d = s.closest.distance;
-  // towards the node
+  // normal towards the node
   const Point up = dot(p - foot, normal) < 0 ? -1.0 * normal : normal;
   const double gap_outside = s.outside - d - 2 * error;
   double by_gradient = gap_outside - e, by_distance = 0;
@@ -203,7 +203,7 @@ FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
   const bool first = dot(up_, up_) == 0;
   Surroundings<Team> s;
   look(p, s);
-  // anew where another might be closer, and where so little is left of the list that it allows no slip
+  // Searches again if another triangle might be closer, or if the list covers too small a range to allow any slip.
   if (s.empty() || s.outside - s.closest.distance < 0.2 * (near_.beyond - near_.distance[0]))
   {
     Team::near(surface_, p, near_);
@@ -214,7 +214,7 @@ FRONTALIS_LAW ContactPlane SurfaceContact::renew(const Point& p)
     up_ = { 0, 0, 0 };
     look(p, s);
   }
-  // a surface without triangles holds nothing
+  // a surface without triangles restricts nothing
   if (s.empty())
     return {};
   SurfaceSearch::Closest closest{};

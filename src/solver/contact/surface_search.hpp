@@ -10,21 +10,21 @@ namespace frontalis
 /// The triangles of a surface nearest to a point, nearest first.
 struct NearTriangles
 {
-  /// As distances are kept: a quarter less memory a contact, and still a lower bound.
+  /// Rounds a distance down to float, so that it stays a lower bound and a contact takes a quarter less memory.
   static FRONTALIS_LAW float kept(double distance) { return static_cast<float>(distance * (1 - 1e-7)); }
 
   static constexpr int capacity = 24;
-  static constexpr double reach = 2e-3;  ///< none is listed that is so much farther than the nearest [m]
+  static constexpr double reach = 2e-3;  ///< triangles farther than the nearest by more than this are not listed [m]
 
-  physics::Vec3<double> at{ 0, 0, 0 };  ///< the point
-  double beyond = -1;                   ///< triangles that are not listed are at least so far from it [m]
+  physics::Vec3<double> at{ 0, 0, 0 };  ///< the point of the search
+  double beyond = -1;                   ///< lower bound of the distance of unlisted triangles [m]
   int count = 0;
   std::int32_t triangle[capacity] = {};  ///< into SurfaceSearch::triangles
-  float distance[capacity] = {};         ///< at least [m]
+  float distance[capacity] = {};         ///< lower bounds [m]
 };
 
-/// Exact closest points over the arrays of a SurfaceTree, with the pseudonormal of the face, edge or corner found
-/// (Baerentzen & Aanaes 2005), which tells the side. Plain pointers: the same search runs on host and GPU.
+/// Exact closest points on a SurfaceTree, with the pseudonormal of the nearest face, edge or corner, which tells the
+/// side (Baerentzen & Aanaes 2005). Plain pointers, so that the same search runs on host and GPU.
 struct SurfaceSearch
 {
   using Point = physics::Vec3<double>;
@@ -33,25 +33,25 @@ struct SurfaceSearch
   {
     float lower[3];
     float upper[3];
-    std::int32_t first = 0;  ///< inner: right child (the left one follows); leaf: first triangle
-    std::int32_t count = 0;  ///< triangles of a leaf; 0: inner
+    std::int32_t first = 0;  ///< inner node: right child (the left one follows); leaf: first triangle
+    std::int32_t count = 0;  ///< triangles of a leaf; 0 for an inner node
   };
   struct Triangle
   {
     Point corner[3];
     Point face_normal;
     Point edge_normal[3];    ///< of edges 01, 12, 20
-    Point vertex_normal[3];  ///< angle-weighted
-    std::int32_t rim;        ///< bit c: edge from corner c to the next has no other triangle; bit 3 + c: corner of such
-    std::int32_t index;      ///< in the mesh
+    Point vertex_normal[3];  ///< weighted by angle
+    std::int32_t rim;        ///< bit c: the edge from corner c to the next is on the rim; bit 3 + c: corner c is
+    std::int32_t index;      ///< index in the mesh
   };
   struct Closest
   {
     Point point;
-    Point normal;  ///< unit pseudonormal there
+    Point normal;  ///< unit pseudonormal at the closest point
     double squared_distance;
     std::int32_t triangle;
-    bool rim;  ///< on the rim of an open surface
+    bool rim;  ///< whether it is on the rim of an open surface
   };
 
   const Box* boxes;
@@ -71,13 +71,13 @@ struct SurfaceSearch
     return sum;
   }
 
-  /// Fills in what the triangle knows of its closest point.
+  /// Completes a closest point with the data of its triangle.
   static FRONTALIS_LAW void describe(const Triangle& triangle, Closest& closest)
   {
     closest.triangle = triangle.index;
     closest.rim = false;
     closest.normal = triangle.face_normal;
-    // barycentric coordinates say whether the point lies on the face, an edge or a corner
+    // barycentric coordinates tell whether the point is on the face, an edge or a corner
     const Point& a = triangle.corner[0];
     const Point ab = triangle.corner[1] - a, ac = triangle.corner[2] - a, ap = closest.point - a;
     const double d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
@@ -101,8 +101,9 @@ struct SurfaceSearch
       }
   }
 
-  /// Unit normal of the offset surface at p, outwards: signed distance grows along it. At the rim of an open surface
-  /// distance has no sign of its own and takes that of `kept`; `turned` remembers that p has gone round the rim.
+  /// Outward unit normal of the offset surface at p, along which the signed distance grows. At the rim of an open
+  /// surface distance has no sign of its own and takes that of `kept`; `turned` stores that p has passed around the
+  /// rim.
   static FRONTALIS_LAW Point offset_normal(const Closest& closest, const Point& p, double kept, bool& turned)
   {
     const double distance = physics::Number<double>::sqrt(closest.squared_distance);
@@ -120,7 +121,7 @@ struct SurfaceSearch
     return (inside ? -1 / distance : 1 / distance) * away;
   }
 
-  /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
+  /// Closest point of the surface to p, at most `within` [m] away; triangle -1 if there is none.
   FRONTALIS_LAW Closest closest(const Point& p, double within) const
   {
     Closest best{ { 0, 0, 0 }, { 0, 0, 0 }, within * within, -1, false };
@@ -161,7 +162,7 @@ struct SurfaceSearch
     return best;
   }
 
-  /// The triangles nearest to p.
+  /// Lists the triangles nearest to p.
   FRONTALIS_LAW void near(const Point& p, NearTriangles& out) const
   {
     out.at = p;

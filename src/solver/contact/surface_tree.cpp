@@ -75,7 +75,7 @@ SurfaceTree::SurfaceTree(const TriangleMesh& mesh)
       triangles_[t].edge_normal[c] = unit(edge.normal);
       triangles_[t].rim |= (edge.triangles == 1 ? 1 << c : 0) | (on_rim[corner[c]] ? 8 << c : 0);
     }
-  // triangles without area have nothing that their neighbours do not have
+  // triangles without area are covered by their neighbours
   triangles_.erase(std::remove_if(triangles_.begin(), triangles_.end(),
                                   [](const Triangle& t) { return !(dot(t.face_normal, t.face_normal) > 0); }),
                    triangles_.end());

@@ -9,8 +9,8 @@
 namespace frontalis
 {
 
-/// Bounding-box tree over a triangle mesh for exact closest points, with the pseudonormal of the face, edge or corner
-/// found (Baerentzen & Aanaes 2005), which tells the side. Read-only after construction.
+/// Bounding-box tree of a triangle mesh for exact closest points, with the pseudonormal of the nearest face, edge or
+/// corner, which tells the side (Baerentzen & Aanaes 2005). Read-only after construction.
 class SurfaceTree
 {
 public:
@@ -19,7 +19,7 @@ public:
 
   explicit SurfaceTree(const TriangleMesh& mesh);
 
-  /// Closest point of the surface to p; looks no farther than `within` [m] (triangle -1 where nothing is that near).
+  /// Closest point of the surface to p, at most `within` [m] away; triangle -1 if there is none.
   Closest closest(const Point& p, double within) const { return search().closest(p, within); }
 
   void near(const Point& p, NearTriangles& out) const { search().near(p, out); }

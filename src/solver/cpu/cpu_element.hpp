@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// What gives a voxel its stiffness against other motions than constant strain.
+/// What gives a voxel stiffness against deformations other than constant strain.
 enum class Stabilisation
 {
   scalar,
@@ -17,9 +17,9 @@ enum class Stabilisation
   selective_reduced
 };
 
-/// Forces of the voxels of a tile, one SIMD batch of them at a time. The recipe is in physics/element/; here is where
-/// the data of a batch lies. The architecture is in the type, so that translation units of different instruction sets
-/// share no instantiation.
+/// Forces of the voxels of a tile, one SIMD batch at a time. The mechanics are in physics/element/; this class provides
+/// the data of a batch. The architecture is a template parameter, so that translation units of different instruction
+/// sets share no instantiation.
 template <class Architecture, class Real>
 struct CpuElement
 {
@@ -34,17 +34,17 @@ struct CpuElement
   static constexpr int lanes = Lane::count;
   static_assert(Tile::width % lanes == 0, "a tile is a whole number of batches");
 
-  /// A batch of voxels as physics/element/ reads it. What few tiles have is not inlined, so that the registers of the
-  /// others are not spilled for it.
+  /// A batch of voxels in the form that physics/element/ reads. Functions for rare kinds of voxel are not inlined, so
+  /// that the others need not spill registers for them.
   struct Voxels
   {
     const Arguments& g;
     const Tile* tile;
     std::int32_t index;  ///< of the tile
     int offset;          ///< first lane
-    bool owned;          ///< false in the plane that a slab computes for its neighbour's sake
-    bool look;           ///< stiffness bounds wanted
-    double* work;        ///< sum of the work of fibres [J], where the ledger wants it
+    bool owned;          ///< false for the plane that a slab computes only for its upper nodes
+    bool look;           ///< whether stiffness bounds are computed
+    double* work;        ///< sum of the work of fibres [J]; null without a ledger
 
     FRONTALIS_LAW Batch load(const float* lane_values) const { return Lane::load(lane_values + offset); }
     FRONTALIS_LAW const Real* scale() const { return g.scale; }
@@ -119,7 +119,7 @@ struct CpuElement
       if (g.fibre_memory != nullptr && owned)
         add_fibre_work(k);
     }
-    // work of the fibres since the last look
+    // Adds the work of the fibres since the last call.
     __attribute__((noinline)) void add_fibre_work(const Kinematics& k) const
     {
       for (auto s = tile->fibre_begin; s < tile->fibre_end; ++s)
@@ -175,13 +175,13 @@ struct CpuElement
     }
   };
 
-  /// The same where the stabilisation is known when this is compiled.
+  /// The same with a stabilisation known at compile time.
   template <Stabilisation Form>
   struct VoxelsOf : Voxels
   {
     static constexpr bool assumed_strain() { return Form == Stabilisation::assumed_strain; }
     static constexpr bool selective_reduced() { return Form == Stabilisation::selective_reduced; }
-    FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // in add_forces()
+    FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // added in add_forces()
   };
 
   /// Calls visit() with the batches of a plane's tiles that hold voxels, as Voxels or VoxelsOf.
@@ -195,7 +195,7 @@ struct CpuElement
           visit(Batches{ g, g.tiles + t, t, offset, owned, look, work });
   }
 
-  /// Transformed displacements of the corners, from displacements u.
+  /// Loads the displacements of the corners and transforms them.
   template <class Number>
   static FRONTALIS_LAW void load_modes(const Voxels& at, Number* const (&u)[3], Batch (&mode)[3][8])
   {
@@ -221,12 +221,11 @@ struct CpuElement
     return physics::kinematics(mode[0], mode[1], mode[2], at.g.scale);
   }
 
-  /// Viscous stresses relax towards those at the present displacements. `work`: of the plane, or null; see
-  /// CpuKernelArguments::viscous_work.
+  /// Relaxes viscous stresses to the present displacements. `work`: see CpuKernelArguments::viscous_work; may be null.
   static __attribute__((noinline)) void relax(const Voxels& at, double* work)
   {
     const Kinematics k = kinematics(at, at.g.u);
-    // the other buffer holds where the step began
+    // the other buffer holds the displacements before the step
     const Kinematics k_before = work == nullptr ? k : kinematics(at, at.g.next);
     physics::relax_voxel(at, Batch(at.g.viscous_elapsed), k,
                          [&](const Relaxed& before, const Relaxed& after)
@@ -238,7 +237,7 @@ struct CpuElement
                          });
   }
 
-  /// Sum of a batch, in double, lane after lane.
+  /// Sum of a batch in double precision, in the order of its lanes.
   static double sum(const Batch& x)
   {
     alignas(64) Real lane_values[lanes];
@@ -249,8 +248,7 @@ struct CpuElement
     return result;
   }
 
-  /// Forces of the voxels, and where they are wanted the bounds of their stiffness, added to the plane buffers below
-  /// and above.
+  /// Adds the forces of the voxels, and their stiffness bounds if requested, to the plane buffers below and above.
   template <Stabilisation Form>
   static FRONTALIS_LAW void add_forces(const VoxelsOf<Form>& at, Real* below, Real* above, const std::int32_t* base)
   {
@@ -270,7 +268,7 @@ struct CpuElement
       }
     for (int c = 0; c < 3; ++c)
     {
-      // one component after the other, so that it stays in registers
+      // one component after the other, so that each stays in registers
       if (Form == Stabilisation::scalar)
         physics::scalar_hourglass(hourglass, mode[c]);
       physics::stress_forces(at, P, c, mode[c]);

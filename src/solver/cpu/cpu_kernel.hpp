@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Stretch and stress of the fibres of a tile when their work was computed last, for the energy ledger.
+/// Stretch and stress of a tile's fibres at the latest computation of their work, for the energy ledger.
 struct FibreMemory
 {
   float squared[Tile::width];  ///< stretch squared
@@ -23,55 +23,55 @@ struct CpuKernelArguments : physics::Kick<Real>
   const Real* u[3];           ///< displacements [m]; readable Tile::width numbers past the end
   Real* next[3];              ///< displacements after the step [m]
   Real* v[3];                 ///< velocities [m/s]
-  Real* rounding[3];          ///< rounding errors of the displacements [m]; null: not kept
+  Real* rounding[3];          ///< rounding errors of the displacements [m]; null without compensated precision
   const float* inverse_mass;  ///< [1/kg]
-  const float* mobility;      ///< the same, 0 where a node is held [1/kg]
+  const float* mobility;      ///< inverse mass, 0 for held nodes [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;
   std::int32_t planes;
   const TileStiffness* stiffness;
-  const TileStabilisation* stabilisation;  ///< null: scalar hourglass control alone
+  const TileStabilisation* stabilisation;  ///< null: scalar hourglass control
   bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
-  const FibreSlot* fibres;                 ///< null: fibres have no stress
+  const FibreSlot* fibres;                 ///< null: fibres are switched off
   const LawSlot* laws;
   const ViscousSlot* viscous;
   float* relaxed;  ///< relaxed stress times volume [N m], relaxed_tensors() * 6 * Tile::width per ViscousSlot
-  std::int32_t viscous_terms;  ///< 0: none, or viscosity is switched off
-  Real viscous_elapsed;        ///< [s] since the relaxed stresses were renewed last
-  double* viscous_work;        ///< two per plane: sums of the change of H : E, and of H : E; null: not wanted
+  std::int32_t viscous_terms;  ///< 0: no viscosity, or switched off
+  Real viscous_elapsed;        ///< time since the latest relaxation [s]
+  double* viscous_work;        ///< two per plane: change of H : E, and H : E; null: not needed
   const float* activation;     ///< one per muscle
   const float* with_length;    ///< one per muscle: 1 or 0
   const float* with_passive;   ///< one per muscle: 1 or 0
   FibreMemory* fibre_memory;   ///< one per FibreSlot; null: no ledger
-  double* muscle_work;         ///< one per plane [J]; null: only fibre_memory is renewed
+  double* muscle_work;         ///< one per plane [J]; null: only fibre_memory is updated
   Real scale[3];               ///< 1 / (4 h)
   Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
   Real stretch_half_sum;       ///< half of that sum [1/m2]
   Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
   Real dt;
-  Real kick;                   ///< for how long forces change velocities: dt, except in the first step of a plan [s]
+  Real kick;                   ///< time over which forces change velocities: dt, except in a plan's first step [s]
   std::int32_t buffer_stride;  ///< numbers per component of a plane buffer
 };
 
 enum class KernelTask
 {
   step,           ///< updates v and next
-  step_and_look,  ///< the same, and the bound of the highest frequency squared now
-  forces,         ///< internal forces into next, nothing updated
-  relax           ///< viscous stresses relax, nothing else
+  step_and_look,  ///< the same, and computes the squared frequency bound
+  forces,         ///< writes internal forces to `next`, updates nothing
+  relax           ///< relaxes viscous stresses only
 };
 
-/// Steps the nodes of planes [first, last); buffer has 8 * buffer_stride numbers. Returns the bound of the highest
-/// frequency squared [1/s2] that these nodes allow (step_and_look), NaN where motion is not finite.
+/// Steps the nodes of planes [first, last). `buffer` has 8 * buffer_stride numbers. Returns the bound of the squared
+/// highest frequency [1/s2] at these nodes (step_and_look), or NaN if the motion is not finite.
 template <class Real>
 using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32_t first, std::int32_t last,
                            Real* buffer, KernelTask task);
 
 struct PlaneMonitor;
 
-/// Energies and worst voxels of the voxel planes [first, last) at g.u, one per plane, and the stiffness bound of each
-/// voxel [N/m].
+/// Computes energies and the worst voxel of voxel planes [first, last) at g.u, one entry per plane, and the stiffness
+/// bound of each voxel [N/m].
 using CpuMonitorKernel = void (*)(const CpuKernelArguments<double>& g, std::int32_t first, std::int32_t last,
                                   PlaneMonitor* planes, double* stiffness);
 
@@ -84,8 +84,8 @@ struct CpuKernelChoice
   const char* name;
 };
 
-/// The kernels for the widest instruction set that this machine has; FRONTALIS_INSTRUCTION_SET (baseline, avx2, avx512)
-/// in the environment asks for another. Throws Error if it is not there.
+/// Returns the kernels for the widest instruction set of this machine. The environment variable
+/// FRONTALIS_INSTRUCTION_SET (baseline, avx2, avx512) selects another. Throws Error if the machine does not have it.
 CpuKernelChoice choose_cpu_kernel();
 
 }  // namespace frontalis

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Goes through the planes of a slab: forces of a plane of voxels go to two planes of nodes, the lower of which is then
-/// complete and stepped.
+/// Steps a slab plane by plane. Each plane of voxels completes the forces of its lower plane of nodes, which then
+/// moves.
 template <class Architecture, class Real>
 struct CpuKernelBody
 {
@@ -28,12 +28,12 @@ struct CpuKernelBody
       g.muscle_work[plane] += work;
   }
 
-  /// Bound of the highest frequency squared at the nodes of a plane. stiffness: sums of their voxels'.
+  /// Bound of the squared highest frequency at the nodes of a plane. `stiffness`: sums over their voxels.
   static Real plane_frequency(const Arguments& g, std::int32_t plane, const Real* stiffness)
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // one maximum per lane, so that the loop is vectorised; a NaN shows in the sums of differences
+    // One maximum per lane, so that the loop is vectorised. The sums of differences show a NaN.
     Real most[lanes] = {}, odd[lanes] = {};
     const auto take = [&](std::int32_t n, int lane)
     {
@@ -72,7 +72,7 @@ struct CpuKernelBody
         v[n] = velocity;
         if (Compensated)
         {
-          // Kahan's summation: what the last sum lost is added first
+          // Kahan summation: the rounding error of the last sum is subtracted first.
           const Real step = g.dt * velocity - rounding[n];
           const Real sum = u[n] + step;
           rounding[n] = (sum - u[n]) - step;
@@ -99,7 +99,7 @@ struct CpuKernelBody
     const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
-    // voxel plane k is between node planes k and k + 1; the one below the first is computed for its upper nodes alone
+    // Voxel plane k lies between node planes k and k + 1. The plane below the first serves only its upper nodes.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
       clear(above, used);

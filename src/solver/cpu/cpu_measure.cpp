@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-// threads take their slabs, planes are added up in their order
+// Threads process their slabs, and planes are added up in order.
 template <class Real>
 Monitor CpuSolver<Real>::monitor()
 {
@@ -34,7 +34,7 @@ Monitor CpuSolver<Real>::monitor()
   std::vector<PlaneMonitor> planes(static_cast<std::size_t>(rows_.planes));
   std::vector<StepBound> bounds(slab_.size() - 1);
   std::vector<double> stiffness(model_->voxels.size());
-  // of voxel plane k; there is none above the last plane of nodes
+  // first voxel of plane k; there are no voxels above the last plane of nodes
   const auto first_voxel = [&](std::int32_t k)
   {
     const auto tile = rows_.plane_tiles[std::clamp(k, 0, rows_.planes - 1)];
@@ -60,7 +60,7 @@ Monitor CpuSolver<Real>::monitor()
         const std::int32_t first = slab_[t], last = slab_[t + 1];
         choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
         team_.barrier();
-        // displacements have been read: their place takes the sums
+        // the displacements are no longer needed, so their memory takes the sums
         bounds[t] =
             bound_of_nodes(discretisation_, *model_, stiffness.data(), { first_voxel(first - 1), first_voxel(last) },
                            { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());

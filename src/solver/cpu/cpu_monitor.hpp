@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel of each plane, in double: differences of nearly equal numbers are in them.
+/// Energies and the worst voxel of each plane, in double precision because nearly equal numbers are subtracted.
 template <class Architecture>
 struct CpuMonitor
 {
@@ -37,7 +37,7 @@ struct CpuMonitor
     }
   }
 
-  /// Planes of voxels [first, last); `planes`: one per plane; stiffness: bound of each voxel [N/m].
+  /// Processes voxel planes [first, last). `planes`: one entry per plane. `stiffness`: bound of each voxel [N/m].
   static void run(const Arguments& g, std::int32_t first, std::int32_t last, PlaneMonitor* planes, double* stiffness)
   {
     for (auto k = first; k < last; ++k)

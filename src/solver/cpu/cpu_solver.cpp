@@ -103,7 +103,7 @@ void CpuSolver<Real>::list_allocations(AllocationList& list) const
     account_->list_allocations(list);
 }
 
-// slabs of about equal numbers of tiles
+// Divides the planes into slabs with about equal numbers of tiles.
 template <class Real>
 void CpuSolver<Real>::share_planes(const std::vector<std::int32_t>& plane_tiles)
 {

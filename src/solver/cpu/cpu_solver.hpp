@@ -13,13 +13,14 @@
 namespace frontalis
 {
 
-/// SIMD, all cores, in float or double. Threads own slabs of node planes and compute the voxel plane below their slab
-/// again, so that every node's force is added up in the same order whatever the number of threads.
+/// The CPU backend: SIMD on all cores, in single or double precision. Threads own slabs of node planes. Each also
+/// computes the voxel plane below its slab, so that the force on a node is summed in the same order for any number of
+/// threads.
 template <class Real>
 class CpuSolver : public StepBackend
 {
 public:
-  /// `remark` is added to its description.
+  /// `remark` is appended to the solver's description.
   CpuSolver(const BackendInput& input, const std::string& remark);
 
   BackendTraits traits() const override;
@@ -68,8 +69,8 @@ private:
   std::string remark_;
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;
-  std::array<std::vector<double>, 3> wide_;  // displacements for the monitor; empty until it is asked for
-  Components moved_;                         // displacements that are not the state's; likewise
+  std::array<std::vector<double>, 3> wide_;  // displacements for the monitor; empty until first use
+  Components moved_;                         // displacements other than the state's; empty until first use
 };
 
 }  // namespace frontalis

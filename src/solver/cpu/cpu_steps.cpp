@@ -87,7 +87,7 @@ Work CpuSolver<Real>::work(bool open)
 {
   if (open)
     account_->open();
-  // fibres note what they did in the latest step; where the account is opened, their present stress and stretch alone
+  // Fibres store their work in the latest step. When the account is opened they store only stress and stretch.
   Arguments g = arguments(0, conditions_.activation.data());
   if (open)
     g.muscle_work = nullptr;
@@ -97,7 +97,7 @@ Work CpuSolver<Real>::work(bool open)
   return account_->work();
 }
 
-// the update is linear in the force: loads are added after it
+// The update is linear in the force, so loads may be added after it.
 template <class Real>
 void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arguments& g)
 {
@@ -112,7 +112,7 @@ void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arg
     }
 }
 
-// the work of a step in a thread's planes
+// Accounts for the work of a step in a thread's planes.
 template <class Real>
 void CpuSolver<Real>::account(int thread, const Arguments& g)
 {

@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// While it lives, this thread's arithmetic takes numbers too small for full precision as zero: motion that dies away
-/// would otherwise slow every operation down many times over.
+/// During its lifetime, this thread's arithmetic treats denormal numbers as zero. A decaying motion would otherwise
+/// produce them, and each operation on them is many times slower.
 class FlushDenormals
 {
 public:

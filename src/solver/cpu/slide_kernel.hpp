@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes and the tangent planes normal . u = offset of those that slide. The others have a
-/// normal of 0 and an infinite slip.
+/// Up to `width` neighbouring nodes and the planes normal . u = offset of those that slide; zero normals for the
+/// others.
 template <class Real>
 struct SlidingBlock
 {
@@ -14,20 +14,20 @@ struct SlidingBlock
 
   Real normal[3][width];
   Real offset[width];
-  Real reference[3][width];  ///< displacement at the latest exact closest point
-  Real slip_squared[width];  ///< squared distance over which the plane is valid; < 0: there is no plane yet
+  Real reference[3][width];  ///< displacement at the latest closest point
+  Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: no plane yet
 };
 
-/// Puts the sliding nodes of blocks [first, last) back to their planes. Plain pointers, as for CpuKernel.
+/// Moves the sliding nodes of blocks [first, last) back onto their planes. Plain pointers, as for CpuKernel.
 template <class Real>
 struct SlideArguments
 {
   SlidingBlock<Real>* blocks;
-  const std::int32_t* node;   ///< first node of a block
-  const std::int32_t* count;  ///< nodes of a block
+  const std::int32_t* node;   ///< first node of each block
+  const std::int32_t* count;  ///< nodes in each block
   Real* u[3];
   Real* v[3];
-  /// Finds the plane of one node of a block anew, at displacement u; turns its velocity with the plane.
+  /// Finds a new plane for a node of a block at displacement u, and turns its velocity with the plane.
   void (*renew)(void* context, std::int32_t block, int lane, const Real u[3], Real v[3]);
   void* context;
 };

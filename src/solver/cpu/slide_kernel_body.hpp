@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-// the architecture is in every type, so that translation units of different instruction sets share no instantiation
+// The architecture is part of every type, so that instruction sets share no template instantiation.
 template <class Architecture>
 struct SlideKernelBody
 {
@@ -72,7 +72,7 @@ struct SlideKernelBody
         slide(g, block, u, v);
         continue;
       }
-      // the nodes that follow belong to another thread
+      // the next nodes belong to another thread, so the block is copied
       float copy[6][Block::width] = {};
       float* const u_copy[3] = { copy[0], copy[1], copy[2] };
       float* const v_copy[3] = { copy[3], copy[4], copy[5] };

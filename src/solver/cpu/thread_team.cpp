@@ -15,8 +15,8 @@ namespace frontalis
 namespace
 {
 
-constexpr int spins_before_yield = 4000;  // threads with equal work meet within them, without a call of the kernel
-constexpr int most_threads = 1024;        // refuses typing errors
+constexpr int spins_before_yield = 4000;  // polls within which threads of equal work meet, without a system call
+constexpr int most_threads = 1024;        // upper limit, to reject typing errors
 
 void relax()
 {

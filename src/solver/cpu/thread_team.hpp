@@ -10,21 +10,20 @@
 namespace frontalis
 {
 
-/// Threads that run one task together, with a barrier that is cheap enough to be used in every step: it spins
-/// briefly, then yields.
+/// Threads that run one task together. Their barrier is cheap enough for every step: it polls briefly, then yields.
 class ThreadTeam
 {
 public:
-  /// threads: 0 takes one per core. Throws Error where they cannot be had.
+  /// `threads`: 0 takes one per core. Throws Error if the threads cannot be started.
   explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
-  /// Runs task(thread) on every thread, the caller being thread 0; returns when all are done. The task must not throw.
+  /// Runs task(thread) on every thread and returns when all are done. The caller is thread 0. The task must not throw.
   void run(const std::function<void(int)>& task);
-  /// Waits for all threads of the team; called from inside a task by each of them.
+  /// Waits for all threads of the team. Each of them calls it from inside a task.
   void barrier();
 
 private:

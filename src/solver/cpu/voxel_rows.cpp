@@ -9,7 +9,7 @@ namespace
 
 using TileVoxels = std::array<VoxelProperties, Tile::width>;
 
-// the fibres of a tile, one slot a muscle, muscles ascending
+// Adds the fibres of a tile: one slot per muscle, in ascending order.
 void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots)
 {
   tile.fibre_begin = static_cast<std::int32_t>(slots.size());
@@ -40,7 +40,7 @@ void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::v
   tile.fibre_end = static_cast<std::int32_t>(slots.size());
 }
 
-// the laws of a tile beyond neo-Hookean, one slot a law; unused lanes keep valid parameters and weight 0
+// Adds the laws of a tile other than neo-Hookean, one slot per law. Unused lanes keep valid parameters and weight 0.
 void add_laws(const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
 {
   tile.law_begin = static_cast<std::int32_t>(slots.size());
@@ -113,7 +113,7 @@ TileStabilisation stabilisation_of(const TileVoxels& voxels)
   return s;
 }
 
-// the next tile of voxels from e on, which it moves on
+// Forms a tile from the voxels from index e onwards, and advances e past them.
 Tile next_tile(const Model& model, std::int32_t& e)
 {
   const auto count = static_cast<std::int32_t>(model.voxels.size());
@@ -121,7 +121,7 @@ Tile next_tile(const Model& model, std::int32_t& e)
   Tile tile{};
   for (int strip = 0; strip < Tile::strips; ++strip)
   {
-    // an empty strip reads and writes zeros where the one before it does
+    // an empty strip reads and writes zeros at the address of the previous strip
     const bool any = e < count && model.voxels[e][2] == plane;
     const auto first = any ? e : tile.first_voxel[strip - 1];
     tile.first_voxel[strip] = first;

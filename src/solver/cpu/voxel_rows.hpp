@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// Voxels that the CPU kernel takes together: two strips of up to eight neighbours along x, in one plane. The nodes of
-/// a strip lie one after the other in each of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
+/// Voxels that the CPU kernel processes together: two strips of up to eight neighbours along x, in one plane. The nodes
+/// of a strip are contiguous in each of the four node rows at (j,k), (j+1,k), (j,k+1), (j+1,k+1).
 struct Tile
 {
   static constexpr int width = 16;
@@ -17,12 +17,12 @@ struct Tile
   static constexpr int strips = width / strip;
   std::int32_t node[strips][4];      ///< first node of each row
   std::int32_t count[strips];        ///< voxels, 0..8
-  std::int32_t first_voxel[strips];  ///< in the model's order; the strip's voxels follow it
+  std::int32_t first_voxel[strips];  ///< in the model's order; the strip's other voxels follow
   std::int32_t fibre_begin;          ///< range of FibreSlots
   std::int32_t fibre_end;
   std::int32_t law_begin;  ///< range of LawSlots
   std::int32_t law_end;
-  std::int32_t viscous;  ///< ViscousSlot; -1: none
+  std::int32_t viscous;  ///< index of the ViscousSlot; -1: none
 
   /// Voxel of a lane, or -1.
   std::int32_t voxel(int lane) const
@@ -37,7 +37,7 @@ struct TileStiffness
   float mu[Tile::width];         ///< shear modulus times tissue volume [N m]
   float kappa[Tile::width];      ///< bulk modulus times tissue volume [N m]
   float hourglass[Tile::width];  ///< scalar stiffness [N/m]
-  float bound[Tile::width];      ///< of the largest eigenvalue of the stiffness at rest [N/m]
+  float bound[Tile::width];      ///< bound of the largest eigenvalue of the stiffness at rest [N/m]
 };
 
 /// Assumed-strain hourglass control of a tile's voxels [N m].
@@ -46,20 +46,20 @@ struct TileStabilisation
   float bending[Tile::width], coupling[Tile::width], torsion[Tile::width], warping[Tile::width];
 };
 
-/// One muscle's fibres in a tile; 0 where a voxel has none.
+/// The fibres of one muscle in a tile; 0 where a voxel has none.
 struct FibreSlot
 {
-  float weight[Tile::width];  ///< proportion of the voxel times its tissue volume times the stress reference [N m]
+  float weight[Tile::width];  ///< fraction of the voxel times its tissue volume times the stress reference [N m]
   float x[Tile::width], y[Tile::width], z[Tile::width];
   std::int32_t muscle;
 };
 
-/// One law beyond neo-Hookean in a tile; weight 0 where a voxel does not have it.
+/// A law other than neo-Hookean in a tile; weight 0 where a voxel does not have it.
 struct LawSlot
 {
   Law law;
   std::int32_t material;              ///< as in LawPart
-  float weight[Tile::width];          ///< proportion times tissue volume [m3]
+  float weight[Tile::width];          ///< fraction times tissue volume [m3]
   float per_tangent[Tile::width];     ///< LawPart::per_tangent [m]
   float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]
   float parameters[11][Tile::width];  ///< order: Law
@@ -72,17 +72,17 @@ struct ViscousSlot
   float rate[2][Tile::width];  ///< [1/s]
 };
 
-/// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tile widths are the same for every
-/// instruction set: a narrower one takes a tile in several parts.
+/// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tiles have the same width for every
+/// instruction set; a narrower one processes a tile in several parts.
 struct VoxelRows
 {
   VoxelRows(const Model& model, const Discretisation& discretisation);
-  /// Finds the bounds of stiffness anew after effects were switched.
+  /// Computes the stiffness bounds again after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
-  /// `of_fibres`: the effect that fibres count for.
+  /// `of_fibres`: the effect to which fibres are attributed.
   void list_allocations(Effect of_fibres, AllocationList& list) const;
 
-  std::int32_t planes = 0;  ///< of nodes
+  std::int32_t planes = 0;  ///< number of node planes
   std::vector<Tile> tiles;
   std::vector<std::int32_t> plane_tiles;         ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
   std::vector<std::int32_t> plane_nodes;         ///< nodes of plane k, likewise

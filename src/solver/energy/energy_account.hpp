@@ -15,26 +15,26 @@ struct Work
   double muscle = 0;      ///< done by fibres, active and passive
   double load = 0;        ///< done by surface loads
   double constraint = 0;  ///< done by rigid, prescribed and sliding nodes, friction included
-  double friction = 0;    ///< of it, lost to friction: 0 or more
-  double damping = 0;     ///< lost to mass-proportional damping: 0 or more
-  double viscous = 0;     ///< taken up by viscous stresses
+  double friction = 0;    ///< the part of it lost to friction, not negative
+  double damping = 0;     ///< lost to mass-proportional damping, not negative
+  double viscous = 0;     ///< absorbed by viscous stresses
 };
 
-/// Work up to now, per node plane.
+/// Work since the account was opened, per node plane.
 struct WorkBook
 {
   std::vector<double> muscle;   ///< one per plane, filled by the backend
-  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and of H : E now (physics/viscosity.hpp)
+  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and present H : E (physics/viscosity.hpp)
   std::vector<Work> planes;
-  /// By how much constraints moved each node in the latest step, other than by dt times its velocity [m].
+  /// Displacement of each node by constraints in the latest step, in addition to dt times its velocity [m].
   std::array<std::vector<double>, 3> beside;
 
   void archive(ByteArchive& archive) { archive(muscle)(viscous)(planes)(beside); }
 };
 
-/// Keeps account of the work of each step's impulses on the nodes, along the mean of the velocities before and after
-/// the step: the sum is exactly the change of kinetic energy. Each plane is summed in double precision by itself, so
-/// that the result does not depend on which thread sums it. Real is the backend's number type.
+/// Accounts for the work of each step's impulses on the nodes. Impulses act along the mean of the velocities before and
+/// after the step, so that the sum is exactly the change of kinetic energy. Each plane is summed by itself in double
+/// precision, so that the result does not depend on the thread that sums it. Real is the backend's number type.
 template <class Real>
 class EnergyAccount : public WorkBook
 {
@@ -44,16 +44,17 @@ public:
   EnergyAccount(const Model& model, const Discretisation& discretisation);
 
   void open();
-  /// Velocities before the update of nodes [first, last).
+  /// Stores the velocities before the update of nodes [first, last).
   void before(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, before_); }
-  /// The same after the update and the loads, before constraints.
+  /// Stores the velocities after the update and the loads, before constraints.
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
-  /// Adds the step's work in planes [first, last). damping [1/s], dt [s]; kick: for how long forces changed velocities
-  /// [s]; u_before, u: displacements before and after the step [m]. Where constraints moved a node by d beside dt v,
-  /// the other forces worked along d too, by the mean of this step's and the next, and the constraints took that away.
+  /// Adds the step's work in planes [first, last). damping [1/s], dt [s]; kick: time over which forces changed
+  /// velocities [s]; u_before, u: displacements before and after the step [m]. If constraints moved a node by d in
+  /// addition to dt v, the other forces worked along d too, with the mean of this step's and the next, and the
+  /// constraints absorbed that work.
   void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
              const Real* const v[3], double damping, double dt, double kick);
-  /// Adds what friction took in plane k; restricted: RestrictedNodes<Real>.
+  /// Adds the friction work in plane k. `restricted`: a RestrictedNodes<Real>.
   template <class Restricted>
   void friction(std::int32_t k, const Restricted& restricted, const Real* const v[3])
   {
@@ -61,13 +62,13 @@ public:
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
     planes[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
-  /// Adds the work of a force on a node of a plane over the step, after after(); kick as there.
+  /// Adds the work of a force on a node of a plane during the step. To be called after after(), with the same `kick`.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double kick);
   Work work() const;
 
   void list_allocations(AllocationList& list) const;
-  /// All that is in the account between two steps.
+  /// The complete state of the account between two steps.
   const Book& book() const { return *this; }
   void restore(const Book& book) { static_cast<Book&>(*this) = book; }
 

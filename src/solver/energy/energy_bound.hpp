@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Bound of the energy that a motion can have: see Guard.
+/// An upper bound of the energy that a motion can have: see Guard.
 class EnergyBound
 {
 public:
@@ -17,17 +17,17 @@ public:
   /// A part of the motion, and what may have driven it.
   struct Interval
   {
-    double energy = 0;              ///< at its begin [J]
+    double energy = 0;              ///< at its start [J]
     double begin = 0, end = 0;      ///< [s]
-    std::vector<float> activation;  ///< largest of each muscle
+    std::vector<float> activation;  ///< largest activation of each muscle
     std::vector<double> bone_way;   ///< length of each bone's path [m]
-    double largest_internal = 0;    ///< internal energy up to its begin [J]
+    double largest_internal = 0;    ///< largest internal energy before its start [J]
   };
   double most(const Interval& interval) const;  ///< [J]
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
 
 private:
-  // voxels that hang on a bone or on prescribed nodes: sum of eight times their stiffness bound [N/m]
+  // Sum of eight times the stiffness bound over the voxels that are attached to a bone or to prescribed nodes [N/m].
   struct Driven
   {
     std::int32_t index;  // bone or load

@@ -50,7 +50,7 @@ EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
   return l;
 }
 
-// surface loads, and what gravity is less on nodes whose mass is scaled
+// Surface loads, and the correction of gravity on nodes whose mass is scaled.
 NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors& u)
 {
   NodalVectors forces(u.size());
@@ -67,8 +67,8 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends half a step before the displacements, where the velocities are: the work since then is that of the
-// present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
+// The account ends half a step before the displacements, at the time of the velocities. The work since then is that of
+// the present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
 Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
 {
   EnergyLedger& l = ledger_;
@@ -92,7 +92,7 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
       l.kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       l.gravity += weight * pull * u[n][axis];
-      // without what mass scaling takes off
+      // without the correction for mass scaling
       const double force = external[n][axis] - weight * pull + mass * conditions_.gravity[axis];
       work.load += 0.5 * dt * force * v[n][axis];
       work.constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;

@@ -6,17 +6,17 @@
 namespace frontalis
 {
 
-/// Keeps the energy ledger of a backend's motion: stored energies as they are now, work as the backend has noted it.
+/// Keeps the energy ledger of a backend's motion: present stored energies, and the work that the backend recorded.
 class EnergyLedgerKeeper
 {
 public:
-  /// All of them must outlive it.
+  /// All arguments must outlive it.
   EnergyLedgerKeeper(const Model& model, const Discretisation& discretisation, const Conditions& conditions,
                      StepBackend& backend);
 
-  /// Begins anew with the present state.
+  /// Starts a new ledger at the present state.
   void open(double time, double dt);
-  /// dt [s]: of the latest step, or of the next where there was none.
+  /// `dt` [s]: length of the latest step, or of the next if there was none.
   EnergyLedger balance(double time, double dt);
   void effect_switched() { loads_.run(conditions_.running); }
   void list_allocations(AllocationList& list) const { loads_.list_allocations(list); }
@@ -33,7 +33,7 @@ private:
   const Conditions& conditions_;
   StepBackend& backend_;
   NodalLoads loads_;
-  std::vector<std::array<bool, 3>> driven_;  // nodes that do not follow the forces along an axis
+  std::vector<std::array<bool, 3>> driven_;  // axes along which a node does not follow the forces
   EnergyLedger ledger_;
 };
 

@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel of a plane of a model, or of any part of it.
+/// Energies and the worst voxel of a plane or of any other part of a model.
 struct PlaneMonitor
 {
   double kinetic = 0, internal = 0, hourglass = 0;  ///< [J]
@@ -19,7 +19,7 @@ struct PlaneMonitor
     return { 0, look.internal, look.hourglass, look.jacobian, look.jacobian <= 0 ? 1 : 0, voxel };
   }
 
-  /// Parts must be added in the order of their voxels. Numbers that are not finite count as the worst.
+  /// Parts must be added in the order of their voxels. Values that are not finite count as the worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
   {
     kinetic += part.kinetic;
@@ -34,7 +34,7 @@ struct PlaneMonitor
   }
 };
 
-/// The whole model's, from the parts' sum and the bound of the highest frequency [1/s2].
+/// The monitor of the whole model, from the sum of its parts and the squared frequency bound [1/s2].
 Monitor monitor_of(const PlaneMonitor& sum, double frequency_squared, std::int32_t stiffest_voxel);
 
 }  // namespace frontalis

@@ -24,8 +24,8 @@ constexpr double step_share_allowed = 1.1;
 // Change of the ledger's imbalance from check to check, over its largest term. Stable random scenes leave less than 0.1
 // unexplained (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
-// J below which a voxel counts as the one where the motion goes wrong, and share of the critical step of the good state
-// below which the stiffest voxel does.
+// J below which a voxel is reported as the origin of the instability, and fraction of the last good state's critical
+// step below which the stiffest voxel is.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 
@@ -41,17 +41,17 @@ struct Guard::Implementation
     double time = 0;
     double imbalance = 0;  // [J]
     std::vector<RigidTransform> bone;
-    std::vector<float> since;  // largest activation of each muscle since the good state before
+    std::vector<float> since;  // largest activation of each muscle since the previous good state
     double largest_internal = 0;
-    bool there = false;  // false: the snapshot is only memory to be used again
+    bool there = false;  // false: the snapshot is only memory for reuse
   };
 
   Solver& solver;
   std::shared_ptr<const Model> model;
   GuardSettings settings;
   EnergyBound bound;
-  Good good, before;              // the latest such state, and the one before it
-  std::vector<float> activation;  // largest of each muscle since `good`
+  Good good, before;              // the latest good state, and the previous one
+  std::vector<float> activation;  // largest activation of each muscle since `good`
   std::vector<double> bone_way;   // length of each bone's path since `good` [m]
   std::int64_t checked_at = 0;    // steps
   int good_checks = 0;            // since the latest rollback
@@ -120,7 +120,7 @@ Instability Guard::Implementation::check()
   return finding;
 }
 
-// the finding of a part of a motion, which returns what its check found or diverges
+// Runs a part of a motion. Returns the finding of its check, or that the motion diverged.
 template <class Part>
 Instability attempted(const Part& part)
 {
@@ -136,7 +136,7 @@ Instability attempted(const Part& part)
   }
 }
 
-// The first try begins at the latest good state, later ones at the state before: what went wrong may have begun there.
+// The first retry starts at the latest good state, later ones at the previous one, where the fault may have begun.
 void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
 {
   if (tries > 0 && before.there)
@@ -202,7 +202,7 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
         break;
     }
   }
-  // a voxel that is crushed or has no numbers, or else one that is stretched until it is stiffer than all others
+  // a voxel that is crushed or not finite, or else one that is stretched until it is the stiffest
   const std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
@@ -296,7 +296,7 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   Equilibrium result;
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
-    // muscles take their activations at once
+    // muscles adopt their activations at once
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
     for (std::size_t b = 0; b < target.bone.size(); ++b)

@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-// with the viscous stresses that the solver keeps of it
+// A voxel and its viscous stresses, which the solver stores.
 struct ViscousVoxel : ModelVoxel
 {
   std::array<physics::Symmetric3<double>, 2>& stresses;
@@ -23,7 +23,7 @@ struct ViscousVoxel : ModelVoxel
   physics::Symmetric3<double> relaxed(int n) const { return stresses[n]; }
   void keep_relaxed(int n, const physics::Symmetric3<double>& H) const
   {
-    // their sum is not kept
+    // the sum of the stresses is not stored
     if (n < 2)
       stresses[n] = H;
   }
@@ -93,7 +93,7 @@ void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivativ
 
 void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k)
 {
-  // transformed displacements of the hourglass modes, and the forces conjugate to them
+  // Transformed displacements of the hourglass modes, and the forces conjugate to them.
   static constexpr int mode_of_shape[4] = { 3, 5, 6, 7 };
   const auto& nodes = model_->voxel_nodes[e];
   double mode[3][8] = {};

@@ -145,7 +145,7 @@ Work ReferenceSolver::work(bool open)
 {
   if (open)
     account_->open();
-  // what fibres did in the latest step
+  // records the work of fibres in the latest step
   accounting_ = true;
   forces(u_, conditions_.activation);
   if (open)

@@ -9,8 +9,8 @@ namespace frontalis
 
 struct ModelVoxel;
 
-/// Double, plain loops, kinematics by textbook shape-function derivatives (not by the Walsh-Hadamard form, so that a
-/// wrong transform is found): the oracle of the other backends.
+/// The reference for the other backends, in double precision and plain loops. It takes the kinematics from textbook
+/// shape-function derivatives, not from the Walsh-Hadamard transform, so that an error in the transform is found.
 class ReferenceSolver : public StepBackend
 {
 public:
@@ -49,7 +49,7 @@ private:
   void rest();
   void mix_voxels();
   bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
-  void relax(double elapsed, const Components& u_before);  // u_before: a step earlier
+  void relax(double elapsed, const Components& u_before);  // u_before: one step earlier
 
   std::vector<VoxelProperties> voxels_;
   Components u_, v_, f_;
@@ -58,11 +58,11 @@ private:
   double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
   RestrictedNodes<double> restricted_;
   NodalLoads loads_;
-  Relaxed relaxed_;  // viscous stresses of each voxel times its volume [N m]
+  Relaxed relaxed_;  // viscous stresses times the volume of each voxel [N m]
   std::unique_ptr<EnergyAccount<double>> account_;
-  bool accounting_ = false;                          // fibres note their work
-  std::vector<std::array<double, 2>> fibre_memory_;  // stretch squared and stress times volume that were last
-  std::vector<double> stiffness_;                    // bound of each voxel at the forces computed last [N/m]
+  bool accounting_ = false;                          // whether fibres record their work
+  std::vector<std::array<double, 2>> fibre_memory_;  // latest squared stretch, and stress times volume
+  std::vector<double> stiffness_;                    // bound of each voxel at the latest forces [N/m]
 };
 
 }  // namespace frontalis

@@ -34,7 +34,7 @@ double principal_strain(const Kinematics<double>& k)
   return *std::max_element(eigen.value, eigen.value + 3);
 }
 
-// of the Cauchy stress P F^T / J; below a small J the divisor stays
+// Of the Cauchy stress P F^T / J. The divisor has a lower limit.
 double von_mises(const Matrix3<double>& P, const Kinematics<double>& k)
 {
   double s[3][3] = {};
@@ -126,7 +126,7 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
   out.resize(binding.voxel.size());
   for (std::size_t p = 0; p < out.size(); ++p)
   {
-    // a vertex beside its voxel takes the value at its side
+    // a vertex outside its voxel takes the value at the voxel's face
     const auto inside = [](float x) { return std::clamp(static_cast<double>(x), 0.0, 1.0); };
     const auto& c = binding.coordinates[p];
     double weight[8];

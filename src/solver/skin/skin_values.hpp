@@ -10,15 +10,15 @@
 namespace frontalis
 {
 
-/// Strain or stress of the voxels around the skin's, taken to its vertices: means at nodes weighted by tissue, then
-/// trilinear within the voxel that a vertex is bound to.
+/// Strain or stress at the skin's vertices: means at nodes over the surrounding voxels, weighted by tissue, then
+/// interpolated within the voxel to which a vertex is bound.
 class SkinValues
 {
 public:
-  /// Both must outlive it.
+  /// Both arguments must outlive it.
   SkinValues(const Model& model, const Discretisation& discretisation);
 
-  /// `u`: displacements of all nodes [m]; `activation`: as fibres feel it.
+  /// `u`: displacements of all nodes [m]; `activation`: that of the fibres.
   void compute(SkinField field, const std::vector<std::array<double, 3>>& u, const std::vector<float>& activation,
                EffectSet running, std::vector<float>& out);
   void list_allocations(AllocationList& list) const;
@@ -26,9 +26,9 @@ public:
 private:
   const Model& model_;
   const Discretisation& discretisation_;
-  std::vector<std::int32_t> nodes_;                  // of the voxels that vertices are bound to, ascending
-  std::vector<std::int32_t> voxels_;                 // with one of these nodes, ascending
-  std::vector<std::array<std::int32_t, 8>> corner_;  // of each voxel: rank of the node; -1: not of the skin
+  std::vector<std::int32_t> nodes_;                  // of the voxels to which vertices are bound, ascending
+  std::vector<std::int32_t> voxels_;                 // that have one of these nodes, ascending
+  std::vector<std::array<std::int32_t, 8>> corner_;  // of each voxel: index into nodes_, -1 if not there
   std::vector<double> sum_, weight_;                 // one per node
 };
 

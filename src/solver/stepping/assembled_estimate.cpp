@@ -9,13 +9,13 @@ namespace
 {
 
 // A power iteration comes to its eigenvalue from below, and the model stiffens until the next search.
-constexpr double margin = 1.05;               // of the frequency squared
-constexpr double margin_after_change = 1.25;  // in the first search, and while activations have changed lately
-constexpr std::int64_t longest_valid = 2000;  // steps: a search costs about one per cent of them
-constexpr std::int64_t shortest_valid = 200;  // steps after activations changed: then twice as many each time
+constexpr double margin = 1.05;               // factor on the squared frequency
+constexpr double margin_after_change = 1.25;  // the same in the first search, and after recent changes of activation
+constexpr std::int64_t longest_valid = 2000;  // steps; a search costs about 1 % of them
+constexpr std::int64_t shortest_valid = 200;  // steps after a change of activation; doubled after each search
 constexpr float activation_allowed = 0.1F;    // change of a muscle's activation since the search
 constexpr double growth_allowed = 1.02;       // of the bound at nodes, squared, since the search
-// A search begins with the mode of the one before, the first with random numbers.
+// A search starts from the mode of the previous one, the first from random numbers.
 constexpr int iterations = 16;
 constexpr int first_iterations = 300;
 
@@ -29,8 +29,8 @@ double AssembledEstimate::frequency_squared(double bound) const
 void AssembledEstimate::renew(const std::vector<float>& activation, const std::vector<float>& asked, double bound,
                               const std::function<double(int)>& search)
 {
-  // Fibres stiffen as they are activated, and what they move stiffens after that: until it has moved, the bound at
-  // nodes counts.
+  // Fibres stiffen as they are activated, and the tissue that they move stiffens later. Until then the bound at nodes
+  // is used.
   bool changed = false;
   activation_.resize(asked.size());
   for (std::size_t m = 0; m < asked.size(); ++m)

@@ -11,9 +11,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double way_per_step = 0.1;             // of the shortest edge of a voxel
-constexpr double velocity_jump_allowed = 0.005;  // change of a bone's way per step, in shortest edges of a voxel
-constexpr double straight_share = 1.0 / 64;      // of a motion: a bone's way in it is taken as straight
+constexpr double way_per_step = 0.1;             // limit of a bone's path per step, in shortest voxel edges
+constexpr double velocity_jump_allowed = 0.005;  // change of a bone's path per step, in shortest voxel edges
+constexpr double straight_share = 1.0 / 64;      // fraction of a motion in which a bone's path counts as straight
 
 }  // namespace
 

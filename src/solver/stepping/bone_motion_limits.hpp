@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// What the motion of bones asks of the time step.
+/// Limits that the motion of bones sets to the time step.
 class BoneMotionLimits
 {
 public:
@@ -16,21 +16,21 @@ public:
 
   explicit BoneMotionLimits(const Model& model);
 
-  /// Longest step [s] in which no bone moves by more than a tenth of a voxel: tissue that hangs on a faster one would
-  /// be turned inside out before the time step follows it.
+  /// Longest step [s] in which no bone moves by more than a tenth of a voxel. A faster bone would invert the tissue
+  /// attached to it before the time step adapts.
   double longest_step(const Poses& from, const Poses& to, double seconds) const;
-  /// Whether a bone's velocity jumps where this motion begins, by more than half a percent of a voxel per step. That is
-  /// about a hundredth of the speed of sound, which goes through half a voxel or so in a safe step.
+  /// Whether a bone's velocity changes suddenly at the start of this motion, by more than 0.5 % of a voxel per step.
+  /// That is about a hundredth of the speed of sound, at which waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
-  /// The motion has begun: it is what the next is compared with.
+  /// Records a motion that has started, for comparison with the next.
   void moved(const Poses& from, double seconds);
   void archive(ByteArchive& archive) { archive(before_)(seconds_); }
 
 private:
   double shortest_edge_;
   std::array<double, 3> far_corner_;
-  Poses before_;        // at the begin of the latest motion
-  double seconds_ = 0;  // that it took; 0: there was none
+  Poses before_;        // at the start of the latest motion
+  double seconds_ = 0;  // duration of that motion; 0: there was none
 };
 
 }  // namespace frontalis

@@ -7,13 +7,13 @@
 namespace frontalis
 {
 
-/// What constraint_steps restricted nodes in one step.
+/// The time and the poses of bones that restricted nodes follow in one step.
 struct ConstraintStep
 {
   double time = 0;  ///< at the end of the step [s]
   double dt = 0;
   std::vector<RigidTransform> bone;         ///< at the end of the step
-  std::vector<RigidTransform> bone_before;  ///< at its begin
+  std::vector<RigidTransform> bone_before;  ///< at its start
 };
 
 }  // namespace frontalis

@@ -19,7 +19,7 @@ namespace frontalis
 namespace
 {
 
-// stiffness that the fibres of a voxel can add along one direction, every muscle at full activation
+// Largest stiffness that the fibres of a voxel can add along one direction, with every muscle at full activation.
 double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
 {
   double sum = 0;
@@ -36,7 +36,7 @@ double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
   return sum;
 }
 
-// a material's parameters in a voxel: with the voxel's own directions where it has some
+// Parameters of a material in a voxel, with the directions of the voxel if it has any.
 physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, const Material& material)
 {
   auto parameters = material.parameters;
@@ -50,7 +50,7 @@ physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, co
   return parameters;
 }
 
-// adds a material to the part of its law
+// Adds a material to the part of its law.
 void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
@@ -81,15 +81,15 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
   return false;
 }
 
-// shear stiffness of a material at rest [Pa]
+// Shear stiffness of a material at rest [Pa].
 double shear_at_rest(const Material& material)
 {
   return material.law == Law::neo_hookean ? material.parameters[0]
                                           : law_stiffness(material.law, material.parameters.data(), at_rest());
 }
 
-// rigid nodes, and those whose displacement is prescribed in every direction; none where no node is left, so that a
-// model that cannot move has a time step too
+// Rigid nodes, and nodes whose displacement is prescribed in every direction. Empty if this includes all nodes, so that
+// a model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
   std::vector<int> directions(model.nodes.size(), 0);

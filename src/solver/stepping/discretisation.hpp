@@ -10,60 +10,60 @@
 namespace frontalis
 {
 
-/// The part of a voxel that has a law other than neo-Hookean. Each material has a part of its own, but materials of a
-/// law whose parameters are moduli and stiffenings (Mooney-Rivlin, Fung) are averaged by proportion.
+/// The part of a voxel that has a law other than neo-Hookean. Each material has its own part, except that Mooney-Rivlin
+/// and Fung materials are averaged by their fractions, because their parameters are moduli and stiffenings.
 struct LawPart
 {
   Law law;
-  double weight;  ///< proportion of the voxel's tissue
+  double weight;  ///< fraction of the voxel's tissue
   std::array<double, 11> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-  double per_tangent;        ///< of the voxel's stiffness: weight times tissue volume over h^2 of the shortest edge [m]
-  std::int32_t material;     ///< -1: averaged
+  double per_tangent;     ///< weight times tissue volume over h^2 of the shortest edge: voxel stiffness per tangent [m]
+  std::int32_t material;  ///< -1: averaged
 };
 
-/// One voxel as the backends need it, mixed from its materials.
+/// Properties of one voxel, mixed from its materials.
 struct VoxelProperties
 {
-  double mu = 0;                                   ///< neo-Hookean shear modulus, mixed by proportion [Pa]
-  double kappa = 0;                                ///< mixed by proportion [Pa]
+  double mu = 0;                                   ///< neo-Hookean shear modulus, mixed by fraction [Pa]
+  double kappa = 0;                                ///< bulk modulus, mixed by fraction [Pa]
   double tissue_volume = 0;                        ///< volume times fill [m3]
   double density = 0;                              ///< mixed, after mass scaling [kg/m3]
-  double hourglass = 0;                            ///< scalar stiffness on the hourglass modes [N/m]
+  double hourglass = 0;                            ///< scalar stiffness against hourglass modes [N/m]
   physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
-  /// Bound of the largest eigenvalue of its stiffness at rest, every muscle at full activation [N/m].
+  /// Bound of the largest eigenvalue of its stiffness at rest, with every muscle at full activation [N/m].
   double stiffness = 0;
   std::vector<LawPart> laws;
-  /// Prony terms: shares are averaged by stiffness, rates [1/s] by relaxing stiffness.
+  /// Prony terms: fractions are averaged by stiffness, rates [1/s] by relaxing stiffness.
   std::array<double, 2> viscous_share{};
   std::array<double, 2> viscous_rate{};
 };
 
-/// What every backend needs of a model, in double precision. A voxel's properties are mixed when they are asked for,
-/// and not stored: each backend keeps what it needs of them.
+/// What every backend needs of a model, in double precision. The properties of a voxel are computed on request and not
+/// stored, because each backend keeps its own form of them.
 class Discretisation
 {
 public:
-  /// The model must outlive it. Throws Error on a voxel without stiffness or mass.
+  /// The model must outlive it. Throws Error if a voxel has no stiffness or no mass.
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// From now on bounds of stiffness allow for the fibre effects of this set. Masses stay as they are.
+  /// Includes the fibre effects of this set in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
   void list_allocations(AllocationList& list) const;
 
   double volume = 0;                         ///< of a whole voxel [m3]
   bool assumed_strain = false;               ///< hourglass control by assumed strain
   bool selective_reduced = false;            ///< no hourglass control
-  bool laws = false;                         ///< a voxel has a law beyond neo-Hookean
+  bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
   int viscous_terms = 0;                     ///< 0..2
   double viscous_time_min = 0;               ///< [s]
   std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
   std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
   double stretch_half_sum = 0;               ///< half of that sum [1/m2]
   std::vector<double> node_mass;             ///< lumped [kg]
-  std::vector<float> weight_share;           ///< a node's mass without mass scaling over node_mass; empty: 1
-  std::vector<std::int32_t> held;            ///< nodes that move as they are told in every direction, ascending
+  std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
+  std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
   double frequency_squared_max = 0;          ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:
@@ -75,7 +75,7 @@ private:
   std::vector<float> mass_factor_;  // one per voxel; empty without mass scaling
 };
 
-/// The corner of the grid opposite to the origin [m].
+/// The corner of the grid opposite to its origin [m].
 inline std::array<double, 3> far_corner(const Model& model)
 {
   return { { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] } };

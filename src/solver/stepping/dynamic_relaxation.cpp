@@ -9,10 +9,10 @@ namespace frontalis
 namespace
 {
 
-constexpr double clear_change = 1e-4;  // of the displacement: rounding errors of single precision cannot make it
-constexpr double slow_share = 0.05;    // of the fastest speed: below it rounding errors drown the frequency
-constexpr double getting_going = 4;    // radians of the slowest motion: before, it has hardly begun
-constexpr int enough_windows = 4;      // in a row within the tolerance
+constexpr double clear_change = 1e-4;  // relative change of displacements that exceeds rounding errors
+constexpr double slow_share = 0.05;    // of the fastest speed; below it rounding errors mask the frequency
+constexpr double getting_going = 4;    // radians of the slowest motion before it is evaluated
+constexpr int enough_windows = 4;      // number of consecutive windows within the tolerance
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void DynamicRelaxation::look(double time, NodalVectors& u, const Forces& forces,
   const double squared = speed > slow_share * fastest_ ? rayleigh_quotient(u, f_now_, change) : 0;
   u_.swap(u);
   f_.swap(f_now_);
-  // critical for the slowest motion seen, and not more: what is faster must not slow it down
+  // Damping is critical for the slowest motion seen. More damping would slow down faster motions.
   if (squared > 0)
   {
     lowest_ = lowest_ > 0 ? std::min(lowest_, squared) : squared;

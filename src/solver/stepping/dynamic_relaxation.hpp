@@ -16,17 +16,17 @@ public:
   using Forces = std::function<void(NodalVectors& out)>;
   struct Settings
   {
-    double tolerance;    ///< of what is left of the motion over the displacement, norms weighted by mass
-    double damping;      ///< until the motion has shown a frequency [1/s]
-    int longest_window;  ///< looks
+    double tolerance;    ///< remaining motion over displacement, in mass-weighted norms
+    double damping;      ///< until a frequency has been found [1/s]
+    int longest_window;  ///< in looks
   };
 
-  /// Begins at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive it.
+  /// Starts at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive it.
   DynamicRelaxation(const Settings& settings, const std::vector<double>& mass, double time, NodalVectors u,
                     NodalVectors f);
 
-  /// The motion has come to displacements u, which are taken away; `forces` gives the internal forces there where they
-  /// are needed. `last`: it ends here. Damping is not raised above `most_damping` [1/s].
+  /// Evaluates the motion at displacements u, which it takes over. `forces` computes the internal forces there if they
+  /// are needed. `last`: the motion ends here. Damping stays below `most_damping` [1/s].
   void look(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last);
 
   double damping() const { return damping_; }
@@ -39,12 +39,12 @@ private:
   Settings settings_;
   const std::vector<double>& mass_;
   double begin_, window_begin_;  // [s]
-  NodalVectors u_, f_, f_now_;   // where the window began; where it ended
+  NodalVectors u_, f_, f_now_;   // at the start of the window; at its end
   int looks_ = 0;                // in this window
   double damping_;
-  double lowest_ = 0;     // frequency squared that was seen [1/s2]
-  double fastest_ = 0;    // speed that was seen
-  int good_windows_ = 0;  // in a row
+  double lowest_ = 0;     // lowest squared frequency found [1/s2]
+  double fastest_ = 0;    // fastest speed found
+  int good_windows_ = 0;  // consecutive
   Equilibrium result_;
 };
 

@@ -8,19 +8,19 @@
 namespace frontalis
 {
 
-/// Those of a model's effects that run, and what follows from them for gravity and muscles.
+/// The effects of a model that are switched on, and the resulting gravity and activations.
 class EffectSwitches
 {
 public:
   explicit EffectSwitches(const Model& model) : model_(model), running_(effects_of(model)) {}
 
   EffectSet running() const { return running_; }
-  /// False where nothing changes. Throws Error where the model does not have the effect, where another needs it, or
-  /// where it cannot be switched while running.
+  /// Returns false if nothing changes. Throws Error if the model does not have the effect, if another effect needs it,
+  /// or if it cannot be switched while running.
   bool change(Effect effect, bool on);
-  /// [m/s2] on the masses as they are scaled: uniform mass scaling changes no weight.
+  /// Acceleration [m/s2] for the scaled masses: uniform mass scaling does not change weight.
   std::array<double, 3> gravity() const;
-  /// Activations as fibres feel them.
+  /// Activations that act on the fibres.
   std::vector<float> felt(const std::vector<float>& activation) const;
 
 private:
@@ -28,9 +28,9 @@ private:
   EffectSet running_;
 };
 
-/// Fibres stiffen a voxel and draw it together.
+/// Effects of fibres on a voxel: they stiffen it and contract it.
 inline bool is_of_fibres(Effect effect) { return effect == Effect::contraction || effect == Effect::fibre_stiffness; }
-/// The effect whose memory fibres are: contraction where the model has it.
+/// The effect to which memory of fibres is attributed: contraction if the model has it.
 Effect effect_of_fibres(const Model& model);
 
 }  // namespace frontalis

@@ -7,17 +7,17 @@
 namespace frontalis
 {
 
-/// What mass scaling needs of a voxel.
+/// Properties of a voxel for mass scaling.
 struct ScaledVoxel
 {
   double stiffness;  ///< bound [N/m]
-  double mass;       ///< before it is scaled [kg]
-  bool chosen;       ///< may get mass
+  double mass;       ///< before scaling [kg]
+  bool chosen;       ///< whether its mass may be increased
 };
 
-/// Factor on each voxel's mass with which the chosen voxels allow the time step that the others allow by themselves, or
-/// the one that is wanted; empty: none is scaled. A chosen voxel brings to each of its nodes the mass that its own
-/// stiffness needs there (physics/time_step.hpp). held: Discretisation::held.
+/// Returns a factor on each voxel's mass with which the chosen voxels allow the time step of the other voxels, or the
+/// requested one; empty if none is scaled. A chosen voxel adds to each of its nodes the mass that its own stiffness
+/// needs there (physics/time_step.hpp). `held`: Discretisation::held.
 std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
                                           const std::vector<std::int32_t>& held);
 

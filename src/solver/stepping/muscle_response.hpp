@@ -9,9 +9,9 @@
 namespace frontalis
 {
 
-/// First-order response of muscles to the activations asked for, which go linearly from one to another within
-/// `seconds`: da/dt = (asked - a) / time, with the muscle's rise or fall time (as in Zajac 1989, Crit. Rev. Biomed.
-/// Eng. 17:359), no faster than the model's slew limit.
+/// First-order response of muscles to the requested activations, which change linearly over `seconds`: da/dt = (asked -
+/// a) / time, with the muscle's rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), limited by the model's
+/// slew rate.
 inline void respond(const Model& model, const std::vector<float>& asked_from, const std::vector<float>& asked_to,
                     double seconds, std::vector<float>& activation)
 {

@@ -16,7 +16,7 @@ using Vector = physics::Vec3<double>;
 
 Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
 
-// a third of each triangle's force (area vector times pressure, or area times traction) to each of its corners
+// Each corner takes a third of its triangle's force: area vector times pressure, or area times traction.
 void vertex_forces(const Load& load, double ramp, const std::vector<std::array<double, 3>>& vertices,
                    std::vector<std::array<double, 3>>& forces)
 {

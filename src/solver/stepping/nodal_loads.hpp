@@ -8,19 +8,19 @@
 namespace frontalis
 {
 
-/// Nodes whose mass is scaled while others' is not: gravity on them is too large.
+/// Nodes with selectively scaled mass, on which gravity is too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// Force that corrects gravity on such a node [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
-/// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding, added in a fixed
-/// order; and the correction of gravity where selective mass scaling has made nodes heavier.
+/// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding and summed in a
+/// fixed order; and the correction of gravity for selective mass scaling.
 class NodalLoads
 {
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
 
-  /// Loads and the correction of gravity act only while their effects run.
+  /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running);
   void list_allocations(AllocationList& list) const;
   bool idle() const
@@ -34,7 +34,7 @@ public:
   /// The same without the correction of gravity.
   const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
-  /// Forces at a time, from the present nodal displacements.
+  /// Computes the forces at a time from the present nodal displacements.
   template <class Real>
   void update(double time, const Real* const u[3]);
 
@@ -47,7 +47,7 @@ private:
   struct Surface
   {
     const Load* load;
-    std::vector<std::int32_t> begin;  // of each loaded node's contributions
+    std::vector<std::int32_t> begin;  // start of each loaded node's contributions
     std::vector<Contribution> contributions;
     std::vector<std::array<double, 3>> vertex_force;
     std::vector<std::array<double, 3>> vertices;
@@ -56,7 +56,7 @@ private:
   const Model& model_;
   std::vector<std::int32_t> nodes_;
   std::vector<std::array<double, 3>> surface_forces_, forces_;
-  std::vector<std::array<double, 3>> relief_;  // one per loaded node; empty where nothing is too heavy
+  std::vector<std::array<double, 3>> relief_;  // one per loaded node; empty without scaled mass
   std::vector<Surface> surfaces_;
   bool runs_ = true, relieves_ = true;
 };

@@ -74,8 +74,7 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// a block begins at the first sliding node that is in no block yet, or earlier where the node plane ends: it stays
-// within the plane
+// A block starts at the first sliding node that is in no block yet, or earlier to stay within the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -152,7 +151,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   const auto index = nodes.block_sliding_[block][lane];
-  // a node that does not slide comes here where its displacement is not a number
+  // a node that does not slide gets here if its displacement is NaN
   if (index < 0)
     return;
   Sliding& s = nodes.contacts_.sliding[index];

@@ -11,7 +11,7 @@ namespace frontalis
 {
 
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
-/// may take disjoint ranges of node planes. Real is the backend's number type.
+/// may process disjoint ranges of node planes. Real is the backend's number type.
 template <class Real>
 class RestrictedNodes
 {
@@ -25,7 +25,7 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    GlidingNodes<Real> gliding;    ///< those whose surface follows a bone or has friction
+    GlidingNodes<Real> gliding;    ///< those whose surface moves with a bone or has friction
     std::vector<Sliding> sliding;  ///< the others
     std::vector<Block> blocks;
 
@@ -37,7 +37,7 @@ public:
     }
   };
 
-  /// The kernel may read other nodes between sliding nodes of one node plane and write them back unchanged.
+  /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset();
@@ -47,19 +47,19 @@ public:
     contacts_ = contacts;
     contacts_.gliding.rub(rubs_);
   }
-  /// Applies to nodes in [first, last), whole node planes; u holds the displacements after the step's update, before
-  /// those before it.
+  /// Applies the constraints to nodes in [first, last), which must be whole node planes. `u`: displacements after the
+  /// update of the step; `before`: displacements before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
              const ConstraintStep& step);
-  /// Energy [J] that friction took from nodes in [first, last) in the step applied last: -I . (mean of v- and v+ -
-  /// velocity of the surface), where I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints,
-  /// v+: after it [m/s], mass [kg], all of all nodes. Added up node after node.
+  /// Energy [J] that friction dissipated at nodes [first, last) in the latest step: -I . (mean of v- and v+ - velocity
+  /// of the surface), with I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints, v+: after
+  /// it [m/s]. Mass [kg] and velocities are those of all nodes. Nodes are summed in order.
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
   {
     return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
   }
-  /// Switches sliding and friction, and forgets all contacts.
+  /// Switches sliding and friction, and resets all contacts.
   void run(EffectSet running);
   void list_allocations(AllocationList& list) const;
   bool idle() const
@@ -83,7 +83,7 @@ private:
   std::vector<PrescribedNode> prescribed_;
   Contacts contacts_;
   std::vector<std::int32_t> block_node_, block_count_;
-  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // into contacts_.sliding; -1: does not slide
+  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // index into contacts_.sliding, or -1
   bool slides_ = true, rubs_ = true;
 };
 

@@ -21,14 +21,14 @@ enum class NodalField
   velocities      ///< [m/s], half a step before the displacements
 };
 
-/// All that a backend keeps of a motion between two plans, in its own form.
+/// The state of a motion between two plans, in a form of the backend's own.
 struct BackendState
 {
   virtual ~BackendState() = default;
   virtual void archive(ByteArchive& archive) = 0;
 };
 
-/// What a backend is, and the numbers of steps that suit it.
+/// Description of a backend, and its preferred numbers of steps.
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
@@ -40,7 +40,7 @@ struct BackendTraits
   int steps_per_check = 512;  ///< Solver::steps_per_check
 };
 
-/// What a time stepper gives its backend to read.
+/// Data that a time stepper shares with its backend.
 struct BackendInput
 {
   const Model& model;
@@ -49,8 +49,7 @@ struct BackendInput
   const SolverSettings& settings;  ///< the other three outlive the backend, this one does not
 };
 
-/// A backend: takes time steps, with the nodes and voxels in memory of its own. It begins at rest. TimeStepper makes a
-/// Solver of it.
+/// Makes time steps, with nodes and voxels in its own memory. It starts at rest. TimeStepper makes a Solver of it.
 class StepBackend
 {
 public:
@@ -59,8 +58,8 @@ public:
   virtual BackendTraits traits() const = 0;
   virtual void list_allocations(AllocationList& list) const = 0;
 
-  /// Runs the plan's steps. Returns the largest frequency bound squared [1/s2] that was found in them, NaN where
-  /// displacements are not finite; or, where the plan allows it, the bound of the plan before.
+  /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
+  /// are not finite. If the plan allows it, this may be the bound of the previous plan.
   virtual double run(const StepPlan& plan) = 0;
   /// To be called after Conditions::running and the discretisation's bounds have changed. An effect that comes back has
   /// no history.

@@ -5,10 +5,10 @@
 namespace frontalis
 {
 
-/// Bound of the highest frequency of a model, or of a part of it, and the node that sets it (physics/time_step.hpp).
+/// Bound of the highest frequency of a model or of a part of it, and the node that sets it (physics/time_step.hpp).
 struct StepBound
 {
-  double frequency_squared = 0;  ///< [1/s2]; NaN where the stiffness of a voxel is no number
+  double frequency_squared = 0;  ///< [1/s2]; NaN if the stiffness of a voxel is NaN
   std::int32_t node = -1;
 
   /// Parts must be added in the order of their nodes.
@@ -25,8 +25,8 @@ struct IndexRange
   std::int32_t first, last;
 };
 
-/// Bound of some nodes, from the stiffness bound [N/m] of every voxel. `voxels`: at least those that touch the nodes;
-/// `sum`: room for one number per node of the model, of which those of these nodes are used.
+/// Bound of some nodes from the stiffness bound of every voxel [N/m]. `voxels`: at least those that touch the nodes.
+/// `sum`: room for one number per node of the model, used only at these nodes.
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
                          IndexRange voxels, IndexRange nodes, double* sum);
 
@@ -36,7 +36,7 @@ StepBound step_bound(const Discretisation& discretisation, const Model& model, c
 /// The stiffest of the voxels at a node; -1 for node -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
 
-/// 1 / mass [1/kg] of every node, 0 where it is held; empty where none is.
+/// 1 / mass of every node [1/kg], 0 for held nodes; empty if none is held.
 std::vector<float> mobility(const Discretisation& discretisation);
 
 }  // namespace frontalis

@@ -8,23 +8,23 @@ namespace frontalis
 namespace physics
 {
 
-/// One muscle's fibres in a voxel. S is the number type of what all voxels of a batch have in common.
+/// The fibres of one muscle in a voxel. S is the number type of what all voxels of a batch share.
 template <class T, class S>
 struct Fibre
 {
-  T direction[3];  ///< at rest, of length 1
-  T weight;        ///< proportion of the voxel times its tissue volume times the stress reference [N m]
+  T direction[3];  ///< unit vector at rest
+  T weight;        ///< fraction of the voxel times its tissue volume times the stress reference [N m]
   S activation;    ///< 0..1
-  S with_length;   ///< 1 with the tension-length relation, else 0
+  S with_length;   ///< 1 if the tension-length relation applies, else 0
   bool passive;    ///< has a passive part
 };
 
-/// What a fibre does at a deformation.
+/// A fibre at a deformation.
 template <class T>
 struct FibreState
 {
   T along[3];  ///< F a0
-  T squared;   ///< stretch squared
+  T squared;   ///< squared stretch
   T stress;    ///< second Piola-Kirchhoff stress times the weight [N m]
 };
 
@@ -44,7 +44,7 @@ FRONTALIS_LAW FibreState<T> fibre_state(const Fibre<T, S>& fibre, const Kinemati
   return state;
 }
 
-/// Whether the fibres of a muscle have stress at all. Backends skip those that have none before they load them.
+/// Whether the fibres of a muscle have any stress. Backends do not load those that have none.
 template <class S>
 FRONTALIS_LAW bool has_stress(S activation, bool passive)
 {
@@ -68,7 +68,7 @@ FRONTALIS_LAW void add_fibres(const Voxel& voxel, const Kinematics<T>& k, Matrix
       });
 }
 
-/// Work [J] that fibres did between two looks: minus the mean of stress over the change of half the squared stretch.
+/// Work of fibres between two states [J]: minus the mean stress times the change of half the squared stretch.
 FRONTALIS_LAW double fibre_work(double stress_before, double squared_before, double stress, double squared)
 {
   return -0.25 * (stress_before + stress) * (squared - squared_before);

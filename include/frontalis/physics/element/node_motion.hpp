@@ -7,10 +7,10 @@ namespace frontalis
 namespace physics
 {
 
-// How forces and prescribed motions move a node in one step. Displacement and velocity are those of one axis, u [m] and
-// v [m/s]; a backend goes through nodes and axes.
+// How forces and prescribed motions move a node in one step. Displacement u [m] and velocity v [m/s] are those of one
+// axis; a backend loops over nodes and axes.
 
-/// What a step of the damped central difference does to velocities: v = keep v + impulse - gain f / m.
+/// How a step of the damped central difference scheme changes velocities: v = keep v + impulse - gain f / m.
 template <class T>
 struct Kick
 {
@@ -18,7 +18,7 @@ struct Kick
   T impulse[3];  ///< gain times gravity [m/s]
 };
 
-/// `damping`: proportional to mass [1/s]; `seconds`: for how long forces change velocities; gravity [m/s2].
+/// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2].
 template <class T, class Gravity>
 Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
 {
@@ -31,8 +31,7 @@ Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
   return kick;
 }
 
-/// Velocity of a free node after a step; gain_over_mass: Kick::gain over the node's mass. Two multiply-adds, with
-/// gravity or without.
+/// Velocity of a free node after a step. gain_over_mass: Kick::gain over the node's mass.
 template <class T>
 FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T force)
 {
@@ -48,7 +47,7 @@ FRONTALIS_LAW void add_load(T gain_over_mass, T dt, T force, T& u, T& v)
   u += dt * change;
 }
 
-/// A node that moves as it is told, on a bone or on a prescribed path. before: its displacement before the step.
+/// Moves a node that follows a bone or a prescribed path. before: its displacement before the step.
 template <class T>
 FRONTALIS_LAW void move_to(double to, T before, T dt, T& u, T& v)
 {
@@ -56,18 +55,18 @@ FRONTALIS_LAW void move_to(double to, T before, T dt, T& u, T& v)
   v = (u - before) / dt;
 }
 
-/// Work on a node in a step along one axis, over the node's mass [m2/s2].
+/// Work on a node per mass in a step, along one axis [m2/s2].
 struct NodeWork
 {
   double damping;     ///< lost to damping
-  double constraint;  ///< done by constraints
+  double constraint;  ///< work of constraints
 };
 
-/// From the velocities before the step, without constraints (`free`) and after it [m/s]. Each impulse works along the
-/// mean of the velocities before and after the step: with that the change of kinetic energy is the sum of works
-/// exactly. beside: how far constraints moved the node beside dt v, in this step and in the one before [m]. Along that
-/// the other forces worked too, by the mean of those of two steps, and the constraints took it away. damping [1/s],
-/// kick [s]: as in kick_of().
+/// From the velocities before the step, without constraints (`free`) and after it [m/s]. Each impulse acts along the
+/// mean of the velocities before and after the step, so that the sum of works is exactly the change of kinetic energy.
+/// beside: displacement by constraints in addition to dt v, in this step and in the previous one [m]. The other forces
+/// worked along it too, with their mean over both steps, and the constraints absorbed that work. damping [1/s], kick
+/// [s]: as in kick_of().
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {

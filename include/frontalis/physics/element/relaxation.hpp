@@ -11,11 +11,11 @@ namespace physics
 template <class T>
 struct ViscousTerm
 {
-  T share;  ///< of the isochoric stress that relaxes
+  T share;  ///< fraction of the isochoric stress that relaxes
   T rate;   ///< 1 / relaxation time [1/s]
 };
 
-/// The viscous stresses of a voxel relax by `elapsed` [s] towards those at k (physics/viscosity.hpp). Calls
+/// Relaxes the viscous stresses of a voxel by `elapsed` [s] towards those at k (physics/viscosity.hpp). Calls
 /// renewed(before, after) for each term.
 template <class Voxel, class T, class Renewed>
 FRONTALIS_LAW void relax_voxel(const Voxel& voxel, const T& elapsed, const Kinematics<T>& k, Renewed&& renewed)

@@ -8,11 +8,10 @@ namespace frontalis
 namespace physics
 {
 
-// A node that slides on a surface, in one step: slide() puts it back to its tangent plane, rub() slows it down. The
-// step of a node on a bone is that in the bone's frame, between relative_to() and the way back through the pose.
+// One step of a node that slides on a surface: slide() moves it back to its tangent plane, rub() applies friction. On a
+// bone, the step is done in the bone's frame: relative_to() converts to it, and the pose converts back.
 
-/// Turns the velocity of a node with its plane. Returns the normal speed that this took from it, which is a part of the
-/// surface's reaction.
+/// Turns the velocity of a node with its plane. Returns the removed normal speed, a part of the surface's reaction.
 template <class T>
 FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>& v)
 {
@@ -21,8 +20,8 @@ FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>&
   return before - dot(to, v);
 }
 
-/// Friction on a node that slides with velocity v relative to the surface. response: friction_response(); reaction:
-/// normal speed that the surface took from the node over dt [m/s2]; pressing: as much of it as friction knows of.
+/// Applies friction to a node with velocity v relative to the surface. response: friction_response(); reaction: normal
+/// speed that the surface removed from the node, over dt [m/s2]; pressing: the delayed reaction that friction uses.
 template <class T>
 FRONTALIS_LAW void rub(const T& coefficient, const T& response, const T& dt, const T& reaction, T& pressing, Vec3<T>& u,
                        Vec3<T>& v)
@@ -33,8 +32,8 @@ FRONTALIS_LAW void rub(const T& coefficient, const T& response, const T& dt, con
   u = u - dt * lost;
 }
 
-/// What friction takes from a node over its mass [m2/s2]: the impulse along the surface, times the mean of the
-/// velocities before the step and after it, relative to the surface. `free`: velocity without constraints.
+/// Energy per mass that friction dissipates at a node [m2/s2]: the impulse along the surface times the mean of the
+/// velocities before and after the step, relative to the surface. `free`: velocity without constraints.
 FRONTALIS_LAW double friction_work(const Vec3<double>& normal, const Vec3<double>& surface_velocity,
                                    const Vec3<double>& before, const Vec3<double>& free, const Vec3<double>& after)
 {
@@ -42,14 +41,14 @@ FRONTALIS_LAW double friction_work(const Vec3<double>& normal, const Vec3<double
   return -dot(along, 0.5 * (before + after) - surface_velocity);
 }
 
-/// A node as seen from a bone.
+/// Motion of a node relative to a bone.
 struct RelativeMotion
 {
-  Vec3<double> place, velocity;   ///< in the frame of the bone [m], relative to it [m/s]
-  Vec3<double> surface_velocity;  ///< of the bone where the node is, in the scene's frame [m/s]
+  Vec3<double> place, velocity;   ///< in the frame of the bone [m], [m/s]
+  Vec3<double> surface_velocity;  ///< velocity of the bone at the node, in the scene's frame [m/s]
 };
 
-/// now, before: of the bone at the end of the step and at its begin; rate: 1 / dt; place, v: of the node after its
+/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: of the node after its
 /// update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)

@@ -10,8 +10,8 @@ namespace frontalis
 namespace physics
 {
 
-/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. `look`: stiffness
-/// becomes the largest bound at these points, if it was less.
+/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. With `look`,
+/// stiffness becomes the largest bound at these points if that is larger.
 template <class Voxel, class T>
 FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
 {
@@ -35,7 +35,7 @@ FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, 
       mode[c][m] = force[c][m];
 }
 
-/// Replaces the hourglass modes of one component by the forces on them, for scalar hourglass control.
+/// Scalar hourglass control: replaces the hourglass modes of one component by the forces on them.
 template <class T>
 FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
 {
@@ -44,10 +44,10 @@ FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
       mode[m] = stiffness * mode[m];
 }
 
-/// Stress of a voxel at its centre, from all its effects; an effect that changes it has its line here. Modes that have
-/// more than scalar hourglass control are replaced by the forces on them; for the others the voxel calls
-/// scalar_hourglass() now or, where one component at a time is faster, before stress_forces(). stiffness: 0 before;
-/// where `look` asks for it, the bound of the largest eigenvalue of the stiffness now [N/m].
+/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Modes
+/// with more than scalar hourglass control are replaced by the forces on them. For the others the voxel calls
+/// scalar_hourglass() here or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the
+/// call; with `look` it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
 {
@@ -71,8 +71,8 @@ FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], boo
   return P;
 }
 
-/// Replaces the gradients of one component by the forces of the stress [N]; after element_stress(). With that the modes
-/// are the forces conjugate to the transformed displacements.
+/// Replaces the gradients of one component by the forces of the stress [N], after element_stress(). All modes are then
+/// the forces conjugate to the transformed displacements.
 template <class Voxel, class T>
 FRONTALIS_LAW void stress_forces(const Voxel& voxel, const Matrix3<T>& P, int component, T (&mode)[8])
 {

@@ -7,17 +7,17 @@ namespace frontalis
 namespace physics
 {
 
-/// What the monitor sees of a voxel.
+/// Energies and bounds of a voxel for the monitor.
 template <class T>
 struct VoxelLook
 {
   T internal;   ///< elastic energy [J]
   T hourglass;  ///< energy of hourglass control [J]
-  T jacobian;   ///< the smallest det F
+  T jacobian;   ///< smallest det F
   T stiffness;  ///< bound of the largest eigenvalue of the stiffness [N/m]
 };
 
-/// Energy of the elastic laws [J]. `material`: the voxel's, or a part of it.
+/// Energy of the elastic laws [J]. `material`: that of the voxel, or a part of it.
 template <class Voxel, class T>
 FRONTALIS_LAW T elastic_energy(const Voxel& voxel, const NeoHookean<T>& material, const Kinematics<T>& k)
 {
@@ -41,7 +41,7 @@ FRONTALIS_LAW T hourglass_energy(const Voxel& voxel, const Kinematics<T>& k, con
   return Number<T>::of(0.5) * scalar * sum;
 }
 
-/// At transformed displacements.
+/// Evaluates a voxel at transformed displacements.
 template <class Voxel, class T>
 FRONTALIS_LAW VoxelLook<T> look_at(const Voxel& voxel, const T (&mode)[3][8])
 {

@@ -31,14 +31,14 @@ namespace physics
 // folder that has its name: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),
 // stiffness_now(k), gauss_forces(mode, look, stiffness), scalar_hourglass(mode).
 
-/// Adds the stress of the laws beyond neo-Hookean.
+/// Adds the stress of the laws other than neo-Hookean.
 template <class Voxel, class T>
 FRONTALIS_LAW void add_laws(const Voxel& voxel, const Kinematics<T>& k, Matrix3<T>& P)
 {
   voxel.each_law([&](const auto& law) { law.add_stress(k, P); });
 }
 
-/// First Piola-Kirchhoff stress of the elastic laws. `material`: the voxel's, or a part of it.
+/// First Piola-Kirchhoff stress of the elastic laws. `material`: that of the voxel, or a part of it.
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> elastic_stress(const Voxel& voxel, const NeoHookean<T>& material, const Kinematics<T>& k)
 {
@@ -61,7 +61,7 @@ FRONTALIS_LAW Matrix3<T> isochoric_stress(const Voxel& voxel, const Kinematics<T
   return elastic_stress(voxel, material, k);
 }
 
-/// The volumetric part alone.
+/// Only the volumetric part.
 template <class T>
 FRONTALIS_LAW Matrix3<T> volumetric_stress(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
@@ -73,14 +73,14 @@ FRONTALIS_LAW Matrix3<T> volumetric_stress(const NeoHookean<T>& material, const 
   return P;
 }
 
-/// Takes away the part of the stress that has relaxed.
+/// Subtracts the part of the stress that has relaxed.
 template <class Voxel, class T>
 FRONTALIS_LAW void add_viscosity(const Voxel& voxel, const Kinematics<T>& k, Matrix3<T>& P)
 {
   take_relaxed(k, voxel.relaxed(relaxed_tensors(voxel.viscous_terms()) - 1), P);
 }
 
-/// What the laws beyond neo-Hookean add to the bound of the stiffness since rest [N/m].
+/// Increase of the stiffness bound since rest by the laws other than neo-Hookean [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW T law_stiffening(const Voxel& voxel, const Kinematics<T>& k)
 {
@@ -89,7 +89,7 @@ FRONTALIS_LAW T law_stiffening(const Voxel& voxel, const Kinematics<T>& k)
   return sum;
 }
 
-/// Bound of the largest eigenvalue of the voxel's stiffness [N/m]; NaN where the deformation is not finite.
+/// Bound of the largest eigenvalue of the voxel's stiffness [N/m]; NaN if the deformation is not finite.
 template <class Voxel, class T>
 FRONTALIS_LAW T stiffness_now(const Voxel& voxel, const Kinematics<T>& k)
 {

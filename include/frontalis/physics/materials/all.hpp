@@ -23,24 +23,24 @@ struct MaterialList
   using Places = std::make_index_sequence<sizeof...(Solids)>;
 };
 
-/// The table of materials: every solid that a scene can ask for. A solid is a struct of its parameters with a
-/// `description`, and the functions add_stress, energy, tangent_stiffness and shear_modulus of it; with fibres, the
-/// first three take a pointer to their directions after the kinematics. New ones go to the end, for model files store
-/// places.
+/// The table of materials: every solid that a scene can use. A solid is a struct of its parameters with a `description`
+/// and the functions add_stress, energy, tangent_stiffness and shear_modulus; with fibres, the first three take a
+/// pointer to their directions after the kinematics. New solids go to the end, because model files store places in the
+/// table.
 using Materials = MaterialList<NeoHookean, MooneyRivlin, Ogden, FungExponential, HolzapfelGasserOgden, Guccione>;
 
-/// The solid with a material's numbers (description.hpp says where each stands).
+/// The solid with a material's numbers; description.hpp defines their order.
 template <template <class> class Solid, class T, std::size_t... I>
 FRONTALIS_LAW Solid<T> solid_of(const T* numbers, std::index_sequence<I...>)
 {
-  // the only one that has the volumetric part too
+  // the only solid that includes the volumetric part
   if constexpr (std::is_same_v<Solid<T>, NeoHookean<T>>)
     return { numbers[0], numbers[bulk_modulus_slot] };
   else
     return { numbers[slot_of(static_cast<int>(I))]... };
 }
 
-/// Calls visit(solid), or visit(solid, directions) where the solid has fibres.
+/// Calls visit(solid), or visit(solid, directions) if the solid has fibres.
 template <template <class> class Solid, class T, class Visit>
 FRONTALIS_LAW void visit_solid(const T* numbers, Visit&& visit)
 {
@@ -60,7 +60,7 @@ FRONTALIS_LAW void visit_solid(const T* numbers, Visit&& visit)
   }
 }
 
-/// Calls visit for the law's solid; laws before the place `First` are left out.
+/// Calls visit for the law's solid. Laws before the place `First` are skipped.
 template <int First, class T, class Visit, template <class> class... Solids, std::size_t... I>
 FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, MaterialList<Solids...>,
                                 std::index_sequence<I...>)
@@ -69,7 +69,7 @@ FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, Materi
          ...);
 }
 
-/// The same for all of the table, or for those from the place `First` on.
+/// The same for the whole table, or from the place `First` onwards.
 template <int First = 0, class T, class Visit>
 FRONTALIS_LAW void visit_table(Law law, const T* numbers, Visit&& visit)
 {

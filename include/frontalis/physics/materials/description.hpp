@@ -11,7 +11,7 @@ namespace frontalis
 /// The law of a material: its place in the table of materials (physics/materials/all.hpp), which model files store.
 enum class Law : std::uint8_t
 {
-  neo_hookean = 0  ///< the part of the stress that every voxel's kernel computes without asking for a law
+  neo_hookean = 0  ///< the law that every kernel computes for all voxels, without a lookup
 };
 
 namespace physics
@@ -23,18 +23,18 @@ constexpr int bulk_modulus_slot = 1;
 constexpr int first_direction = 5;
 constexpr int parameter_slots = first_direction + 2 * 3;
 
-/// Where a law's parameter stands among a material's numbers: in order, but for the slot of the bulk modulus.
+/// Index of a law's parameter among a material's numbers: in order, except for the slot of the bulk modulus.
 FRONTALIS_LAW constexpr int slot_of(int parameter) { return parameter < bulk_modulus_slot ? parameter : parameter + 1; }
 
-/// What a parameter measures.
+/// The quantity and unit of a parameter.
 enum class Measure : std::uint8_t
 {
   number,        ///< [-]
   pressure,      ///< [Pa]
-  young_modulus  ///< [Pa]; the law gets the shear modulus that follows from it and Poisson's ratio
+  young_modulus  ///< [Pa]; converted to the shear modulus with Poisson's ratio
 };
 
-/// Where a parameter may lie.
+/// Range of valid values of a parameter.
 struct Range
 {
   double lower = 0, upper = 0;
@@ -53,19 +53,19 @@ struct Parameter
   const char* meaning = nullptr;  ///< for error texts: "shear modulus of the matrix"
   Measure measure = Measure::number;
   Range range{};
-  double example = 0;  ///< of a soft tissue, in SI units
+  double example = 0;  ///< value for a soft tissue, in SI units
 };
 
 /// What scenes, models and tests need to know of a law: plain data beside its formulas, as its member `description`.
 struct MaterialDescription
 {
-  const char* name;           ///< as `law` in a scene
-  const char* title;          ///< in texts
-  const char* shear_modulus;  ///< formula of the shear modulus at rest, by the parameters' keys
-  /// Whether materials of this law that share a voxel are replaced by one with their mean parameters.
+  const char* name;           ///< value of `law` in a scene
+  const char* title;          ///< for display
+  const char* shear_modulus;  ///< formula of the shear modulus at rest, with the parameters' keys
+  /// Whether materials of this law in one voxel are replaced by one material with their mean parameters.
   bool averaged;
-  int directions;  ///< of fibres that a scene gives: 0, 1 or 2
-  /// In the order of the law's members; those behind the last have no key.
+  int directions;  ///< number of fibre directions that a scene gives: 0, 1 or 2
+  /// In the order of the law's members; unused entries have no key.
   Parameter parameters[law_parameters_max];
 
   FRONTALIS_LAW constexpr int count() const
@@ -79,7 +79,7 @@ struct MaterialDescription
   constexpr const Parameter* end() const { return parameters + count(); }
 };
 
-/// Directions of the examples of laws that have some.
+/// Directions for the examples of laws with fibres.
 constexpr double example_directions[2][3] = { { 0.8, 0.6, 0 }, { 0.8, -0.6, 0 } };
 
 }  // namespace physics

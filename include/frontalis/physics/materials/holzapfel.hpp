@@ -9,7 +9,7 @@ namespace frontalis::physics
 
 /// Two dispersed families of collagen fibres in an isochoric neo-Hookean matrix (Gasser, Ogden & Holzapfel 2006, J. R.
 /// Soc. Interface 3:15): psi = mu/2 (g I1 - 3) + sum k1 / (2 k2) (e^(k2 E^2) - 1), E = d (g I1 - 3) + (1 - 3 d) (g I4 -
-/// 1), fibres bear tension only (E > 0). Continued below a small J with g.
+/// 1). Fibres carry tension only (E > 0). Continued below a small J with g.
 template <class T>
 struct HolzapfelGasserOgden
 {
@@ -42,7 +42,7 @@ template <class T>
 struct FibreFamily
 {
   Vec3<T> along;  ///< F a0
-  T strain;       ///< E, 0 where the family is slack
+  T strain;       ///< E, 0 if the family is slack
 };
 
 template <class T>
@@ -60,7 +60,7 @@ FRONTALIS_LAW FibreFamily<T> fibre_family(const HolzapfelGasserOgden<T>& materia
   return family;
 }
 
-/// Adds the first Piola-Kirchhoff stress [Pa] of matrix and families along a0[0], a0[1] to P.
+/// Adds the first Piola-Kirchhoff stress [Pa] of the matrix and of the families along a0[0], a0[1] to P.
 template <class T>
 FRONTALIS_LAW void add_stress(const HolzapfelGasserOgden<T>& material, const Kinematics<T>& k, const Vec3<T>* a0,
                               Matrix3<T>& P)
@@ -105,7 +105,7 @@ FRONTALIS_LAW T energy(const HolzapfelGasserOgden<T>& material, const Kinematics
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
-/// Families count as if they were taut.
+/// Slack families count as if they were taut.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const HolzapfelGasserOgden<T>& material, const Kinematics<T>& k, const Vec3<T>* a0)
 {

@@ -24,12 +24,12 @@ constexpr std::array<Law, sizeof...(I)> laws_at(std::index_sequence<I...>)
   return { { static_cast<Law>(I)... } };
 }
 
-/// Every law, in the order of the table.
+/// All laws, in the order of the table.
 inline constexpr auto every_law = laws_at(Materials::Places{});
 
 constexpr const MaterialDescription& description_of(Law law) { return material_table[static_cast<std::size_t>(law)]; }
 
-/// The law that scenes call by this name, if there is one.
+/// The law with this name in scenes, if there is one.
 inline std::optional<Law> law_named(std::string_view name)
 {
   for (const Law law : every_law)
@@ -38,7 +38,7 @@ inline std::optional<Law> law_named(std::string_view name)
   return std::nullopt;
 }
 
-/// The numbers of a material as models keep them; description.hpp says where each stands.
+/// The numbers of a material as models store them; description.hpp defines their order.
 using MaterialNumbers = std::array<double, parameter_slots>;
 
 /// Shear modulus at rest [Pa].
@@ -49,8 +49,8 @@ inline double shear_modulus_of(Law law, const MaterialNumbers& numbers)
   return modulus;
 }
 
-/// The numbers of a material whose parameters a scene gives, in SI units and in the order of the law's description.
-/// Directions are left zero. The bulk modulus is that of linear elasticity.
+/// The numbers of a material from the parameters of a scene, in SI units and in the order of the law's description.
+/// Directions stay zero. The bulk modulus is that of linear elasticity.
 inline MaterialNumbers numbers_of(Law law, const std::array<double, law_parameters_max>& given, double poisson)
 {
   MaterialNumbers numbers{};
@@ -64,7 +64,7 @@ inline MaterialNumbers numbers_of(Law law, const std::array<double, law_paramete
   return numbers;
 }
 
-/// The numbers of the description's example, directions included, for tests and studies of every law.
+/// The numbers of the description's example, including directions, for tests and studies of every law.
 inline MaterialNumbers example_of(Law law, double poisson = 0.49)
 {
   std::array<double, law_parameters_max> given{};

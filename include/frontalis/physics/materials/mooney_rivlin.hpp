@@ -59,7 +59,7 @@ FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
-/// That of g^2 I2, I2 = |cof F|^2, is 4 at rest, as it is exactly, with what its bound term by term has grown since.
+/// For g^2 I2, I2 = |cof F|^2, it is 4 at rest, which is exact, plus the growth of its term-by-term bound since.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 {

@@ -7,8 +7,8 @@ namespace frontalis::physics
 {
 
 /// Compressible neo-Hookean solid with isochoric split: psi = mu/2 (g(J) I1 - 3) + kappa/2 (J - 1)^2 with g = J^(-2/3)
-/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5), continued below a small J. It has
-/// the volumetric part of all materials; with kappa = 0 it is a purely isochoric law as the others are.
+/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5), continued below a small J. It
+/// includes the volumetric part of all materials; with kappa = 0 it is purely isochoric like the other laws.
 template <class T>
 struct NeoHookean
 {
