@@ -2,12 +2,14 @@
 set(FRONTALIS_CUDA_ARCHITECTURES native CACHE STRING "GPUs to build for: native, portable, or as CMAKE_CUDA_ARCHITECTURES")
 
 # "native": the GPUs of this machine. Where there is none, or with "portable": machine code for sm_80 and sm_90, and PTX
-# of the oldest architecture that the toolkit knows, which the driver compiles for every other GPU.
+# of the oldest architecture from sm_75 on that the toolkit knows, which the driver compiles for every other GPU.
 function(frontalis_gpu_architectures result)
   set(chosen ${FRONTALIS_CUDA_ARCHITECTURES})
   execute_process(COMMAND ${CMAKE_CUDA_COMPILER} --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
   string(REGEX MATCHALL "[0-9]+" known "${known}")
   list(SORT known COMPARE NATURAL)
+  # the kernels need instructions of sm_70 and are tested from sm_75 on
+  list(FILTER known EXCLUDE REGEX "^([0-6][0-9]|7[0-4])$")
   if(chosen STREQUAL "native")
     set(chosen)
     execute_process(COMMAND nvidia-smi --query-gpu=compute_cap --format=csv,noheader OUTPUT_VARIABLE present ERROR_QUIET)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/error.hpp"
+#include "frontalis/solver/backend.hpp"
 
 #include <cuda_runtime_api.h>
 
@@ -14,11 +14,15 @@ namespace frontalis
 namespace cuda
 {
 
-/// Throws Error with the failed operation and the message of the CUDA runtime.
+/// Throws Error with the failed operation and the message of the CUDA runtime; BackendUnavailable where memory ran out.
 inline void require(cudaError_t status, const char* what)
 {
-  if (status != cudaSuccess)
-    throw Error(std::string("backend cuda: ") + what + ": " + cudaGetErrorString(status));
+  if (status == cudaSuccess)
+    return;
+  const std::string text = std::string("backend cuda: ") + what + ": " + cudaGetErrorString(status);
+  if (status == cudaErrorMemoryAllocation)
+    throw BackendUnavailable(text);
+  throw Error(text);
 }
 
 /// An array in device memory.

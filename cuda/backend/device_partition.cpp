@@ -17,7 +17,10 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
     throw BackendUnavailable(fmt::format("backend cuda: {} nodes and {} fibre entries; allowed are below 2^30 and 2^28",
                                          model.nodes.size(), model.fibre_muscle.size()));
   const auto fits = [&](const VoxelPatches& cut)
-  { return patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes, !model.sliding.empty()) <= choice.patch_bytes; };
+  {
+    return cut.fits_indices &&
+           patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes, !model.sliding.empty()) <= choice.patch_bytes;
+  };
   PatchSettings settings = choice.patches;
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
     if (auto cut = std::make_unique<VoxelPatches>(model, settings); fits(*cut))

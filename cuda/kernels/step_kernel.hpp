@@ -121,10 +121,10 @@ constexpr float nothing_ahead = -1, wanted_ahead = -2;
 struct LawEntry
 {
   std::int32_t law;
-  float weight;          ///< fraction times tissue volume [m3]
-  float per_tangent;     ///< LawPart::per_tangent [m]
-  float at_rest;         ///< tangent stiffness at rest [Pa]
-  float parameters[11];  ///< order: Law
+  float weight;                                ///< fraction times tissue volume [m3]
+  float per_tangent;                           ///< LawPart::per_tangent [m]
+  float at_rest;                               ///< tangent stiffness at rest [Pa]
+  float parameters[physics::parameter_slots];  ///< order: physics/materials/description.hpp
 };
 
 /// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.

@@ -239,8 +239,8 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
     filled[p % settings.blocks] += patch.nodes;
     most_nodes = std::max(most_nodes, filled[p % settings.blocks]);
   }
-  if (most_halo + most_nodes > 65535 || most_voxels >= 65535)
-    throw Error("backend cuda: patches of " + std::to_string(most_nodes) + " nodes; allowed are 65535");
+  // indices have 16 bits: the caller tries smaller patches, or strips
+  fits_indices = most_halo + most_nodes <= 65535 && most_voxels < 65535;
 }
 
 void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of)

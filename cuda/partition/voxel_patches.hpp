@@ -47,6 +47,7 @@ struct VoxelPatches
 
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
+  bool fits_indices = true;                      ///< the kernel's indices of 16 bits are enough
 
 private:
   void number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of);

@@ -1,6 +1,8 @@
 #include "cuda/partition/voxel_strips.hpp"
 
-#include "frontalis/error.hpp"
+#include "frontalis/solver/backend.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -198,8 +200,7 @@ std::uint32_t fibre_word(const Model& model, std::uint32_t voxel)
   const auto first = static_cast<std::uint32_t>(model.fibre_begin[voxel]);
   const std::uint32_t count = static_cast<std::uint32_t>(model.fibre_begin[voxel + std::size_t{ 1 }]) - first;
   if (count > 15)
-    throw Error("backend cuda: voxel " + std::to_string(voxel) + " has " + std::to_string(count) +
-                " muscles; allowed are 15");
+    throw BackendUnavailable(fmt::format("backend cuda: voxel {} has {} muscles; allowed are 15", voxel, count));
   return count > 0 ? first * 16 + count : 0;
 }
 
@@ -230,8 +231,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
                                });
   }
   if (next != model.nodes.size() + 1 || slot_count >= 0xffffffffu)
-    throw Error("backend cuda: the strips hold " + std::to_string(next - 1) + " of " +
-                std::to_string(model.nodes.size()) + " nodes");
+    throw BackendUnavailable(fmt::format("backend cuda: the strips hold {} of {} nodes", next - 1, model.nodes.size()));
 
   slots.assign(slot_count, StripSlot{ 0, 0 });
   std::size_t slot = 0;

@@ -10,10 +10,10 @@ template <class T>
 struct LawShare
 {
   Law law;
-  T weight;          ///< fraction times tissue volume [m3]
-  T at_rest;         ///< tangent stiffness at rest [Pa]
-  T per_tangent;     ///< LawPart::per_tangent [m]
-  T parameters[11];  ///< order: Law
+  T weight;                                ///< fraction times tissue volume [m3]
+  T at_rest;                               ///< tangent stiffness at rest [Pa]
+  T per_tangent;                           ///< LawPart::per_tangent [m]
+  T parameters[physics::parameter_slots];  ///< order: physics/materials/description.hpp
 
   FRONTALIS_LAW void add_stress(const physics::Kinematics<T>& k, physics::Matrix3<T>& P) const
   {

@@ -237,7 +237,8 @@ TEST_F(RunModel, a_motion_that_diverges_ends_with_an_error_and_no_frame_of_it)
   load.binding = pulled.skin_binding;
   pulled.loads.push_back(load);
   write_model(pulled, model);
-  const ProgramResult result = run_program({ "run", model, "--seconds", "0.5", "--frames", frames });
+  const ProgramResult result =
+      run_program({ "run", model, "--backend", "cpu", "--seconds", "0.5", "--frames", frames });
   EXPECT_EQ(result.code, 1);
   for (const char* part : { "the motion is unstable", "no longer finite", "voxel", "flesh", "load tear" })
     expect_contains(result.errors, part);
@@ -258,9 +259,9 @@ TEST_F(RunModel, a_motion_that_diverges_ends_with_an_error_and_no_frame_of_it)
 
 TEST_F(RunModel, interrupted_leaves_whole_files_and_130)
 {
-  const ProgramResult result = run_program(
-      { "run", model, "--activate", "pull=0.5", "--seconds", "10000", "--frame-rate", "50", "--frames", frames },
-      frames + "/skin_0003.ply");
+  const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--activate", "pull=0.5", "--seconds",
+                                             "10000", "--frame-rate", "50", "--frames", frames },
+                                           frames + "/skin_0003.ply");
   EXPECT_EQ(result.code, 130);
   EXPECT_EQ(result.errors, "interrupted\n");
   std::size_t skins = 0;

@@ -76,9 +76,8 @@ public:
 /// surface loads on a node of mass m, and W is the sum of
 /// - the energy of a strain of 1e-4 everywhere;
 /// - what fibres can give: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive too;
-/// - what bones and prescribed nodes can have brought, whose paths since then have length d: four times the bound of
-/// the
-///   stiffness of the voxels at them, times d^2;
+/// - what bones and prescribed nodes can have brought, whose paths since then have length d: d^2 times four times the
+///   bound of the stiffness of the voxels at them;
 /// - what viscous stresses can give back.
 class Guard
 {

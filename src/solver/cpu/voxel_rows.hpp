@@ -58,11 +58,11 @@ struct FibreSlot
 struct LawSlot
 {
   Law law;
-  std::int32_t material;              ///< as in LawPart
-  float weight[Tile::width];          ///< fraction times tissue volume [m3]
-  float per_tangent[Tile::width];     ///< LawPart::per_tangent [m]
-  float at_rest[Tile::width];         ///< tangent stiffness at rest [Pa]
-  float parameters[11][Tile::width];  ///< order: Law
+  std::int32_t material;                                    ///< as in LawPart
+  float weight[Tile::width];                                ///< fraction times tissue volume [m3]
+  float per_tangent[Tile::width];                           ///< LawPart::per_tangent [m]
+  float at_rest[Tile::width];                               ///< tangent stiffness at rest [Pa]
+  float parameters[physics::parameter_slots][Tile::width];  ///< order: physics/materials/description.hpp
 };
 
 /// Prony terms of a tile's voxels.

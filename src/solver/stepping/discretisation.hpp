@@ -16,7 +16,7 @@ struct LawPart
 {
   Law law;
   double weight;  ///< fraction of the voxel's tissue
-  std::array<double, 11> parameters;
+  std::array<double, physics::parameter_slots> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
   double per_tangent;     ///< weight times tissue volume over h^2 of the shortest edge: voxel stiffness per tangent [m]
   std::int32_t material;  ///< -1: averaged

@@ -74,12 +74,10 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// the sections of a file of texts, by name of their case
+// the sections of a file of texts, by name of their case; none if there is no such file
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);
-  if (!file)
-    throw Error(path + ": cannot be read; must have the texts of the manual");
   std::map<std::string, CaseText> texts;
   CaseText ignored;  // what stands above the first section
   CaseText* text = &ignored;
@@ -119,16 +117,18 @@ void write_manual(const Findings& findings, const std::string& path)
   std::string sections;
   for (const auto& [name, finding] : findings)
   {
-    const auto text = texts.find(name);
-    if (text == texts.end())
+    const CaseText bare{ name, {}, {} };
+    const auto found = texts.find(name);
+    if (found == texts.end() && !texts.empty())
       throw Error((pictures / "text.md").string() + ": has no section '## " + name + ": TITLE'");
+    const CaseText& text = texts.empty() ? bare : found->second;
     const auto& checks = finding.checks;
     const auto is_bounded = [](const Check& check) { return !std::isnan(check.bound); };
     const auto passes = [&](const Check& check) { return is_bounded(check) && check.passed(); };
-    overview.add({ "[" + text->second.title + "](#" + name + ")",
+    overview.add({ "[" + text.title + "](#" + name + ")",
                    static_cast<double>(std::count_if(checks.begin(), checks.end(), is_bounded)),
                    static_cast<double>(std::count_if(checks.begin(), checks.end(), passes)) });
-    sections += "\n## " + text->second.title + "\n\n<a id=\"" + name + "\"></a>\n" + text->second.before + "\n";
+    sections += "\n## " + text.title + "\n\n<a id=\"" + name + "\"></a>\n" + text.before + "\n";
     if (!finding.skipped.empty())
       sections += "\nSkipped: " + finding.skipped + "\n";
     if (!checks.empty())
@@ -140,8 +140,8 @@ void write_manual(const Findings& findings, const std::string& path)
       write_plot(plot, (pictures / file).string());
       sections += "\n![" + plot.title + "](" + manual.stem().string() + "/" + file + ".png)\n";
     }
-    if (!text->second.after.empty())
-      sections += "\n" + text->second.after + "\n";
+    if (!text.after.empty())
+      sections += "\n" + text.after + "\n";
   }
   write_text(path, wrapped(out + "\n" + overview.markdown() + sections));
 }
