@@ -19,10 +19,10 @@ struct Wish
   bool ahead = false;
   SurfaceContact* contact = nullptr;
   SurfaceContact::Point here{ 0, 0, 0 };
-  SurfaceContact::Point at{ 0, 0, 0 };  ///< where the plane is to be found that it needs now
+  SurfaceContact::Point at{ 0, 0, 0 };  ///< where to search for the plane that is needed now
 };
 
-// Continues with what the search ahead has learned about the surface.
+// Takes over the contact state of the search ahead.
 template <class Contact>
 static __device__ void take_over(const StepArguments& g, Contact& s)
 {

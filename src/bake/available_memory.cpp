@@ -14,7 +14,7 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// The number that follows a word in a file; for an empty word, the first number. Infinite where there is none.
+/// The number that follows a word in a file; for an empty word, the first number. Infinite if there is none.
 double number_in(const std::string& path, const std::string& after)
 {
   std::ifstream file(path);

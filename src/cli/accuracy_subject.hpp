@@ -37,7 +37,7 @@ struct AccuracySubject
   ModelMaker maker;
 };
 
-/// Sets `options.folder` to its default where it is empty. Throws Error, WrongUsage.
+/// Sets `options.folder` to its default if it is empty. Throws Error, WrongUsage.
 AccuracySubject accuracy_subject(AccuracyOptions& options);
 
 #endif

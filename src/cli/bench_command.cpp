@@ -40,7 +40,7 @@ struct BenchOptions
   std::string plot;
 };
 
-// resident memory of this process after freed memory has gone back to the system [bytes]; 0 where it is unknown
+// resident memory of this process after freed memory has gone back to the system [bytes]; 0 if it is unknown
 double resident_bytes()
 {
 #ifdef __GLIBC__

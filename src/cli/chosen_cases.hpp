@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// The cases that `only` names, in the order of `cases`; where it is empty, the short cases, or with `all` all of them.
+/// The cases that `only` names, in the order of `cases`; if it is empty, the short cases, or all cases with `all`.
 /// Throws WrongUsage on a name that no case has.
 template <class Case>
 std::vector<Case> chosen_cases(std::vector<Case> cases, const std::vector<std::string>& only, bool all)

@@ -29,7 +29,7 @@ public:
   explicit WrongUsage(const std::string& what) : std::runtime_error(what) {}
 };
 
-/// Throws WrongUsage where --seconds is not a number greater than 0.
+/// Throws WrongUsage if --seconds is not a number greater than 0.
 inline void check_seconds(double seconds)
 {
   if (!(seconds > 0) || !std::isfinite(seconds))

@@ -13,7 +13,7 @@ namespace frontalis
 class FrameFolder
 {
 public:
-  /// Makes the folder where it is missing and removes the files of an earlier run from it. Throws Error.
+  /// Makes the folder if it is missing and removes the files of an earlier run from it. Throws Error.
   FrameFolder(std::string path, const Model& model);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.

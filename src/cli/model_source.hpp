@@ -31,7 +31,7 @@ struct ModelSource
 struct BakeSummary
 {
   bool whole = false;                ///< set before the bake: measure the muscles too
-  std::string cache;                 ///< what the cache was used for, a sentence; empty: there is no cache
+  std::string cache;                 ///< a sentence on how the cache was used; empty: there is no cache
   std::vector<std::string> stages;   ///< seconds, peak memory and name
   std::vector<std::string> muscles;  ///< a table of their volumes, heading first; empty: none
   std::vector<std::string> findings;
@@ -40,13 +40,13 @@ struct BakeSummary
 /// Declares --mesh-dir, --accuracy and --voxel.
 void add_scene_options(CLI::App& command, ModelSource& source);
 
-/// By its extension (.vtkhdf, .h5, .hdf5) or by the signature of HDF5 at its beginning.
+/// Judges by the extension (.vtkhdf, .h5, .hdf5) or by the signature of HDF5 at the file's beginning.
 bool is_model_file(const std::string& path);
 
 /// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.
 Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);
 
-/// bake() that Ctrl-C ends by Interrupted. Only in builds that bake.
+/// Like bake(), but Ctrl-C makes it throw Interrupted. Only in builds that bake.
 Model bake_interruptibly(const Scene& scene, BakeReport* report,
                          const std::function<void(const std::string& stage, double done)>& progress);
 

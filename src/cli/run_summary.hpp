@@ -25,8 +25,8 @@ struct RunSummary
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
   std::optional<GuardCounts> guard;        ///< where the motion was guarded
-  std::optional<EnergyLedger> ledger;      ///< at the end, where one was kept
-  std::optional<Equilibrium> equilibrium;  ///< where one was looked for
+  std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
+  std::optional<Equilibrium> equilibrium;  ///< empty: none was looked for
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
 };

@@ -32,7 +32,7 @@ void check_order(const Model& model)
   }
 }
 
-/// Node numbers of one plane of the grid, -1 where there is none.
+/// Node numbers of one plane of the grid, -1 if there is none.
 struct Plane
 {
   std::vector<std::int32_t> number;

@@ -63,7 +63,7 @@ public:
   Hdf5File& operator=(Hdf5File&&) = delete;
   ~Hdf5File();
 
-  /// Writes everything out; throws Error where that fails (a full disk, say).
+  /// Writes everything out; throws Error if that fails (a full disk, say).
   void close();
 
   void make_group(const std::string& path);
@@ -89,7 +89,7 @@ public:
 
   void write_attribute(const std::string& group, const std::string& name, const std::vector<std::int64_t>& values);
   void write_attribute(const std::string& group, const std::string& name, const std::string& value);
-  /// The attribute's first number; `otherwise` where there is none.
+  /// The attribute's first number; `otherwise` if there is none.
   std::int64_t attribute(const std::string& group, const std::string& name, std::int64_t otherwise) const;
 
 private:

@@ -14,10 +14,10 @@ namespace
 // time steps per slice: few enough that requests do not wait, and enough that reading the clock and taking the mutex
 // once per slice cost little
 constexpr int steps_per_slice = 32;
-// wall time after which a frame has its energies and volume ratios computed anew
+// wall time between computations of the energies and volume ratios
 constexpr std::chrono::seconds monitor_period(1);
 
-// whether two poses of a bone differ by less than one can see: 1e-5 rad, 1e-6 m
+// whether the difference of two poses of a bone is invisible: below 1e-5 rad and 1e-6 m
 bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
 {
   const auto within = [](double limit) { return [limit](double x, double y) { return std::abs(x - y) < limit; }; };
@@ -48,7 +48,7 @@ void Runner::Implementation::fail(const std::string& reason)
   frame.failure = reason;
 }
 
-// advances by seconds on the clock of the activations; a motion that cannot be trusted stops the face until reset
+// Advances by `seconds` on the clock of the activations. If the motion fails, the face stops until it is reset.
 void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
@@ -130,7 +130,7 @@ Controls Runner::Implementation::controls_after(double seconds) const
   return next;
 }
 
-// steps until the simulated time of this frame is reached or its wall time is over, and publishes the frame
+// makes steps until the frame's simulated time is reached or its wall time is over, and publishes the frame
 void Runner::Implementation::run_frame()
 {
   const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
@@ -192,7 +192,7 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
   try
   {
-    // a state that went bad since the latest check must not become the one that the guard goes back to
+    // the guard must not save, as a state to return to, one that went bad since the latest check
     if (guard && !frame.failed)
       guard->check();
   }

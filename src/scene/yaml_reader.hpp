@@ -55,7 +55,7 @@ struct Names
 };
 
 /// A value of the file, or the absence of one, with its dotted path and line. Each reading function returns `fallback`
-/// where the value is absent or wrong; where it is wrong, it records a fault.
+/// if the value is absent or wrong; if it is wrong, it records a fault.
 class Node
 {
 public:
@@ -92,13 +92,13 @@ public:
 
   std::string text(const std::string& fallback = {}) const;
   std::string name() const;  ///< text of [A-Za-z0-9_]+
-  /// One of `allowed`; empty where wrong or absent.
+  /// One of `allowed`; empty if wrong or absent.
   std::string choice(const std::vector<std::string>& allowed) const;
   bool boolean(bool fallback) const;
   int integer(int lower, int upper, int fallback) const;
   double number(Dimension dimension, const Bound& bound, double fallback) const;
   std::array<double, 3> vector(Dimension dimension, const Bound& bound, const std::array<double, 3>& fallback) const;
-  /// Three numbers of which some may be null; `std::nullopt` for the whole where wrong or absent.
+  /// Three numbers of which some may be null; `std::nullopt` if the value is wrong or absent.
   std::optional<std::array<std::optional<double>, 3>> open_vector(Dimension dimension) const;
   /// Vector of length 1; a zero vector is a fault.
   std::array<double, 3> direction(const std::array<double, 3>& fallback) const;
@@ -112,13 +112,13 @@ public:
   std::vector<Node> entries() const;
   /// Entries of a mapping; double keys and a value that is no mapping are faults.
   std::vector<std::pair<std::string, Node>> pairs() const;
-  /// As pairs, where keys must be names.
+  /// Like pairs(), but the keys must be names.
   std::vector<std::pair<std::string, Node>> named_pairs() const;
 
-  std::string found() const;  ///< "found a list", "found 'text'"
+  std::string found() const;  ///< for messages: "found a list", "found 'text'"
 
 private:
-  bool is_triple(const std::string& expected) const;  ///< or records a fault
+  bool is_triple(const std::string& expected) const;  ///< if not, records a fault
   bool scalar(std::string& text, const std::string& expected) const;
 
   YAML::Node yaml_;
@@ -141,7 +141,7 @@ public:
   bool has(const std::string& key) const;
   Node optional(const std::string& key);
   Node required(const std::string& key, const std::string& expected);
-  /// Accepts the keys left, where it could not be found out which are allowed.
+  /// Accepts all other keys, for use if it is not known which are allowed.
   void ignore_rest() { judged_ = false; }
 
 private:

@@ -6,7 +6,7 @@ namespace frontalis
 {
 
 /// Calls visit(solid) or visit(solid, directions) with the law's struct filled from a material's numbers. Neo-Hookean
-/// and the volumetric part, which every voxel has, are left out: kernels compute them apart.
+/// and the volumetric part, which every voxel has, are left out: kernels compute them separately.
 template <class T, class Visit>
 FRONTALIS_LAW void visit_law(Law law, const T* numbers, Visit&& visit)
 {
@@ -40,7 +40,7 @@ FRONTALIS_LAW T law_stiffness(Law law, const T* numbers, const physics::Kinemati
   return stiffness;
 }
 
-/// What a law adds to the bound of a voxel's stiffness since rest [N/m]. per_tangent: LawPart's.
+/// By how much a law raises the bound of a voxel's stiffness above that at rest [N/m]; see LawPart::per_tangent.
 template <class T>
 FRONTALIS_LAW T law_stiffening(Law law, const T* numbers, const T& at_rest, const T& per_tangent,
                                const physics::Kinematics<T>& k)

@@ -19,7 +19,7 @@ using Field = std::function<Vector3(const Vector3&)>;
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Writes the surface of the unit cube as mapped into space, in millimetres; n facets an edge.
+/// Writes the surface of the unit cube, mapped into space, in millimetres; n facets per edge.
 std::string block_file(const std::string& name, int n, const Map& map)
 {
   static const TemporaryFolder folder;
@@ -91,7 +91,7 @@ struct Angles
   double mean = 0, most = 0;  ///< [degrees]
 };
 
-/// Between a model's fibres and a field at its voxels, without regard to the sign.
+/// Angles between a model's fibres and a field at its voxels, regardless of sign.
 Angles angles(const Model& model, const Field& field)
 {
   Angles result;
@@ -260,7 +260,7 @@ TEST(Fibres, FollowAControlNet)
         net.weights.push_back(corner[0] > 0 ? 0.7071067811865476 : 1);
       }
   scene.muscles[0].net = net;
-  // the cylinder is longer than the net: its ends take the net's last direction
+  // the cylinder is longer than the control net: its ends get the net's last direction
   const auto clamped = [](const Vector3& p)
   {
     const double angle = std::max(-pi / 4, std::min(pi / 4, std::atan2(p[1], p[0])));

@@ -49,7 +49,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     const Strip& strip = strips.strips[s];
     const auto place = [&](std::uint32_t plane, int row, int lane) -> const StripSlot&
     { return strips.slots[strip.slot_begin + (plane * (rows + 2) + row) * lanes + lane]; };
-    // voxels around an own node that its lane can reach
+    // per node that the strip owns: the voxels around it that its lane can read
     std::map<std::uint32_t, std::set<std::uint32_t>> voxels_of;
     for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
       for (int row = 0; row < rows + 2; ++row)
@@ -80,7 +80,7 @@ void check_strips(const Model& model, const StripSettings& settings)
         EXPECT_EQ(std::count(model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end(),
                              static_cast<std::int32_t>(entry.first)),
                   1);
-    // every voxel of an own node is present
+    // every voxel around a node that the strip owns is present
     for (const auto& entry : voxels_of)
       EXPECT_EQ(entry.second.size(), static_cast<std::size_t>(valence[entry.first]));
   }
@@ -133,7 +133,7 @@ TEST(VoxelStrips, FillALargeBlock)
   test::BlockSettings s;
   s.voxels = { { 89, 31, 31 } };
   const VoxelStrips strips(test::block_model(s), { 4, 64 });
-  // 90 columns: 31 + 30 + 29 own columns
+  // 90 columns: strips own 31 + 30 + 29 of them
   EXPECT_GT(strips.filled(), 0.9);
 }
 

@@ -333,7 +333,7 @@ TEST(Options, a_file_may_hold_the_profile)
   EXPECT_EQ(read_scene(path, options).accuracy.measured.cost, 0) << "another voxel edge was not measured";
   EXPECT_EQ(read_scene(path, options).profiles.back().measured.cost, 0);
 
-  // it replaces one that the scene has
+  // a profile from a file replaces the scene's profile of the same name
   options.voxel_quantity.clear();
   folder.write("chosen.yaml", "draft: {voxel: 1.25 mm, measured: {error: 0.1 mm, cost: 9}}\n");
   const Scene replaced = read_scene(path, options);

@@ -80,7 +80,7 @@ void switch_live(Solver& solver, Effect effect, bool on)
   solver.switch_effect(effect, on);
 }
 
-// Otherwise the comparisons below could not fail.
+// Each effect changes the motion. If one did not, the comparisons below could not fail.
 TEST_P(LiveEffects, each_is_felt)
 {
   const auto whole = make(whole_scene());

@@ -30,7 +30,7 @@ struct BakeReport
     double in_bone = 0;      ///< clipped: inside surfaces that the tissue lies outside of
     double beyond_skin = 0;  ///< clipped: outside the surfaces that the tissue lies inside of
     double elsewhere = 0;    ///< clipped: by a depth or a crop
-    double nurbs = 0;        ///< inside the NURBS volume of its fibres; 0 where it has none
+    double nurbs = 0;        ///< inside the NURBS volume of its fibres; 0 if it has none
   };
   std::vector<Stage> stages;
   std::vector<MuscleVolume> muscles;  ///< of muscles made of surfaces, if `measure_muscles` is set

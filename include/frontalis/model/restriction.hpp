@@ -13,7 +13,7 @@ struct ConstraintSurface
 {
   std::string name;
   TriangleMesh mesh;
-  std::int32_t bone = -1;  ///< index into Model::bones: moves with it; -1: still
+  std::int32_t bone = -1;  ///< index into Model::bones of the one it moves with; -1: still
   double friction = 0;     ///< Coulomb's coefficient
 };
 
@@ -21,15 +21,15 @@ struct RigidNode
 {
   std::int32_t node = 0;
   std::int32_t bone = -1;        ///< index into Model::bones; -1: still
-  std::int32_t constraint = -1;  ///< index into Model::constraints: that restricts it; -1: unknown
+  std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 
 struct SlidingNode
 {
   std::int32_t node = 0;
   std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
-  double distance = 0;           ///< kept from the surface [m], positive on the side of its outward normals
-  std::int32_t constraint = -1;  ///< index into Model::constraints: that restricts it; -1: unknown
+  double distance = 0;           ///< distance to keep from the surface [m], positive on the side of its outward normals
+  std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 
 struct PrescribedNode

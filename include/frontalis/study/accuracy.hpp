@@ -18,8 +18,8 @@ namespace frontalis
 struct AccuracySetting
 {
   AccuracyProfile profile;
-  double poisson = 0;       ///< of every material; 0: the scene's
-  double time_scaling = 1;  ///< times the scene's
+  double poisson = 0;       ///< Poisson's ratio of all materials; 0: as in the scene
+  double time_scaling = 1;  ///< factor on the scene's time scaling
   Backend backend = "cpu";
 };
 
@@ -35,24 +35,24 @@ struct ActivationHistory
 struct ModelMaker
 {
   std::function<std::string(const AccuracySetting&)> content;  ///< all that the model depends on, as text
-  std::function<Model(const AccuracySetting&)> bake;           ///< throws Error where the setting has no model
+  std::function<Model(const AccuracySetting&)> bake;           ///< throws Error if the setting has no model
 };
 
 struct AccuracyPlan
 {
-  /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. Where it is
+  /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. If it is
   /// given, settled skins are compared with it, and there is no reference of finer voxels.
   std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
   AccuracySetting standard;               ///< each knob is varied from here
   std::vector<AccuracyProfile> profiles;  ///< the scene's own, which are measured too
-  std::vector<std::string> knobs;         ///< some of knob_names(), without combinations; empty: all
-  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last is the reference's
+  std::vector<std::string> knobs;         ///< knobs to vary, without combinations; empty: all
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the reference has the last
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
   std::string folder;      ///< where finished variants are kept
   double budget = 0;       ///< wall seconds that the study may take; 0: no limit
   bool quick = false;      ///< fewer settings per knob
-  int threads = 0;         ///< of the CPU; 0: one per core
+  int threads = 0;         ///< CPU threads; 0: one per core
 };
 
 /// Distance of a published skin from the reference's [m].
@@ -67,7 +67,7 @@ struct AccuracyRow
 {
   std::string name;  ///< its differences from the standard setting
   AccuracySetting setting;
-  std::string fault;        ///< why there are no figures (unstable, no model); empty: there are
+  std::string fault;        ///< why there are no figures (unstable, no model); empty: no fault
   SkinError error;          ///< in the worst phase of the history, settled included
   SkinError settled;        ///< once settled
   double averaged = NAN;    ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
@@ -77,8 +77,8 @@ struct AccuracyRow
   double spread = NAN;      ///< distance of the quartiles of repeated timings over their median
   double processors = NAN;  ///< share of its processors that the solver got while it was timed
   double step = NAN;        ///< wall seconds per step, median
-  double steps = NAN;       ///< per simulated second
-  double memory = NAN;      ///< of model and solver, on the host [bytes]
+  double steps = NAN;       ///< steps per simulated second
+  double memory = NAN;      ///< host memory of model and solver [bytes]
   double build = NAN;       ///< wall seconds to make the model
   double voxels = NAN;
   bool noisy = false;  ///< spread above 20 %, or other programs took more than a fifth of the processors
@@ -124,9 +124,9 @@ std::vector<std::string> knob_names();
 /// comparison, a reference that diverges and a folder that cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
-/// All rows with their figures; those of the front are marked.
+/// All rows with their figures; those on the Pareto front are marked.
 Table accuracy_table(const AccuracyFindings& findings);
-/// Error against cost: a line for each knob, the front with its points named, and the reference's own error.
+/// Error against cost: a line per knob, the Pareto front with named points, and the reference's own error.
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title);
 /// The findings in words, and the table, as markdown.
 std::string accuracy_report(const AccuracyFindings& findings, const std::string& title);
@@ -134,7 +134,7 @@ std::string accuracy_report(const AccuracyFindings& findings, const std::string&
 std::string profile_text(const AccuracyRow& row, const std::string& name, const std::string& machine);
 
 /// The cheapest setting of the front with an error of at most `tolerance` [m], and the most accurate one that costs at
-/// most `seconds` of wall time per simulated second. Throws Error with the nearest figures where there is none.
+/// most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 

@@ -20,7 +20,7 @@ struct Check
   bool relative = true;
 
   bool passed() const { return !(error > bound) && error == error; }
-  std::string verdict() const;                 ///< "pass", "FAIL", or "shown" where there is no bound
+  std::string verdict() const;                 ///< "pass", "FAIL", or "shown" if there is no bound
   std::string error_text(double value) const;  ///< an error or a bound: in percent where relative; NaN: empty
 };
 

@@ -16,18 +16,18 @@ struct EffectCost
 {
   Effect effect;
   EffectPresence presence;
-  std::size_t bytes = 0;  ///< that the solver's arrays hold for it
-  /// Of a step [s]: the step of the model less that of the model without the effect. For elasticity, which no model can
-  /// be without, the step of the model without all other effects.
+  std::size_t bytes = 0;  ///< size of the solver's arrays for it
+  /// Time per step [s] that the effect adds: with it less without it. For elasticity, which every model needs: the time
+  /// per step without all other effects.
   Spread step;
 };
 
 struct EffectCosts
 {
   std::string backend;
-  double step = 0;        ///< of the model with every muscle at activation 0.75 [s]
-  double plain_step = 0;  ///< of plain_model() [s]
-  double field = 0;       ///< of computing one field of the skin [s]
+  double step = 0;        ///< time per step with every muscle at activation 0.75 [s]
+  double plain_step = 0;  ///< time per step of plain_model() [s]
+  double field = 0;       ///< time to compute one field of the skin [s]
   std::vector<EffectCost> effects;
 };
 
@@ -35,7 +35,7 @@ struct EffectCosts
 /// control, and no effect but elasticity.
 Model plain_model(const Model& model);
 
-/// Compares the model with itself without each of its effects; `timer` tells the times of steps.
+/// Compares the model with itself without each of its effects; `timer` measures the time per step.
 EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
                             const StepTimer& timer);
 

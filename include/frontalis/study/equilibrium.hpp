@@ -27,7 +27,7 @@ struct RestState
 };
 
 /// Brings the model to rest under slowly growing loads, critically damped for the period, and then by Solver::settle.
-/// Throws Error where it is not at rest within settings.longest.
+/// Throws Error if it is not at rest within settings.longest.
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 
 /// Mean displacement [m] of nodes, and the internal force [N] on them.

@@ -16,14 +16,14 @@ class LinearStatics
 {
 public:
   /// `gradient`: deformation gradient, row by row, of the state to linearise about. Rigid nodes and the components that
-  /// model.prescribed names are fixed. Throws Error where the model has muscles or sliding nodes.
+  /// model.prescribed names are fixed. Throws Error if the model has muscles or sliding nodes.
   explicit LinearStatics(const Model& model, const std::array<double, 9>& gradient = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
   ~LinearStatics();
 
   /// Whether the state is stable: all pivots of the factorisation were positive.
   bool positive_definite() const;
 
-  /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error where the state is
+  /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error if the state is
   /// unstable.
   Vectors solve(const Vectors& forces) const;
 

@@ -50,7 +50,7 @@ struct Plot
   int width = 800, height = 500;  ///< pixels
 };
 
-/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error with gnuplot's message where it fails. Where
+/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error with gnuplot's message if it fails. Where
 /// gnuplot is missing it throws too, and leaves PATH.gnuplot, which can be drawn on another machine.
 void write_plot(const Plot& plot, const std::string& path);
 

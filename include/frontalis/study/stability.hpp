@@ -18,22 +18,22 @@ namespace frontalis
 /// The result of a hard case.
 struct Trial
 {
-  std::int64_t voxels = 0;                                          ///< of its largest model
-  std::int64_t steps = 0;                                           ///< of all its motions
+  std::int64_t voxels = 0;                                          ///< voxels of its largest model
+  std::int64_t steps = 0;                                           ///< time steps of all its motions
   double worst_jacobian = std::numeric_limits<double>::infinity();  ///< smallest J = det F
   /// Largest imbalance of the energy ledger and largest hourglass energy, over the ledger's largest term; NaN: there
   /// was no ledger.
   double energy_error = std::numeric_limits<double>::quiet_NaN();
   double hourglass_share = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t rollbacks = 0;                       ///< of the guard
-  Checks checks;                                    ///< that it has to pass
-  std::string stopped;                              ///< the guard's report where it stopped the motion, as it may
-  std::string failure;                              ///< why the case ended before its end; empty: it did not
+  std::int64_t rollbacks = 0;                       ///< how often the guard went back
+  Checks checks;                                    ///< all must pass
+  std::string stopped;                              ///< the guard's report if it stopped the motion, which it may
+  std::string failure;                              ///< why the case ended early; empty: it did not
   std::string skipped;                              ///< why it was not run; empty: it ran
   std::vector<std::pair<std::string, Plot>> plots;  ///< file name without extension, plot
   double seconds = 0;                               ///< wall time
 
-  bool passed() const;  ///< or skipped
+  bool passed() const;  ///< true for a skipped case too
 };
 
 /// Thrown by a case that cannot run here, with the reason.
@@ -45,8 +45,8 @@ struct Skipped
 struct StabilitySettings
 {
   Backend backend = "cpu";
-  bool long_runs = false;  ///< run in full length the cases that have a shorter form
-  /// The model of the scene of this name in config; throws Skipped where there is none.
+  bool long_runs = false;  ///< run every case in full length, even if it has a short form
+  /// The model of the scene `name` in config; throws Skipped if there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;
   /// Called with the model of each motion before it begins.
   std::function<void(const Model&)> model = [](const Model&) {};
@@ -54,7 +54,7 @@ struct StabilitySettings
   std::function<void(double done)> watch = [](double) {};
 };
 
-/// A motion that explicit codes fail at, or several of them.
+/// One or more motions at which explicit codes tend to fail.
 struct StabilityCase
 {
   std::string name;
@@ -65,7 +65,7 @@ struct StabilityCase
 };
 
 /// All cases, in the order of the document; descriptions, sizes, times and bounds are read from FOLDER/NAME.yaml.
-/// Throws Error where a file is missing or wrong.
+/// Throws Error if a file is missing or wrong.
 std::vector<StabilityCase> stability_cases(const std::string& folder);
 
 /// Runs a case. An Error that it throws becomes a failure.
@@ -76,7 +76,7 @@ std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
 /// Trials with their cases, as JSON, as a table in markdown, and as FOLDER/stability.md with its plots in
-/// FOLDER/stability/. The document takes in the text of FOLDER/stability/elsewhere.md. Throws Error where a file cannot
+/// FOLDER/stability/. The document includes the text of FOLDER/stability/elsewhere.md. Throws Error if a file cannot
 /// be written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;
 std::string trials_json(const Trials& trials);

@@ -16,10 +16,10 @@ class Table
 public:
   using Cell = std::variant<std::string, double>;
 
-  /// Names of the columns, with their units where they have any: "force [N]".
+  /// Names of the columns, with their units, if any: "force [N]".
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  /// Throws Error where there are not as many cells as columns.
+  /// Throws Error if there are not as many cells as columns.
   void add(std::vector<Cell> row);
 
   const std::vector<std::string>& columns() const { return columns_; }
@@ -35,7 +35,7 @@ private:
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// A number in so many significant digits; empty where it is NaN.
+/// A number in so many significant digits; empty if it is NaN.
 std::string readable(double value, int digits = 6);
 
 /// A length [m] with its unit: "0.2 mm".

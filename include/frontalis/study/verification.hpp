@@ -41,7 +41,7 @@ std::vector<VerificationCase> verification_cases();
 using Findings = std::vector<std::pair<std::string, Finding>>;
 std::string findings_json(const Findings& findings);
 /// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/, from where it takes the texts of all
-/// cases (text.md). Throws Error where a file cannot be read or written, or gnuplot is missing.
+/// cases (text.md). Throws Error if a file cannot be read or written, or gnuplot is missing.
 void write_manual(const Findings& findings, const std::string& path);
 
 }  // namespace frontalis

@@ -21,14 +21,14 @@ private:
   std::vector<double> values_, distances_;
 };
 
-/// Stretches one of two coordinates such that it runs from 0 to 1 at every value of the other: between its limits on
-/// the muscle's surface, smoothed. Lines along which the other coordinate is constant keep their shape.
+/// Stretches one of two coordinates so that it runs from 0 to 1 at every value of the other. 0 and 1 are its smoothed
+/// limits on the muscle's surface. Lines along which the other coordinate is constant keep their shape.
 class Stretch
 {
 public:
   /// `samples`: both coordinates at the grid's samples. `stretched`: the index of the coordinate to stretch. `closed`:
-  /// the other coordinate runs around a ring. Where the other is nearer than `ends` to 0 or 1, the limits found at
-  /// `ends` are used.
+  /// the other coordinate runs around a ring. If the other coordinate is closer than `ends` to 0 or 1, the limits at
+  /// that distance are used.
   Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>>& samples, std::size_t stretched, bool closed,
           double ends);
   void apply(std::array<double, 2>& coordinates) const;

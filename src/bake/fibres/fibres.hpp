@@ -26,7 +26,7 @@ struct MuscleFibres
 std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes, const PreparedSurfaces& surfaces,
                                       BakeMonitor& monitor);
 
-/// Fills the model's fibre directions at the centres of voxels. Throws Error where a control net gives no direction.
+/// Fills the model's fibre directions at the centres of voxels. Throws Error if a control net gives no direction.
 void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                 BakeMonitor& monitor);
 

@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-/// A field by its values at the corners of each cell. It may jump by whole numbers from cell to cell.
+/// A field given by its values at the corners of each cell. It may jump by whole numbers from cell to cell.
 using CornerField = std::vector<std::array<double, 8>>;
 
 /// Gradient at the middle of a cell [1/m].
@@ -29,15 +29,15 @@ public:
   };
 
   GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>& tensors);
-  /// D = d d^T + `rest` for unit directions d, the first part by one-point quadrature, which does not lock.
+  /// D = d d^T + `rest` I for unit directions d. One-point quadrature of the first part avoids locking.
   GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest);
 
-  /// The fields of least energy for their mean square, except the constant one, by subspace iteration from `start`: as
-  /// many as it has columns, of which the first ones are accurate.
+  /// The non-constant eigenmodes with the lowest ratio of energy to mean square, by subspace iteration from `start`:
+  /// one per column of it. Only the first ones are accurate.
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
   /// The field of least energy with given values at some nodes.
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// What must be added to a field for its energy to be least.
+  /// The field to be added to `field` so that the energy is least.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:

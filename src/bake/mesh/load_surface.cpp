@@ -15,8 +15,8 @@ namespace frontalis
 namespace
 {
 
-// A surface passes through itself where it encloses more than this proportion twice or from outside, or such a place is
-// deeper than this proportion of its size; an open one, where a group of crossing triangles extends over more than this
+// A closed surface passes through itself if it encloses more than this proportion twice or inside-out, or such a region
+// is deeper than this proportion of its size; an open one, if a group of crossing triangles extends over more than this
 // proportion of it. The limits lie between meshes segmented from images of a real head (at most 0.6 %, 1.7 % and 1.8 %)
 // and surfaces that really overlap, which have ten times as much (doc/baking.md).
 constexpr double largest_overlap = 0.02;
@@ -40,11 +40,11 @@ bool open_and_inside_out(const TriangleMesh& mesh)
   return strongest < -0.75;
 }
 
-/// The places that crossing pieces of a mesh enclose twice or from outside.
+/// The regions that crossing pieces of a mesh enclose twice or inside-out.
 struct Overlap
 {
-  double share = 0;  ///< proportion of all that the pieces enclose
-  double depth = 0;  ///< largest distance of such a place from the surface [m]
+  double share = 0;  ///< volume of these regions over all enclosed volume
+  double depth = 0;  ///< largest distance of a point of these regions from the surface [m]
   double size = 0;   ///< cube root of the volume that the pieces enclose [m]
   Vector3d deepest{ 0, 0, 0 };
 };
@@ -78,7 +78,7 @@ Overlap find_overlap(const TriangleMesh& mesh, const MeshFaults& faults)
   return overlap;
 }
 
-/// Throws where a fault leaves open what the surface encloses.
+/// Throws if a fault makes it unclear what the surface encloses.
 void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool closed, double unit)
 {
   if (faults.fins.count > 0)

@@ -86,7 +86,7 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     enter(t);
   std::vector<bool> keep(mesh.triangles.size(), true);
-  // a neighbour that has no area itself becomes two such triangles, so that the list grows; the limit ends it for sure
+  // a neighbour without area is split into two more, so the list grows; the limit makes sure that the loop ends
   const std::size_t limit = 10 * flat.size() + 100;
   for (std::size_t f = 0; f < flat.size() && f < limit; ++f)
   {
@@ -110,7 +110,7 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
       d = v != a && v != c ? v : d;
     keep[other] = false;
     if (d == b)
-      continue;  // the two lie back to back
+      continue;  // the triangle and its neighbour lie back to back
     for (const Triangle& part : { Triangle{ a, b, d }, Triangle{ b, c, d } })
     {
       mesh.triangles.push_back(part);
@@ -140,7 +140,7 @@ std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::in
   // the winding number is taken in front of the largest triangle of each piece
   struct Largest
   {
-    Vector3d middle{ 0, 0, 0 }, normal{ 0, 0, 0 };  // the normal is twice as long as the triangle has area
+    Vector3d middle{ 0, 0, 0 }, normal{ 0, 0, 0 };  // the normal's length is twice the triangle's area
   };
   std::vector<Largest> pieces(1 + *std::max_element(piece.begin(), piece.end()));
   for (std::size_t t = 0; t < piece.size(); ++t)

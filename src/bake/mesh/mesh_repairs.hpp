@@ -8,11 +8,11 @@ namespace frontalis
 /// Numbers of triangles that were repaired without changing the shape of a mesh.
 struct MeshRepairs
 {
-  std::size_t collapsed = 0;     ///< removed, because they have a corner twice
-  std::size_t repeated = 0;      ///< removed, because the same triangle is there already
+  std::size_t collapsed = 0;     ///< removed because two corners are the same vertex
+  std::size_t repeated = 0;      ///< removed because the same triangle exists already
   std::size_t back_to_back = 0;  ///< pairs removed, which enclose nothing
-  std::size_t flat = 0;          ///< removed, because they have no area; the neighbour is split instead
-  std::size_t turned = 0;        ///< turned to agree with their neighbours
+  std::size_t flat = 0;          ///< removed because they have no area; the neighbour is split instead
+  std::size_t turned = 0;        ///< reversed to be oriented as their neighbours
 };
 
 /// Joins equal vertices and makes these repairs.

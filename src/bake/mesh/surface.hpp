@@ -10,8 +10,8 @@
 namespace frontalis
 {
 
-/// A surface of the scene with what its points, distances and winding numbers are computed from: vertices joined,
-/// triangles oriented, in scene coordinates [m].
+/// A surface of the scene, prepared for closest points, distances and winding numbers: equal vertices are joined and
+/// triangles oriented. Scene coordinates [m].
 class PreparedSurface
 {
 public:
@@ -24,7 +24,7 @@ public:
   int line() const { return line_; }
   bool closed() const { return rim_.empty(); }
 
-  /// Upper bound on how much the winding number changes within `radius` of p where the surface is not crossed: the
+  /// Upper bound on how much the winding number changes within `radius` of p if the surface is not crossed: the
   /// gradient of an open surface's solid angle depends on its rim alone (Biot-Savart). 0 for a closed surface.
   double winding_variation(const Vector3d& p, double radius) const;
 
@@ -55,7 +55,7 @@ using PreparedSurfaces = std::vector<std::unique_ptr<PreparedSurface>>;
 /// the surface and what is wrong.
 PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor);
 
-/// The surface of that name; throws Error beginning with `place` where there is none.
+/// The surface called `name`. If there is none, throws Error with a message that begins with `place`.
 const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std::string& name,
                                      const std::string& place);
 
@@ -66,7 +66,7 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 /// Reads a mesh file of any format that assimp knows; vertices times `unit`. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on sizes that make none.
+/// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
 
 }  // namespace frontalis

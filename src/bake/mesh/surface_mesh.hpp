@@ -27,7 +27,7 @@ using Edges = std::vector<std::array<std::int32_t, 2>>;
 
 Edges unbalanced_edges(const TriangleMesh& mesh);
 
-/// Volume enclosed by a closed mesh [m3], negative where it is inside-out.
+/// Volume enclosed by a closed mesh [m3], negative if it is inside-out.
 double signed_volume(const TriangleMesh& mesh);
 
 /// Area of all triangles [m2].

@@ -13,8 +13,8 @@ struct ClosestPoint
   Vector3d point{ 0, 0, 0 };
   double distance = 0;
   std::int32_t triangle = -1;  ///< -1: no triangle lies within the bound
-  /// What of the triangle it lies on. 0: the face; 1 to 3: the edge that begins at corner feature - 1; 4 to 6: the
-  /// corner feature - 4
+  /// The part of the triangle that it lies on. 0: the face; 1 to 3: the edge that begins at corner `feature` - 1; 4 to
+  /// 6: the corner `feature` - 4
   std::int8_t feature = 0;
 };
 
@@ -23,7 +23,7 @@ struct ClosestPoint
 /// 37(4):43, 2018: far groups of triangles by the Taylor series of the dipole potential about their area centroid (up
 /// to the kernel's second derivative), near triangles by their exact solid angles (van Oosterom & Strackee 1983).
 ///
-/// CGAL's AABB tree has no winding numbers, and finds closest points in 1.3 to 2.3 times the time.
+/// CGAL's AABB tree has no winding numbers, and takes 1.3 to 2.3 times as long to find closest points.
 class TriangleTree
 {
 public:
@@ -38,10 +38,10 @@ public:
   bool overlaps(const Box& box) const;
   /// Whether the segment p -> q passes through a triangle.
   bool crossed_by(const Vector3d& p, const Vector3d& q) const;
-  /// Appends the triangles that overlap the box, their numbers ascending.
+  /// Appends the triangles that overlap the box, in ascending order of index.
   void gather(const Box& box, std::vector<std::int32_t>& triangles) const;
 
-  /// 1 inside a closed surface whose normals point outwards, 0 outside, and between the two near holes.
+  /// 1 inside a closed surface whose normals point outwards, 0 outside; near holes, between 0 and 1.
   double winding_number(const Vector3d& p) const;
 
 private:
@@ -94,8 +94,8 @@ private:
   static double far_field(const Expansion& node, const Vector3d& p);
   static bool overlaps_triangle(const std::array<Vector3d, 3>& corners, const Box& box);
   const TriangleMesh* mesh_;
-  std::vector<std::int32_t> order_;               ///< triangles, those of a node one after the other
-  std::vector<std::array<Vector3d, 3>> corners_;  ///< of the triangles, in that order
+  std::vector<std::int32_t> order_;               ///< triangle indices, contiguous for each node
+  std::vector<std::array<Vector3d, 3>> corners_;  ///< corners of the triangles, in the same order
   std::vector<Node> nodes_;
   std::vector<Expansion> expansions_;
 };
@@ -104,7 +104,7 @@ private:
 /// two triangles crosses exactly one of them, so that crossings add up to the change of the winding number.
 int crossing(const TriangleMesh& mesh, std::int32_t triangle, const Vector3d& p, const Vector3d& q);
 
-/// Solid angle of a triangle seen from p, divided by 4 pi; positive where p lies behind the triangle.
+/// Solid angle of a triangle seen from p, divided by 4 pi; positive if p lies behind the triangle.
 double winding_of_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c);
 
 }  // namespace frontalis

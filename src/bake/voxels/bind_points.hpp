@@ -25,7 +25,7 @@ private:
   double extrapolation_;
 };
 
-/// Fills the skin, the landmarks and the loads of the model and binds their points to voxels. Throws Error where
+/// Fills the skin, the landmarks and the loads of the model and binds their points to voxels. Throws Error if
 /// nothing of a load can be bound, for a vertex of the skin that no voxel can carry, and for a landmark far from the
 /// skin.
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,

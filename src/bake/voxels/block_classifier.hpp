@@ -21,16 +21,16 @@ struct BlockState
   struct Depth
   {
     bool known = false;  ///< no threshold of the depth field lies in the block
-    double value = 0;    ///< where known: a depth between the same thresholds as all depths in the block [m]
+    double value = 0;    ///< if known: a depth between the same thresholds as all depths in the block [m]
   };
-  std::vector<Answer> inside_body;    ///< of each body
-  std::vector<Depth> depth;           ///< of each depth field
-  std::vector<Answer> inside_volume;  ///< of each volume
-  std::vector<Answer> in_sight;       ///< of each volume that needs sight: see Volumes::Entry::needs_sight
+  std::vector<Answer> inside_body;    ///< one answer per body
+  std::vector<Depth> depth;           ///< one per depth field
+  std::vector<Answer> inside_volume;  ///< one answer per volume
+  std::vector<Answer> in_sight;       ///< one per volume; see Volumes::Entry::needs_sight()
 };
 
-/// Finds what the voxels of a block consist of. Where a whole block is alike, it is decided at once; otherwise the
-/// block is halved, down to single voxels, which are sampled. Used by one thread.
+/// Finds what the voxels of a block consist of. A uniform block is decided as a whole; any other is halved, down
+/// to single voxels, which are sampled. Not safe for use by several threads at once.
 class BlockClassifier
 {
 public:
@@ -44,7 +44,7 @@ public:
 private:
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
 
-  // of a block: find what is not known yet; decide() returns whether nothing is left unknown
+  // Find what is not known yet about a block. decide() returns whether everything is known then.
   bool decide(const Box& box, BlockState& state);
   void decide_volume(std::size_t volume, const Box& box, BlockState& state);
   void decide_body(std::size_t body, const Box& box, BlockState& state) const;
@@ -52,14 +52,14 @@ private:
   void decide_sight(std::size_t volume, const Box& box, BlockState& state) const;
   Answer volume_answer(std::size_t volume, const Box& box, const BlockState& state) const;
 
-  // of a voxel that is sampled
+  // These sample a voxel.
   void sample(const Box& box, const BlockState& state);
   bool sample_volume(std::size_t volume, const Vector3d& p, const BlockState& state);
   bool sample_body(std::size_t body, const Vector3d& p, const BlockState& state);
   double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
   bool in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const;
 
-  // proportions of a voxel, or of each voxel of a block that is alike
+  // proportions in a voxel, or in each voxel of a uniform block
   void clear_shares();
   void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
@@ -70,7 +70,7 @@ private:
   double fill_min_;
   double voxel_volume_;
   double reach_;                   ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;  ///< of samples from the voxel's corner, in voxels
+  std::vector<Vector3d> offsets_;  ///< from the voxel's corner to the samples, in voxels
   Voxels voxels_;
 
   std::vector<double> material_share_;
@@ -78,13 +78,13 @@ private:
   std::vector<double> volume_share_;
   std::vector<std::vector<double>> band_share_;
 
-  // of the voxel that is sampled: what is found once at its middle, and holds near it
+  // What is found once at the middle of the sampled voxel and holds near it.
   struct NearbyBody
   {
     bool known = false;
-    std::vector<std::int32_t> triangles;  ///< in the voxel
+    std::vector<std::int32_t> triangles;  ///< triangles that overlap the voxel
     double winding = 0;                   ///< winding number at the middle
-    double variation = 0;                 ///< bound on its change within the voxel where no triangle is crossed
+    double variation = 0;                 ///< bound on its change within the voxel if no triangle is crossed
   };
   struct NearbyDepth
   {
@@ -98,7 +98,7 @@ private:
   std::vector<NearbyBody> nearby_body_;
   std::vector<NearbyDepth> nearby_depth_;
 
-  // of the sample: answers already found; -1 or not a number: none yet
+  // answers already found for the present sample; -1 or NaN: none yet
   std::vector<std::int8_t> body_here_;
   std::vector<double> depth_here_;
 };

@@ -124,7 +124,7 @@ private:
   std::map<const PreparedSurface*, double> side_;
 };
 
-/// Index in the model of the bone that a constraint moves with, added where it is new; -1: none.
+/// Index in the model of the bone that a constraint moves with, added if it is new; -1: none.
 std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 {
   if (constraint.bone.empty())

@@ -10,7 +10,7 @@
 namespace frontalis
 {
 
-/// The volumes of a scene with indices and surfaces in place of the names that the scene refers to them by.
+/// The volumes of a scene, with the names in the scene file resolved to indices and surfaces.
 class Volumes
 {
 public:
@@ -37,7 +37,7 @@ public:
     int material = 0;
     std::string name;
   };
-  /// A volume. Bodies are what points lie inside or outside of: a surface, or several that close a body together.
+  /// A volume. A body is what points lie inside or outside of: one surface, or several that close it together.
   struct Entry
   {
     const Volume* volume = nullptr;
@@ -61,7 +61,7 @@ public:
     }
   };
 
-  /// Layers thinner than `sample_spacing` are thin layers. Throws Error where a volume, layer or muscle refers to
+  /// Layers thinner than `sample_spacing` are thin layers. Throws Error if a volume, layer or muscle refers to
   /// something that is not there.
   Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing);
 
@@ -71,16 +71,16 @@ public:
   const std::vector<DepthField>& depth_fields() const { return depth_fields_; }
   const std::vector<ThinLayer>& thin_layers() const { return thin_layers_; }
 
-  /// The box around all tissue, in scene coordinates [m]. Throws Error where a tissue volume has no bounds.
+  /// The box around all tissue, in scene coordinates [m]. Throws Error if a tissue volume has no bounds.
   Box tissue_box() const;
 
-  /// How messages about a volume begin.
+  /// The beginning of error messages about a volume.
   std::string place(const Volume& volume) const;
 
 private:
-  /// Bounds of a tissue volume. Throws Error where it has none, or nothing lies within them.
+  /// Bounds of a tissue volume. Throws Error if it has none or nothing lies within them.
   Box bounds_of(const Entry& entry) const;
-  /// Index of the body that these surfaces make together; made on first use, as is a depth field.
+  /// Index of the body that these surfaces form. Bodies and depth fields are made on first use.
   std::size_t body_of(const std::vector<std::string>& names);
   std::size_t depth_field_below(const std::string& name);
   void add_layers(const Scene& scene, double sample_spacing);

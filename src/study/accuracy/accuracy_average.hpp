@@ -8,18 +8,18 @@
 namespace frontalis
 {
 
-/// Averages displacements of a skin over the neighbourhood at rest, so that errors are compared without those of single
-/// folds.
+/// Averages the displacements of a skin over the neighbourhood of each vertex at rest, so that single folds do not
+/// dominate the errors.
 class SkinAverage
 {
 public:
-  /// For skins with the reference's rest positions. Weights are those of a Gaussian of this standard deviation [m],
+  /// All motions must have the reference's rest positions. The weights are a Gaussian of this standard deviation [m]
   /// times the area.
   SkinAverage(const VariantMotion& reference, double deviation);
 
   /// The motion with averaged displacements; landmarks stay as they are.
   VariantMotion of(const VariantMotion& motion) const;
-  /// Against the averaged reference, in the worst phase. Throws Error as skin_errors().
+  /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
   SkinError error(const VariantMotion& motion) const;
 
 private:

@@ -10,7 +10,7 @@
 namespace frontalis
 {
 
-/// Thrown where the progress function of a study interrupts it.
+/// Thrown if the progress function of a study interrupts it.
 struct StudyInterrupted
 {
 };
@@ -19,28 +19,28 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< not the setting's where the folder has the motion from another machine
+  Backend played_by;  ///< the setting's, or another if the folder keeps a motion from another machine
   VariantMotion motion;
   VariantCost cost;
 };
 
-/// Measures variants one by one, and takes from the study's folder what was measured before.
+/// Measures variants one by one, and reuses earlier results from the study's folder.
 class VariantBench
 {
 public:
-  /// Keeps references to its arguments. Throws Error where the folder cannot be made or the standard setting has no
+  /// Keeps references to its arguments. Throws Error if the folder cannot be made or the standard setting has no
   /// model.
   VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
   /// Index in done(). Throws Error, StudyInterrupted.
   std::size_t measure(const AccuracySetting& setting, const std::string& name = {});
-  /// Null where the setting was not measured in this study.
+  /// Null if the setting was not measured in this study.
   const MeasuredVariant* find(const AccuracySetting& setting) const;
   const std::vector<MeasuredVariant>& done() const { return done_; }
 
-  /// Estimated wall seconds for a setting; 0 where the folder has it.
+  /// Estimated wall seconds for a setting; 0 if the folder has its results.
   double predicted(const AccuracySetting& setting) const;
-  /// Whether the budget has time for a setting; counts those that it has no time for.
+  /// Whether the budget has time for a setting. If not, left_out() increases by one.
   bool fits(const AccuracySetting& setting);
   int left_out() const { return left_out_; }
   /// The settings that follow, for the estimate of the time that is left.
@@ -74,7 +74,7 @@ private:
   std::vector<MeasuredVariant> done_;
   std::map<std::string, std::size_t> index_;  // by key
   std::vector<AccuracySetting> pending_;
-  // estimates of wall seconds: of the shortest variant, per unit of relative_time(), of timing a variant
+  // estimated wall seconds: for the shortest variant, per unit of relative_time(), for timing a variant
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };

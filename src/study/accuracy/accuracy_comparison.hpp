@@ -12,7 +12,7 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
                    const SkinAverage* average);
 
 /// Estimates the reference's error from the finest levels of its form, and finds the observed order, the motion of its
-/// skin and the differences of averaged skins. Throws Error where there are less than two levels.
+/// skin and the differences of averaged skins. Throws Error if there are less than two levels.
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings);
 

@@ -52,7 +52,7 @@ SkinPhase look(Solver& solver, const Model& model)
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
 
-// a motion by more than the size of the model diverges, even where it is finite
+// a displacement larger than the model counts as divergence, even if it is finite
 void check_size(const VariantMotion& motion, const Model& model)
 {
   double size = 0;
@@ -81,7 +81,7 @@ std::vector<float> vertex_areas(const Model& model)
   return areas;
 }
 
-// resumes a motion; false where the checkpoint does not fit the solver
+// resumes a motion; false if the checkpoint does not fit the solver
 bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
 {
   try
@@ -202,7 +202,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     double looked = 0;
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
-    // the guard may go back, so that settling begins anew
+    // the guard may go back to an earlier state, and settling begins anew
     Guard guard(*solver, model);
     const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
                                            [&](const Equilibrium& equilibrium)
@@ -227,7 +227,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     motion.phases.push_back(look(*solver, *model));
     check_size(motion, *model);
   }
-  // other errors are the machine's, and are not kept as faults of the setting
+  // other errors are faults of the machine and are not stored as faults of the setting
   catch (const Diverged& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
@@ -251,10 +251,10 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
-  // the time that other programs take can be told for one thread only
+  // the time that other programs take can be measured only for a single thread
   const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();
-  // while muscles begin to pull the assembled time step is searched for often, which is no cost of the steps
+  // while muscles begin to pull, the time step is estimated often; this is not part of the cost per step
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;

@@ -22,11 +22,11 @@ struct SkinPhase
 struct VariantMotion
 {
   std::string fault;              ///< why the motion cannot be used; empty: it can
-  std::vector<SkinPhase> phases;  ///< at rest, half of the ramp, its end, the end of the history, settled
-  std::vector<float> area;        ///< of the skin at rest that belongs to each vertex [m2]
-  double steps = 0;               ///< per second of the activations' clock
+  std::vector<SkinPhase> phases;  ///< at rest, mid-ramp, end of ramp, end of history, settled
+  std::vector<float> area;        ///< area of the skin at rest, shared out to its vertices [m2]
+  double steps = 0;               ///< time steps per second of the activations' clock
   double energy = 0;              ///< imbalance of the energy ledger over its largest term
-  double residual = 0;            ///< of the equilibrium, as Solver::settle returns it
+  double residual = 0;            ///< remaining motion over the displacement, see Solver::settle()
   double voxels = 0;
 
   void archive(ByteArchive& archive);
@@ -40,7 +40,7 @@ struct VariantCost
   double spread = 0;      ///< distance of the quartiles over the median
   double processors = 1;  ///< share of its processors that the study got
   double skin = 0;        ///< time per published skin [s]
-  double memory = 0;      ///< of model and solver [bytes]
+  double memory = 0;      ///< memory of model and solver [bytes]
   double build = 0;       ///< time to make the model [s]
 
   bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
@@ -50,41 +50,41 @@ struct VariantCost
 /// A motion that is not finished.
 struct VariantCheckpoint
 {
-  VariantMotion motion;     ///< as far as it is known; `steps` is their number until now
-  std::int64_t slices = 0;  ///< of the history that have been played
+  VariantMotion motion;     ///< so far; `steps` is the number of steps made
+  std::int64_t slices = 0;  ///< slices of the history that have been played
   std::string solver;       ///< Solver::pack()
 
   void archive(ByteArchive& archive);
 };
 
-/// The machine that costs are of: processor or device, and number of threads.
+/// The machine on which costs are measured: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
 using GoOn = std::function<bool(double done)>;
 
-/// The checkpoint that a motion is resumed from, and what keeps further ones: one about every minute of wall time, and
-/// one where the motion is interrupted.
+/// The checkpoint to resume a motion from, and a function that stores further ones: about one per minute of wall time,
+/// and one if the motion is interrupted.
 struct Checkpoints
 {
   std::optional<VariantCheckpoint> last;
   std::function<void(const VariantCheckpoint&)> keep;
 };
 
-/// Plays the history and settles. Returns nothing where `go_on` ended the motion; a motion that fails is returned with
-/// its fault. Without `ledger` its energy is NaN. A motion that is interrupted and resumed has the same bits.
+/// Plays the history and settles. Returns nothing if `go_on` ended the motion; a motion that fails is returned with
+/// its fault. Without `ledger` its energy is NaN. Interrupting and resuming does not change a bit of the result.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
                                           const Checkpoints& checkpoints, const GoOn& go_on);
 
-/// Times steps for about so many wall seconds after the history's activations are reached.
+/// Times steps for about `seconds` of wall time after the history's activations are reached.
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                          const ActivationHistory& history, int threads, double seconds);
 
 /// Bytes on the heap of this program.
 double heap_bytes();
 
-/// Distance between the displacements of two motions of the same skin, phase by phase, of which the first is rest.
-/// Throws Error where the skins are not the same.
+/// Distance between the displacements of two motions of the same skin in each phase; phase 0 is the skin at rest.
+/// Throws Error if the skins differ.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
 /// The phases at rest and settled of a motion, and the same of a body whose settled displacements [m] are known for all
@@ -97,7 +97,7 @@ double landmark_error(const VariantMotion& found, const VariantMotion& exact);
 double motion_size(const VariantMotion& motion);
 
 /// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
-/// `coarse` between the first and the second, `fine` between the second and the third. NaN where there is none in 0..8.
+/// `coarse` between the first and the second, `fine` between the second and the third. NaN if there is none in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
 /// Richardson's estimate of the error at the finest edge, from the difference to the solution at the edge before.
 double richardson(double before, double finest, double difference, double order);
@@ -136,7 +136,7 @@ std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge,
 /// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its steps are as long as the assembled
 /// model allows; the study checks what halving them changes.
 AccuracySetting reference_setting(const AccuracySetting& standard, double edge);
-/// The differences of a setting from the standard one in words; "standard" where there are none.
+/// The differences of a setting from the standard one in words; "standard" if there are none.
 std::string name_of(const AccuracySetting& setting, const AccuracySetting& standard);
 /// Wall time over that of the same motion with one-point single-precision elements of an edge of 1 m, for estimates.
 double relative_time(const AccuracySetting& setting);

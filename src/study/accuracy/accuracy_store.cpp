@@ -29,7 +29,7 @@ void write(const std::string& path, T value)
   write_text(path, signature + content_hash(content) + content);
 }
 
-// the content of a file; nothing where the file is missing or not whole
+// the content of a file; nothing if the file is missing or incomplete
 std::optional<ByteArchive> read(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);

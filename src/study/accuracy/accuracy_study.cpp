@@ -42,7 +42,7 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // number of edges that variants may have: all but the reference's
+  // number of voxel edges for variants: all but the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
@@ -57,7 +57,7 @@ private:
   AccuracyPlan plan_;
   VariantBench bench_;
   std::size_t reference_ = 0;
-  std::optional<SkinAverage> average_;  // where there is no closed form
+  std::optional<SkinAverage> average_;  // empty if there is a closed form
   AccuracyFindings findings_;
 };
 
@@ -133,7 +133,7 @@ void Study::measure_knobs()
   }
 }
 
-// measures at each edge the combinations that were not clearly beaten at the edge before
+// measures, at each voxel edge, the combinations that were not clearly beaten at the previous edge
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -162,7 +162,7 @@ void Study::measure_combinations()
   }
 }
 
-// notes what double precision and half the time step change at the coarsest edge
+// notes how much double precision and half the time step change the result at the coarsest edge
 void Study::check_reference()
 {
   if (plan_.exact)
@@ -172,7 +172,7 @@ void Study::check_reference()
   if (!motion_of(base).fault.empty())
     return;
   exact.profile.precision = "double";
-  const bool elsewhere = exact.backend == "cuda";  // a GPU has no double precision
+  const bool elsewhere = exact.backend == "cuda";  // the GPU backend has no double precision
   if (elsewhere)
     exact.backend = "cpu";
   halved.profile.time_step_share *= 0.5;

@@ -84,7 +84,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
   std::vector<Sweep> all;
-  // no variant has the reference's edge
+  // without a closed form, the last edge is the reference's: no variant has it
   all.push_back(sweep("voxel", s, Numbers(plan.edges.begin(), plan.edges.end() - (plan.exact ? 0 : 1)),
                       [](auto& setting, double edge) { setting.profile.voxel.fill(edge); }));
   all.push_back(sweep("samples", s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },

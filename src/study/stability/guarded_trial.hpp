@@ -45,7 +45,7 @@ public:
   /// explained throughout to a share (bounds.energy) and that no node is farther from its rest than bounds.left.
   void play_and_release(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
                         const std::string& picture, const std::string& title);
-  /// As Solver::settle. Throws Error where no equilibrium is reached within `seconds` of simulated time.
+  /// Like Solver::settle(). Throws Error if no equilibrium is reached within `seconds` of simulated time.
   void settle(const Controls& target, double tolerance, double seconds);
   /// Plays a motion that the guard may stop. Where it does, the trial gets the report, and the state is checked to be
   /// good.
@@ -58,7 +58,7 @@ public:
   const EnergyLedger& energies() const { return ledger_; }  ///< when they were recorded last
 
   /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
-  /// motion to `picture` where that is not empty.
+  /// motion to `picture` if that is not empty.
   void check_balance(const CaseFile& file, const std::string& of, const std::string& picture = {},
                      const std::string& title = {});
   /// Energies over time and the smallest J, as a picture.

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// splits "0.9", "20 ms", "2 %"; false where the text does not begin with a finite number
+// splits "0.9", "20 ms", "2 %"; false if the text does not begin with a finite number
 bool split(const std::string& text, double& number, std::string& unit)
 {
   const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);

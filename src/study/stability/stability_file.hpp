@@ -11,8 +11,8 @@ namespace frontalis
 {
 
 /// The file of a hard case (test/stability/NAME.yaml): a description, sizes, times and bounds. A value is a number with
-/// its unit, or a list of such; keys inside a mapping are named with a dot ("bounds.energy"). Every function throws
-/// Error with file and key where a value is missing or does not have the unit that is asked for.
+/// its unit, or a list of these; keys inside a mapping are named with a dot ("bounds.energy"). Every function throws
+/// Error with file and key if a value is missing or does not have the requested unit.
 class CaseFile
 {
 public:
@@ -21,14 +21,14 @@ public:
   const std::string& hard() const { return hard_; }  ///< what makes the case hard, in a few words
   const std::string& text() const { return text_; }  ///< markdown, with the values of its keys in place of {KEY}
 
-  /// `count` is how many there must be; 0: one or more.
+  /// `count`: required number of values; 0: one or more.
   std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
   double number(const std::string& key, const std::string& unit = {}) const;
   double seconds(const std::string& key) const;                             ///< given in ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels
   double bound(const std::string& key, const std::string& unit = {}) const { return number("bounds." + key, unit); }
 
-  /// Keys that no function has been asked for: the case makes no use of them.
+  /// Keys that have not been read: the case does not use them.
   std::vector<std::string> unused() const;
 
 private:

@@ -36,7 +36,7 @@ bool calculix_is_there();
 /// Solves the problem by CalculiX (program ccx) with elements[0] x [1] x [2] quadratic hexahedra (C3D20R),
 /// hyperelastic, large deformation. Its neo-Hookean solid is ours with C10 = mu / 2 and D1 = 2 / kappa (CalculiX
 /// manual, *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Deck and output are in a temporary
-/// folder that is removed afterwards. Throws Error with the end of its log where it fails.
+/// folder that is removed afterwards. Throws Error with the end of its log if it fails.
 SolidState solve_by_calculix(const SolidProblem& problem, const std::array<int, 3>& elements);
 
 /// The same by voxels of edge `edge` [m], which divides the box; `period` as in EquilibriumSettings.

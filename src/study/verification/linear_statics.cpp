@@ -15,7 +15,7 @@ namespace
 
 using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
 
-// a voxel of the model alone
+// a model of only voxel e
 Model lone_voxel(const Model& model, std::size_t e)
 {
   Model one;
@@ -37,7 +37,7 @@ Model lone_voxel(const Model& model, std::size_t e)
   return one;
 }
 
-// the properties of a voxel that decide its stiffness
+// the properties of a voxel that determine its stiffness
 std::vector<float> make_of(const Model& model, std::size_t e)
 {
   std::vector<float> make{ model.fill[e] };
@@ -86,11 +86,11 @@ struct LinearStatics::System
   {
     int plane = 0, row = -1;  // row in the plane's block; -1: the component is fixed
   };
-  std::vector<std::array<Unknown, 3>> unknowns;    // of each component of each node
+  std::vector<std::array<Unknown, 3>> unknowns;    // one per node and component
   Vectors fixed;                                   // prescribed displacements
-  std::vector<Eigen::VectorXd> forces;             // of each plane: exerted by the prescribed displacements
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // factor of the block of each plane
-  std::vector<Eigen::MatrixXd> next;               // factor of the block that joins a plane to the next one
+  std::vector<Eigen::VectorXd> forces;             // per plane: forces exerted by the prescribed displacements
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // per plane: factor of its own block
+  std::vector<Eigen::MatrixXd> next;               // per plane: factor of the block that couples it to the next
   bool positive_definite = true;
 
   void factorise(std::vector<Eigen::MatrixXd> diagonal)
@@ -214,7 +214,7 @@ Vectors face_forces(const Model& model, int axis, std::int32_t index, const std:
     for (const int side : { 0, 1 })
     {
       const auto first = corners[static_cast<std::size_t>(side) << axis];
-      // a face that two voxels share is counted by the lower one alone; the plane 0 has no lower ones
+      // a face that two voxels share is counted only by the lower one; plane 0 has no lower one
       if (model.nodes[first][axis] != index || (side == 0 && index != 0))
         continue;
       for (std::size_t b = 0; b < 8; ++b)

@@ -16,7 +16,7 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// stretch across the layers, free of stress, at a given stretch along them in plane strain
+// stress-free stretch across the layers at a given stretch along them, in plane strain
 double free_stretch(double along)
 {
   const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
@@ -76,7 +76,7 @@ double critical_compression(const Layers& layers, int half)
 
 struct Wrinkles
 {
-  double wavelength = 0;   ///< over the film's thickness
+  double wavelength = 0;   ///< in units of the film's thickness
   double compression = 0;  ///< [%]
 };
 
@@ -105,7 +105,7 @@ Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int 
   return { curve.x[least] + shift * (curve.x[1] - curve.x[0]), middle - 0.25 * (left - right) * shift };
 }
 
-// wrinkles of a film of `film` voxels on a deep base; wavelengths over the film's thickness
+// wrinkles of a film of `film` voxels on a deep base; wavelengths in units of the film's thickness
 Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 {
   const int expected = static_cast<int>(std::lround(expected_wrinkles(contrast).wavelength / 2));
@@ -118,8 +118,8 @@ Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 }
 
 // Wrinkles of the published skin on hypodermis over bone. Corneum (48 MPa, 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) are
-// one plate of their stretching and bending stiffness, so that the corneum cannot wrinkle alone. Wavelengths are in mm,
-// that of the result after the compression.
+// replaced by one plate of equal stretching and bending stiffness, so that the corneum cannot wrinkle alone.
+// Wavelengths are in mm; that of the result is measured after the compression.
 Wrinkles skin_wrinkles(double depth, double expected, Plot::Curve& curve)
 {
   constexpr double young[2] = { 48e6, 81.4e3 }, thickness[2] = { 0.02e-3, 1.8e-3 }, hypodermis = 34e3;
