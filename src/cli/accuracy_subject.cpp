@@ -154,6 +154,7 @@ AccuracySubject accuracy_subject(AccuracyOptions& options)
   if (!exists && form == forms.end())
   {
     std::vector<std::string> names;
+    names.reserve(forms.size());
     for (const ClosedForm& known : forms)
       names.push_back(known.name);
     throw Error(fmt::format("{}: there is no such scene file, nor a body of that name with a closed form: {}", path,

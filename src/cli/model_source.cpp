@@ -160,7 +160,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   Progress progress;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
-  const Model model = bake_interruptibly(
+  Model model = bake_interruptibly(
       scene, &report, [&progress](const std::string& stage, double done) { progress.update(stage, done); });
   cache.keep(model, of_cache);
   if (summary != nullptr)

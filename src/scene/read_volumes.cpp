@@ -53,7 +53,7 @@ Region read_region(const Node& node)
 std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier)
 {
   const Node node = mapping.required("name", "a name");
-  const std::string name = node.name();
+  std::string name = node.name();
   if (!name.empty() && std::find(earlier.begin(), earlier.end(), name) != earlier.end())
     node.fault("'" + name + "' is there already; names must differ");
   earlier.push_back(name);

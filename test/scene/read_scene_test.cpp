@@ -386,12 +386,11 @@ TEST(Document, its_example_is_a_good_scene)
 {
   const std::string document = text_of(source + "/doc/scene.md");
   const std::string fence = "```yaml\n";
-  const std::size_t begin = document.find(fence);
-  ASSERT_NE(begin, std::string::npos);
-  const std::size_t end = document.find("```", begin + fence.size());
+  ASSERT_NE(document.find(fence), std::string::npos);
+  const std::size_t begin = document.find(fence) + fence.size();
+  const std::size_t end = document.find("```", begin);
   const TemporaryFolder folder;
-  const Scene scene =
-      read_scene(folder.write("example.yaml", document.substr(begin + fence.size(), end - begin - fence.size())));
+  const Scene scene = read_scene(folder.write("example.yaml", document.substr(begin, end - begin)));
   EXPECT_EQ(scene.surfaces.size(), 2U);
   EXPECT_EQ(scene.muscles.at(0).volume, "bar");
   expect_vector(scene.accuracy.voxel, { 0.0025, 0.0025, 0.0025 });

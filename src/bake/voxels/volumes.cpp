@@ -123,6 +123,7 @@ std::size_t Volumes::body_of(const std::vector<std::string>& names)
   if (known != body_names_.end())
     return known - body_names_.begin();
   std::vector<const PreparedSurface*> parts;
+  parts.reserve(names.size());
   for (const std::string& name : names)
     parts.push_back(&named_surface(*surfaces_, name, "volume"));
   if (parts.size() > 1)

@@ -26,7 +26,7 @@ VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, co
   look_at_standard();
 }
 
-std::string VariantBench::key_of(const AccuracySetting& setting, Backend backend) const
+std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& backend) const
 {
   std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)

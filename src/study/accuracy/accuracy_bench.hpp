@@ -53,7 +53,7 @@ public:
   const std::string& machine() const { return machine_.at(plan_.standard.backend); }
 
 private:
-  std::string key_of(const AccuracySetting& setting, Backend backend) const;
+  std::string key_of(const AccuracySetting& setting, const Backend& backend) const;
   std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
   bool is_reference(const AccuracySetting& setting) const;
   std::vector<Backend> backends_of(const AccuracySetting& setting) const;

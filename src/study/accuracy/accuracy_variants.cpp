@@ -111,7 +111,8 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   std::vector<Backend> backends = available_backends();
   if (quick)
     backends.erase(std::remove(backends.begin(), backends.end(), "reference"), backends.end());
-  all.push_back(sweep("backend", s, backends, [](auto& setting, Backend backend) { setting.backend = backend; }));
+  all.push_back(
+      sweep("backend", s, backends, [](auto& setting, const Backend& backend) { setting.backend = backend; }));
   all.push_back(sweep("profiles", s, plan.profiles, [](auto& setting, const auto& p) { setting.profile = p; }));
   return all;
 }

@@ -149,7 +149,7 @@ SolidState solve_by_calculix(const SolidProblem& problem, const std::array<int, 
   return state;
 }
 
-SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, Backend backend)
+SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, const Backend& backend)
 {
   VoxelBox box;
   box.spacing.fill(edge);

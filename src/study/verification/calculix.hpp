@@ -40,6 +40,6 @@ bool calculix_is_there();
 SolidState solve_by_calculix(const SolidProblem& problem, const std::array<int, 3>& elements);
 
 /// The same by voxels of edge `edge` [m], which divides the box; `period` as in EquilibriumSettings.
-SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, Backend backend);
+SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, const Backend& backend);
 
 }  // namespace frontalis

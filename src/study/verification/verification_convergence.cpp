@@ -81,7 +81,7 @@ struct Surface
 };
 
 // both surfaces of an eighth of a hollow sphere, radii 1 and 2, under a small pressure inside
-std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, Backend backend)
+std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend& backend)
 {
   const double a = 1e-2, b = 2e-2, young = 1e4, poisson = 0.45, pressure = 20, pi = std::acos(-1.0);
   VoxelBox box;

@@ -39,7 +39,7 @@ void add_pressure(Model& model, double pressure, const TriangleMesh& mesh)
 }
 
 // height [mm] of the upper edge of the beam's end; n voxels through its height
-double beam(int n, double kappa, Backend backend)
+double beam(int n, double kappa, const Backend& backend)
 {
   Model model = voxel_model({ { 10 * n, n, n } }, 1e-3 / n, heart(kappa));
   model.hourglass = HourglassControl::assumed_strain;
@@ -86,7 +86,7 @@ struct Apex
 };
 
 // apices of the contracted ellipsoid with voxels of edge h [m]
-Apex ellipsoid(double h, double kappa, Backend backend)
+Apex ellipsoid(double h, double kappa, const Backend& backend)
 {
   const std::array<double, 3> centre{ { 10e-3, 10e-3, 20e-3 } };
   VoxelBox box;

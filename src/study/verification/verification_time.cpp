@@ -126,7 +126,7 @@ Finding verify_precision(const VerificationSettings&)
 {
   Finding finding;
   constexpr int steps = 1000000;
-  const auto end_displacement = [&](Backend backend, Precision precision)
+  const auto end_displacement = [&](const Backend& backend, Precision precision)
   {
     Model model = hanging_bar({ { 16, 1, 1 } }, 0);
     model.precision = precision;
