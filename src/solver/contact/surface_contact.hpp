@@ -14,7 +14,7 @@ struct ContactPlane
   double limit = 0;  ///< distance within which it stays below SurfaceContact::late_error [m], if computed
 };
 
-/// A plane is searched for by one thread, or on a GPU by the lanes of a warp together (cuda/warp_search.cuh).
+/// A plane is searched for by one thread, or on a GPU by the lanes of a warp together (cuda/kernels/warp_search.cuh).
 struct OneThread
 {
   static constexpr int size = 1;
