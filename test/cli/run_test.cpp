@@ -312,8 +312,8 @@ TEST(RunScene, shortens_the_documented_bar)
   const TemporaryFolder folder;
   const std::string scene = example_scene(folder);
   const std::string frames = folder / "frames";
-  const ProgramResult result =
-      run_program({ "run", scene, "--expression", "shorten", "--seconds", "0.3", "--frames", frames });
+  const ProgramResult result = run_program(
+      { "run", scene, "--backend", "cpu", "--expression", "shorten", "--seconds", "0.3", "--frames", frames });
   ASSERT_EQ(result.code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");
 
