@@ -192,7 +192,7 @@ void VoxelRows::renew_bounds(const Discretisation& discretisation)
       }
 }
 
-void VoxelRows::list_allocations(Effect of_fibres, AllocationList& list) const
+void VoxelRows::list_arrays(Effect of_fibres, ArrayList& list) const
 {
   list.add(Effect::elasticity, "tiles", tiles);
   list.add(Effect::elasticity, "planes", plane_tiles);

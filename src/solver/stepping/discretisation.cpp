@@ -256,7 +256,7 @@ void Discretisation::bound_at_rest()
   frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
 }
 
-void Discretisation::list_allocations(AllocationList& list) const
+void Discretisation::list_arrays(ArrayList& list) const
 {
   list.add(Effect::elasticity, "masses of nodes", node_mass);
   list.add(Effect::elasticity, "held nodes", held);
