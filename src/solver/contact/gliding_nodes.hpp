@@ -46,7 +46,12 @@ public:
   void add(Node node) { nodes_.push_back(std::move(node)); }
   void reset();
   /// Switches friction on or off.
-  void rub(bool on) { rubs_ = on; }
+  void rub(bool on)
+  {
+    rubs_ = on;
+    for (auto& node : nodes_)
+      node.pressing = on ? node.pressing : 0;
+  }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   bool empty() const { return nodes_.empty(); }
   void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }

@@ -20,7 +20,8 @@ public:
   void list_arrays(ArrayList& list) override { list.add_state(Effect::viscosity, "relaxed stresses", values); }
   void run(EffectSet running) override
   {
-    if (std::exchange(runs_, running.has(Effect::viscosity)) != runs_)
+    runs_ = running.has(Effect::viscosity);
+    if (!runs_)
       reset();
   }
   void reset() override { std::fill(values.begin(), values.end(), T{}); }

@@ -108,13 +108,11 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 template <class Real>
 void RestrictedNodes<Real>::run(EffectSet running)
 {
-  const bool slides = running.has(Effect::sliding), rubs = running.has(Effect::friction);
-  if (slides == slides_ && rubs == rubs_)
-    return;
-  slides_ = slides;
-  rubs_ = rubs;
+  slides_ = running.has(Effect::sliding);
+  rubs_ = running.has(Effect::friction);
   contacts_.gliding.rub(rubs_);
-  reset();
+  if (!slides_)
+    reset();
 }
 
 template <class Real>

@@ -59,7 +59,6 @@ public:
   {
     return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
   }
-  /// Switches sliding and friction. All contacts are reset if one of them changes.
   void run(EffectSet running) override;
   void list_arrays(ArrayList& list) override;
   bool idle() const
