@@ -75,17 +75,17 @@ void CpuSolver<Real>::list_arrays(ArrayList& list)
 {
   Base::list_arrays(list);
   rows_.list_arrays(effect_of_fibres(*model_), list);
-  list.add(Effect::elasticity, "inverse masses", inverse_mass_);
-  list.add(Effect::elasticity, "inverse masses", mobility_);
+  list.add("inverse masses", inverse_mass_);
+  list.add("inverse masses", mobility_);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    list.add(Effect::elasticity, "motion", next_[axis]);
-    list.add_state(Effect::elasticity, "rounding errors", rounding_[axis]);
-    list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
-    list.add(Effect::elasticity, "displaced nodes", moved_[axis]);
+    list.add("motion", next_[axis]);
+    list.add_state("rounding errors", rounding_[axis]);
+    list.add("what the monitor looks at", wide_[axis]);
+    list.add("displaced nodes", moved_[axis]);
   }
   for (const auto& buffer : buffers_)
-    list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);
+    list.add("forces and stiffness of two planes", buffer);
   list.add_state(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
 }
 

@@ -92,13 +92,13 @@ void EnergyAccount<Real>::list_arrays(ArrayList& list)
   const char* const what = "account of energies";
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    list.add(Effect::elasticity, what, before_[axis]);
-    list.add(Effect::elasticity, what, free_[axis]);
-    list.add_state(Effect::elasticity, what, beside_[axis]);
+    list.add(what, before_[axis]);
+    list.add(what, free_[axis]);
+    list.add_state(what, beside_[axis]);
   }
-  list.add_state(Effect::elasticity, what, planes_);
-  list.add_state(Effect::elasticity, what, muscle);
-  list.add_state(Effect::elasticity, what, viscous);
+  list.add_state(what, planes_);
+  list.add_state(what, muscle);
+  list.add_state(what, viscous);
 }
 
 template class EnergyAccount<float>;

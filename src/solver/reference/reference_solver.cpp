@@ -61,10 +61,10 @@ void ReferenceSolver::effects_switched()
 void ReferenceSolver::list_arrays(ArrayList& list)
 {
   HostBackend::list_arrays(list);
-  list.add(Effect::elasticity, "voxels", voxels_);
-  list.add(Effect::elasticity, "stiffness now", stiffness_);
+  list.add("voxels", voxels_);
+  list.add("stiffness now", stiffness_);
   for (const auto& component : f_)
-    list.add(Effect::elasticity, "forces", component);
+    list.add("forces", component);
   list.add_state(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
 }
 

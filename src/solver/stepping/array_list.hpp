@@ -9,8 +9,8 @@ namespace frontalis
 {
 
 /// The arrays of a solver that are not empty: which effect each of them serves, and which of them hold the state of the
-/// motion, to which all other values are constant or computed anew in each step. The one list serves
-/// Solver::allocations() and snapshots.
+/// motion; all other values are constant or computed anew in each step. The one list serves Solver::allocations() and
+/// snapshots. Arrays without an effect are those that every model has: they are attributed to elasticity.
 class ArrayList
 {
 public:
@@ -30,6 +30,11 @@ public:
   {
     add(effect, what, array.capacity() * sizeof(T));
   }
+  template <class T>
+  void add(const std::string& what, const std::vector<T>& array)
+  {
+    add(Effect::elasticity, what, array);
+  }
   /// Adds an array of the state. Its number of entries must not change while the solver lives.
   template <class T>
   void add_state(Effect effect, const std::string& what, std::vector<T>& array)
@@ -37,6 +42,11 @@ public:
     static_assert(std::is_trivially_copyable_v<T>);
     add(effect, what, array);
     add_state(array.data(), array.size() * sizeof(T));
+  }
+  template <class T>
+  void add_state(const std::string& what, std::vector<T>& array)
+  {
+    add_state(Effect::elasticity, what, array);
   }
   void add_state(void* data, std::size_t bytes)
   {

@@ -258,10 +258,10 @@ void Discretisation::bound_at_rest()
 
 void Discretisation::list_arrays(ArrayList& list) const
 {
-  list.add(Effect::elasticity, "masses of nodes", node_mass);
-  list.add(Effect::elasticity, "held nodes", held);
-  list.add(Effect::elasticity, "shares of weight", weight_share);
-  list.add(Effect::elasticity, "mass scaling", mass_factor_);
+  list.add("masses of nodes", node_mass);
+  list.add("held nodes", held);
+  list.add("shares of weight", weight_share);
+  list.add("mass scaling", mass_factor_);
 }
 
 void Discretisation::voxel(std::size_t e, VoxelProperties& out) const

@@ -54,7 +54,7 @@ void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
 {
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
-      list.add_state(Effect::elasticity, "motion", component);
+      list.add_state("motion", component);
   for (EffectPart* const part : parts())
     part->list_arrays(list);
   if (account_)

@@ -276,7 +276,7 @@ std::vector<Allocation> TimeStepper::allocations() const
   if (skin_values_)
     skin_values_->list_arrays(list);
   discretisation_.list_arrays(list);
-  list.add(Effect::elasticity, "mode of the highest frequency", motion_.highest_mode);
+  list.add("mode of the highest frequency", motion_.highest_mode);
   if (ledger_)
     ledger_->list_arrays(list);
   backend_->list_arrays(list);
