@@ -6,6 +6,7 @@
 #include "bake/mesh/surface.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/bind_points.hpp"
+#include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/local_frame.hpp"
 #include "bake/voxels/muscle_volumes.hpp"
 #include "bake/voxels/restricted_nodes.hpp"
@@ -148,6 +149,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 
   monitor.begin("skin");
   bind_surfaces(scene, surfaces, frame, model, monitor);
+  bind_contacts(scene, surfaces, frame, model, monitor);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

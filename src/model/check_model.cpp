@@ -251,6 +251,25 @@ void check_constraints(const Model& model)
   }
 }
 
+void check_contacts(const Model& model)
+{
+  for (const Contact& contact : model.contacts)
+  {
+    const std::string name = "contacts '" + contact.name + "'";
+    check_field(name, contact.field);
+    check_not_negative(name, "reach", contact.reach);
+    check_index(name + " (bone)", 0, contact.bone, model.bones.size(), -1);
+    check_not_negative(name, "friction", contact.friction);
+    check_length(name + " (area)", contact.area.size(), contact.points.size(), "point");
+    check_binding(name + ".binding", contact.binding, contact.points.size(), model.voxels.size());
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+    {
+      check_finite(name + " (points)", p, contact.points[p]);
+      check_not_negative(name, "an area", contact.area[p]);
+    }
+  }
+}
+
 void check_loads(const Model& model)
 {
   check_finite("gravity", 0, model.gravity);
@@ -323,6 +342,7 @@ void check_model(const Model& model)
   check_material_directions(model);
   check_fibres(model);
   check_constraints(model);
+  check_contacts(model);
   check_loads(model);
   check_mesh("skin", model.skin);
   check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());

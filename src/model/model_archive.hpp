@@ -20,6 +20,13 @@ public:
   explicit ModelWriter(Hdf5File& file) : file_(file) {}
 
   void group(const std::string& path) { file_.make_group(path); }
+  /// Whether to go on with a group that is only in files where `stored` holds.
+  bool group_if(bool stored, const std::string& path)
+  {
+    if (stored)
+      group(path);
+    return stored;
+  }
 
   template <class T>
   void array(const std::string& path, const std::vector<T>& values)
@@ -78,6 +85,7 @@ public:
   explicit ModelReader(const Hdf5File& file) : file_(file) {}
 
   void group(const std::string&) {}
+  bool group_if(bool, const std::string& path) { return file_.has(path); }
 
   template <class T>
   void array(const std::string& path, std::vector<T>& values)

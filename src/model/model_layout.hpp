@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "model/contact_layout.hpp"
 
 #include <string>
 #include <utility>
@@ -89,6 +90,8 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   archive.column(in("sliding/surface"), model.sliding, &SlidingNode::surface);
   archive.column(in("sliding/distance"), model.sliding, &SlidingNode::distance);
   archive.column(in("sliding/constraint"), model.sliding, &SlidingNode::constraint);
+
+  exchange_contacts(archive, in("contacts"), model.contacts);
 
   archive.value(in("gravity"), model.gravity);
   archive.group(in("loads"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace frontalis
 {
@@ -66,41 +67,24 @@ std::vector<bool> bricks_near(const std::vector<Point>& points, double travel, c
   return near;
 }
 
-}  // namespace
-
-void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
-{
-  for (std::size_t n = 0; n < count; ++n)
-    body(n);
-}
-
-SampledField sample_field(const std::vector<Point>& rest, const Distance& distance, double spacing, double travel,
-                          const Loop& loop)
+// An empty table for the box from `lower` to `upper`.
+SampledField empty_field(const Point& lower, const Point& upper, double spacing)
 {
   SampledField field;
   field.spacing = spacing;
-  if (rest.empty())
-    return field;
-  std::vector<double> level(rest.size());
-  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]); });
-  const Band band{ *std::min_element(level.begin(), level.end()) - 2 * spacing,
-                   *std::max_element(level.begin(), level.end()) + 2 * spacing };
-  const double edge = DistanceField::brick_edge * spacing;
+  field.origin = lower;
   for (int axis = 0; axis < 3; ++axis)
-  {
-    const auto range = std::minmax_element(rest.begin(), rest.end(),
-                                           [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
-    field.origin[axis] = (*range.first)[axis] - travel;
-    field.bricks[axis] =
-        1 + static_cast<std::int32_t>(((*range.second)[axis] + travel - field.origin[axis] + spacing) / edge);
-  }
+    field.bricks[axis] = 1 + static_cast<std::int32_t>((upper[axis] - lower[axis] + spacing) /
+                                                       (DistanceField::brick_edge * spacing));
   field.table.resize(static_cast<std::size_t>(field.bricks[0]) * field.bricks[1] * field.bricks[2], -1);
+  return field;
+}
 
-  const std::vector<bool> near = bricks_near(rest, travel, field);
-  std::vector<std::size_t> places;
-  for (std::size_t b = 0; b < near.size(); ++b)
-    if (near[b])
-      places.push_back(b);
+// Samples the bricks at these places of the table that reach into the band.
+void fill(SampledField& field, const std::vector<std::size_t>& places, const Band& band, const Distance& distance,
+          const Loop& loop)
+{
+  const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;
   std::vector<std::vector<float>> samples(places.size());
   loop(places.size(),
        [&](std::size_t n)
@@ -133,6 +117,57 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
     field.table[places[n]] = stored++;
     field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
   }
+}
+
+}  // namespace
+
+void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
+{
+  for (std::size_t n = 0; n < count; ++n)
+    body(n);
+}
+
+SampledField sample_field(const std::vector<Point>& rest, const Distance& distance, double spacing, double travel,
+                          const Loop& loop)
+{
+  if (rest.empty())
+    return empty_field({}, {}, spacing);
+  std::vector<double> level(rest.size());
+  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]); });
+  const Band band{ *std::min_element(level.begin(), level.end()) - 2 * spacing,
+                   *std::max_element(level.begin(), level.end()) + 2 * spacing };
+  Point lower{}, upper{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto range = std::minmax_element(rest.begin(), rest.end(),
+                                           [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+    lower[axis] = (*range.first)[axis] - travel;
+    upper[axis] = (*range.second)[axis] + travel;
+  }
+  SampledField field = empty_field(lower, upper, spacing);
+  const std::vector<bool> near = bricks_near(rest, travel, field);
+  std::vector<std::size_t> places;
+  for (std::size_t b = 0; b < near.size(); ++b)
+    if (near[b])
+      places.push_back(b);
+  fill(field, places, band, distance, loop);
+  return field;
+}
+
+SampledField sample_band(const Point& lower, const Point& upper, const Distance& distance, double spacing, double reach,
+                         const Loop& loop)
+{
+  const double margin = reach + 2 * spacing;
+  Point from = lower, to = upper;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    from[axis] -= margin;
+    to[axis] += margin;
+  }
+  SampledField field = empty_field(from, to, spacing);
+  std::vector<std::size_t> places(field.table.size());
+  std::iota(places.begin(), places.end(), std::size_t{ 0 });
+  fill(field, places, { -margin, margin }, distance, loop);
   return field;
 }
 

@@ -145,14 +145,13 @@ void add_anatomy(const Scene& scene, std::string& content)
 void add_restrictions(const Scene& scene, std::string& content)
 {
   for (const SceneConstraint& constraint : scene.constraints)
-    Line(content, "constraint")
-        .add(constraint.name)
-        .add(static_cast<double>(constraint.kind))
-        .add(constraint.surfaces)
-        .add(constraint.within)
-        .add(constraint.crop)
-        .add(constraint.bone)
-        .add(constraint.friction);
+  {
+    Line line(content, "constraint");
+    line.add(constraint.name).add(static_cast<double>(constraint.kind)).add(constraint.surfaces);
+    line.add(constraint.within).add(constraint.crop).add(constraint.bone).add(constraint.friction);
+    if (!constraint.on.empty())
+      line.add(constraint.on);
+  }
   for (const SceneLoad& load : scene.loads)
   {
     Line line(content, "load");

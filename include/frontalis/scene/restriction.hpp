@@ -14,7 +14,8 @@ struct SceneConstraint
   enum class Kind
   {
     rigid,
-    sliding
+    sliding,
+    contact
   };
   std::string name;
   Kind kind = Kind::rigid;
@@ -22,7 +23,8 @@ struct SceneConstraint
   double within = -1;  ///< nodes at most this far outside the surface are restricted [m]; < 0: 0.75 voxel edges
   Region crop;
   std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone; empty: they stand still
-  double friction = 0;  ///< sliding: Coulomb's coefficient
+  double friction = 0;  ///< sliding and contact: Coulomb's coefficient
+  std::string on;       ///< contact: the surface of the tissue that touches; empty: the skin's
   int line = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "frontalis/model/model.hpp"
 #include "frontalis/solver/allocation.hpp"
 #include "frontalis/solver/energy_ledger.hpp"
+#include "frontalis/solver/reaction.hpp"
 #include "frontalis/solver/solver_state.hpp"
 
 #include <cstdint>
@@ -17,7 +18,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 10;
+constexpr int motion_generation = 11;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, the reference of every test), "cpu" (SIMD, all cores), "cuda".
@@ -125,6 +126,8 @@ public:
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
+  /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
+  virtual std::vector<Reaction> reactions() const { return {}; }
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

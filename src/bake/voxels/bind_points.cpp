@@ -15,14 +15,13 @@ namespace
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // from the skin [m]
 
-struct BoundMesh
+}  // namespace
+
+double extrapolation_of(const Scene& scene, const Model& model)
 {
-  TriangleMesh mesh;
-  Binding binding;
-  std::size_t triangles = 0;    ///< inside the crop
-  std::size_t too_far = 0;      ///< of these, with a vertex too far from every voxel
-  Vector3d unbound{ 0, 0, 0 };  ///< such a vertex, scene coordinates [m]
-};
+  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
+  return scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+}
 
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
                     BakeMonitor& monitor)
@@ -63,6 +62,9 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   }
   return bound;
 }
+
+namespace
+{
 
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
 {
@@ -145,8 +147,7 @@ bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<fl
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)
 {
-  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
-  const double extrapolation = scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+  const double extrapolation = extrapolation_of(scene, model);
   const PointBinder binder(model, extrapolation);
 
   if (!scene.skin.surface.empty())

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "frontalis/model/contact.hpp"
+
+#include <string>
+
+namespace frontalis
+{
+
+template <class Archive, class Field>
+void exchange_field(Archive& archive, const std::string& path, Field& field);
+template <class Archive, class Bound>
+void exchange_binding(Archive& archive, const std::string& path, Bound& binding);
+
+/// The contacts of a model in its file, for both directions. A model without any stores nothing.
+template <class Archive, class Contacts>
+void exchange_contacts(Archive& archive, const std::string& path, Contacts& contacts)
+{
+  if (!archive.group_if(!contacts.empty(), path))
+    return;
+  archive.column(path + "/name", contacts, &Contact::name);
+  archive.column(path + "/bone", contacts, &Contact::bone);
+  archive.column(path + "/friction", contacts, &Contact::friction);
+  archive.column(path + "/reach", contacts, &Contact::reach);
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+  {
+    const std::string own = path + "/" + std::to_string(c);
+    archive.group(own);
+    exchange_field(archive, own, contacts[c].field);
+    archive.array(own + "/points", contacts[c].points);
+    archive.array(own + "/area", contacts[c].area);
+    exchange_binding(archive, own, contacts[c].binding);
+  }
+}
+
+}  // namespace frontalis

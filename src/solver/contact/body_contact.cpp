@@ -1,0 +1,355 @@
+#include "solver/contact/body_contact.hpp"
+
+#include "frontalis/model/sample_field.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = physics::Vec3<double>;
+
+// Tissue is never farther than this from the box of its grid [m].
+constexpr double farthest_outside = 0.1;
+
+Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
+
+physics::Pose pose_from(const RigidTransform& transform)
+{
+  physics::Pose pose;
+  std::copy(transform.rotation.begin(), transform.rotation.end(), pose.r);
+  std::copy(transform.translation.begin(), transform.translation.end(), pose.t);
+  return pose;
+}
+
+void add_to(std::array<double, 3>& sum, const Vector& v)
+{
+  sum[0] += v.x;
+  sum[1] += v.y;
+  sum[2] += v.z;
+}
+
+// Adds the opposite of a force on the tissue.
+void add_reaction(Reaction& sum, const Vector& arm, const Vector& force)
+{
+  add_to(sum.force, -1.0 * force);
+  add_to(sum.moment, cross(force, arm));
+}
+
+// Longest way between two poses of a point of tissue.
+double longest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& far_corner)
+{
+  if (from.rotation == to.rotation && from.translation == to.translation)
+    return 0;
+  double turned = 0;
+  for (std::size_t i = 0; i < 9; ++i)
+    turned += (to.rotation[i] - from.rotation[i]) * (to.rotation[i] - from.rotation[i]);
+  return farthest_way(from, to, far_corner) + std::sqrt(turned) * farthest_outside;
+}
+
+}  // namespace
+
+BodyContact::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
+{
+  for (std::size_t c = 0; c < model.contacts.size(); ++c)
+  {
+    const Contact& contact = model.contacts[c];
+    fields_.push_back(view(contact.field));
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+      if (contact.area[p] > 0)
+        points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
+                            static_cast<float>(discretisation.contact.of(c, p)), vector(contact.points[p]) });
+  }
+  if (points_.empty())
+    return;
+  std::stable_sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.voxel < b.voxel; });
+  const auto planes = static_cast<std::size_t>(model.size[2]);
+  plane_points_.assign(planes + 2, 0);
+  for (const Point& point : points_)
+  {
+    ++plane_points_[model.voxels[point.voxel][2] + 1];
+    nodes_.insert(nodes_.end(), model.voxel_nodes[point.voxel].begin(), model.voxel_nodes[point.voxel].end());
+    float weight[8], sum = 0;
+    physics::trilinear_weights(point.coordinates[0], point.coordinates[1], point.coordinates[2], weight);
+    for (const float w : weight)
+      sum += std::abs(w);
+    spread_ = std::max(spread_, double(sum));
+  }
+  std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  nodes_.shrink_to_fit();
+  plane_nodes_.assign(planes + 2, 0);
+  for (const auto node : nodes_)
+    ++plane_nodes_[model.nodes[node][2] + 1];
+  std::partial_sum(plane_nodes_.begin(), plane_nodes_.end(), plane_nodes_.begin());
+  reset();
+}
+
+void BodyContact::run(EffectSet running)
+{
+  runs_ = running.has(Effect::contact);
+  if (!runs_)
+    reset();
+}
+
+void BodyContact::reset()
+{
+  if (points_.empty())
+    return;
+  const std::size_t bodies = fields_.size(), planes = static_cast<std::size_t>(model_.size[2]);
+  forces_.assign(points_.size(), {});
+  next_.assign(bodies, {});
+  motion_.assign(bodies, {});
+  anchors_.assign(points_.size(), {});
+  due_.assign(points_.size(), 0);
+  touches_.assign(points_.size(), 0);
+  bodies_.assign(bodies, {});
+  node_way_.assign(planes + 1, 0);
+  sums_.assign(planes * bodies, {});
+  opened_.assign(1, {});
+}
+
+void BodyContact::list_arrays(ArrayList& list)
+{
+  const Effect effect = Effect::contact;
+  list.add(effect, "points", points_);
+  list.add(effect, "points", plane_points_);
+  list.add(effect, "bound nodes", nodes_);
+  list.add(effect, "bound nodes", plane_nodes_);
+  list.add(effect, "bodies", fields_);
+  list.add(effect, "forces", forces_);
+  list.add(effect, "bodies", next_);
+  list.add(effect, "bodies", motion_);
+  list.add_state(effect, "anchors of friction", anchors_);
+  list.add_state(effect, "distances", due_);
+  list.add_state(effect, "distances", touches_);
+  list.add_state(effect, "bodies", bodies_);
+  list.add_state(effect, "distances", node_way_);
+  list.add_state(effect, "sums", sums_);
+  list.add_state(effect, "sums", opened_);
+}
+
+template <class Real>
+Vector BodyContact::place(const Point& point, const Real* const u[3]) const
+{
+  const auto& c = point.coordinates;
+  const auto& nodes = model_.voxel_nodes[point.voxel];
+  double weight[8];
+  physics::trilinear_weights<double>(c[0], c[1], c[2], weight);
+  Vector p = point.rest;
+  for (int b = 0; b < 8; ++b)
+    p = p + weight[b] * Vector{ double(u[0][nodes[b]]), double(u[1][nodes[b]]), double(u[2][nodes[b]]) };
+  return p;
+}
+
+RigidTransform BodyContact::pose_of(std::size_t body, const std::vector<RigidTransform>& bones) const
+{
+  const std::int32_t bone = model_.contacts[body].bone;
+  return bone < 0 ? RigidTransform() : bones[bone];
+}
+
+BodyContact::BodyState BodyContact::next(std::size_t body, const std::vector<RigidTransform>& bones) const
+{
+  const BodyState& before = bodies_[body];
+  BodyState now{ pose_of(body, bones), 0, 1 };
+  if (before.known != 0)
+    now.way = before.way + spread_ * *std::max_element(node_way_.begin(), node_way_.end()) +
+              longest_way(before.pose, now.pose, far_corner(model_));
+  return now;
+}
+
+// Distance from a body of a point that has no samples around it, or less.
+double BodyContact::slack(const Contact& contact, const Vector& x) const
+{
+  const SampledField& field = contact.field;
+  const double p[3] = { x.x, x.y, x.z };
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const double begin = field.origin[axis] - 0.5 * field.spacing;
+    const double end = begin + field.bricks[axis] * physics::DistanceField::brick_edge * field.spacing;
+    const double outside = std::max({ begin - p[axis], p[axis] - end, 0.0 });
+    squared += outside * outside;
+  }
+  return std::max(0.5 * contact.reach, std::sqrt(squared));
+}
+
+template <class Real>
+void BodyContact::look(int thread, int threads, const Real* const u[3], const ConstraintStep& step)
+{
+  std::vector<BodyState> now;
+  std::vector<physics::Pose> pose;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+  {
+    now.push_back(next(b, step.bone_before));
+    pose.push_back(pose_from(now.back().pose));
+  }
+  const std::size_t begin = points_.size() * thread / threads, end = points_.size() * (thread + 1) / threads;
+  for (std::size_t p = begin; p < end; ++p)
+  {
+    const Point& point = points_[p];
+    const double way = now[point.body].way;
+    if (due_[p] > way)
+      continue;
+    const Contact& contact = model_.contacts[point.body];
+    const physics::DistanceField& field = fields_[point.body];
+    const Vector x = pose[point.body].inwards(place(point, u));
+    physics::FieldValue<double> value{};
+    const bool sampled = physics::sample(field, physics::field_point(field, x), value);
+    if (!sampled || value.value >= 0)
+    {
+      touches_[p] = 0;
+      // the gradient of a spline of distances is not longer than sqrt(3)
+      due_[p] = way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+      continue;
+    }
+    const auto touch = physics::touch<double>(value, x, touches_[p] != 0 ? anchors_[p] : x, double(point.stiffness),
+                                              contact.friction);
+    touches_[p] = 1;
+    due_[p] = 0;
+    anchors_[p] = touch.anchor;
+    forces_[p] = { pose[point.body].turned(touch.force), pose[point.body].turned(x), touch.lost };
+  }
+  if (thread != 0)
+    return;
+  for (std::size_t b = 0; b < now.size(); ++b)
+    motion_[b] = bodies_[b].known != 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
+  next_ = now;
+}
+
+void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
+{
+  if (thread == 0)
+    bodies_ = next_;
+  const std::size_t bodies = motion_.size();
+  std::vector<Reaction> now(bodies);
+  for (auto k = first; k < std::min(last, model_.size[2]); ++k)
+  {
+    std::fill(now.begin(), now.end(), Reaction());
+    PlaneSum* const sums = sums_.data() + k * bodies;
+    for (auto p = plane_points_[k]; p < plane_points_[k + 1]; ++p)
+      if (touches_[p] != 0)
+      {
+        add_reaction(now[points_[p].body], forces_[p].arm, forces_[p].force);
+        sums[points_[p].body].lost += forces_[p].lost;
+      }
+    for (std::size_t b = 0; b < bodies; ++b)
+    {
+      sums[b].work += work_between(sums[b].reaction, now[b], motion_[b]);
+      sums[b].reaction = now[b];
+    }
+  }
+}
+
+template <class Real>
+void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3])
+{
+  for (auto k = first; k < last; ++k)
+  {
+    double longest = 0;
+    for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
+    {
+      double squared = 0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double way = double(after[axis][nodes_[n]]) - double(before[axis][nodes_[n]]);
+        squared += way * way;
+      }
+      longest = std::max(longest, squared);
+    }
+    node_way_[k] = std::sqrt(longest);
+  }
+}
+
+std::vector<Reaction> BodyContact::reactions() const
+{
+  std::vector<Reaction> total(model_.contacts.size());
+  for (std::size_t s = 0; s < sums_.size(); ++s)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      Reaction& sum = total[s % fields_.size()];
+      sum.force[axis] += sums_[s].reaction.force[axis];
+      sum.moment[axis] += sums_[s].reaction.moment[axis];
+    }
+  return total;
+}
+
+template <class Real>
+ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                                  std::vector<std::array<double, 3>>& forces)
+{
+  ContactEnergy energy;
+  if (idle())
+    return energy;
+  for (const PlaneSum& sum : sums_)
+  {
+    energy.work += sum.work;
+    energy.lost += sum.lost;
+  }
+  // The sums end at the start of the latest step. The rest is what the next step will add.
+  std::vector<Reaction> now(fields_.size());
+  for (std::size_t p = 0; p < points_.size(); ++p)
+  {
+    const Point& point = points_[p];
+    const physics::DistanceField& field = fields_[point.body];
+    const physics::Pose pose = pose_from(pose_of(point.body, bones));
+    const Vector x = pose.inwards(place(point, u));
+    physics::FieldValue<double> value{};
+    if (!physics::sample(field, physics::field_point(field, x), value) || value.value >= 0)
+      continue;
+    const auto touch = physics::touch<double>(value, x, touches_[p] != 0 ? anchors_[p] : x, double(point.stiffness),
+                                              model_.contacts[point.body].friction);
+    energy.stored += touch.stored;
+    energy.lost += touch.lost;
+    const Vector force = pose.turned(touch.force);
+    add_reaction(now[point.body], pose.turned(x), force);
+    if (!forces.empty())
+      push_point(point, force, 0, model_.size[2] + 1,
+                 [&](std::int32_t node, const Vector& part) { add_to(forces[node], part); });
+  }
+  const std::vector<Reaction> before = reactions();
+  for (std::size_t b = 0; b < now.size(); ++b)
+    if (bodies_[b].known != 0)
+      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, pose_of(b, bones)));
+  if (open)
+    opened_[0] = energy;
+  energy.work -= opened_[0].work;
+  energy.lost -= opened_[0].lost;
+  return energy;
+}
+
+BodyContact::BodyMotion BodyContact::motion_between(const RigidTransform& from, const RigidTransform& to)
+{
+  BodyMotion motion{ vector(to.translation) - vector(from.translation), { 0, 0, 0 } };
+  // a small rotation: its vector is the skew part of to * from^T
+  double* const turn[3] = { &motion.turn.x, &motion.turn.y, &motion.turn.z };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = 0; k < 3; ++k)
+    {
+      const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+      *turn[axis] += 0.5 * (to.rotation[3 * j + k] * from.rotation[3 * i + k] -
+                            to.rotation[3 * i + k] * from.rotation[3 * j + k]);
+    }
+  return motion;
+}
+
+double BodyContact::work_between(const Reaction& before, const Reaction& after, const BodyMotion& motion)
+{
+  return -0.5 * (dot(vector(before.force) + vector(after.force), motion.shift) +
+                 dot(vector(before.moment) + vector(after.moment), motion.turn));
+}
+
+#define FRONTALIS_BODY_CONTACT(Real)                                                                                \
+  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                           \
+  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);         \
+  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool,        \
+                                             std::vector<std::array<double, 3>>&);
+FRONTALIS_BODY_CONTACT(float)
+FRONTALIS_BODY_CONTACT(double)
+
+}  // namespace frontalis

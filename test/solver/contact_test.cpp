@@ -1,0 +1,417 @@
+// Tissue that touches rigid bodies.
+
+#include "backends.hpp"
+#include "contact_model.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+#include "solver/stepping/discretisation.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+using namespace test;
+using Vectors = std::vector<std::array<double, 3>>;
+
+constexpr double degree = 3.14159265358979 / 180;
+
+std::vector<Backend> host_backends()
+{
+  auto backends = available_backends();
+  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
+  return backends;
+}
+
+class BodiesTouch : public EveryBackend
+{
+protected:
+  std::unique_ptr<Solver> make(const Model& model, int threads = 2, bool ledger = false, double time_step = 0) const
+  {
+    return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, time_step, ledger });
+  }
+};
+
+Vectors displacements(const Solver& solver)
+{
+  Vectors u;
+  solver.displacements(u);
+  return u;
+}
+
+double mean(const Vectors& vectors, std::size_t axis)
+{
+  double sum = 0;
+  for (const auto& v : vectors)
+    sum += v[axis];
+  return sum / static_cast<double>(vectors.size());
+}
+
+double mechanical(const EnergyLedger& l) { return l.kinetic + l.internal + l.hourglass + l.contact_stored; }
+
+// A block with a fingertip above it, which is a bone; its lower side is held.
+Model block_and_finger(double friction, bool sampled = false)
+{
+  BlockSettings settings;
+  settings.voxels = { { 10, 8, 4 } };
+  settings.damping = 100;
+  Model model = block_model(settings);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  model.bones = { "other", "finger" };
+  const double radius = 4e-3;
+  const std::array<double, 3> centre{ { 4e-3, 4e-3, 8.2e-3 } };
+  Contact contact = touching_side(model, true, sphere_field(centre, radius));
+  if (sampled)
+  {
+    const auto distance = [&](const std::array<double, 3>& p)
+    { return std::hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]) - radius; };
+    std::vector<std::array<double, 3>> near;
+    for (int n = 0; n < 20; ++n)
+      for (int m = 0; m < 40; ++m)
+        for (const double r : { radius - 2e-3, radius, radius + 2e-3 })
+          near.push_back({ { centre[0] + r * std::sin(9 * n * degree) * std::cos(9 * m * degree),
+                             centre[1] + r * std::sin(9 * n * degree) * std::sin(9 * m * degree),
+                             centre[2] + r * std::cos(9 * n * degree) } });
+    contact.field = sample_field(near, distance, 0.25e-3, 1e-3);
+    contact.reach = 2e-3;
+  }
+  contact.bone = 1;
+  contact.friction = friction;
+  model.contacts.push_back(contact);
+  return model;
+}
+
+// Presses the finger in by 0.8 mm and draws it along x by 2 mm while it turns.
+void press_and_stroke(Solver& solver, double seconds)
+{
+  Controls controls = solver.controls();
+  controls.bone[1] = rigid_motion({ { 0, 0, 0 } }, { { 0, 0, -1e-3 } });
+  solver.advance(0.4 * seconds, controls);
+  controls.bone[1] = rigid_motion({ { 0, 0.02, 0.01 } }, { { 2e-3, 0, -1e-3 } });
+  solver.advance(0.6 * seconds, controls);
+}
+
+TEST_P(BodiesTouch, one_that_is_not_there_costs_nothing)
+{
+  const Model touched = block_and_finger(0.3);
+  EXPECT_TRUE(effects_of(touched).has(Effect::contact));
+  EXPECT_EQ(presence_of(touched, Effect::contact).nodes, touched.contacts[0].points.size());
+  Model off = touched, never = touched;
+  switch_off(off, EffectSet().with(Effect::contact));
+  never.contacts.clear();
+  check_model(off);
+  std::size_t bytes = 0;
+  for (const Allocation& allocation : make(touched)->allocations())
+    bytes += allocation.effect == Effect::contact ? allocation.bytes : 0;
+  EXPECT_GT(bytes, 100 * touched.contacts[0].points.size());
+  for (const Model& model : { off, never })
+  {
+    const auto solver = make(model);
+    EXPECT_TRUE(solver->reactions().empty());
+    for (const Allocation& allocation : solver->allocations())
+      EXPECT_NE(allocation.effect, Effect::contact) << allocation.what;
+  }
+}
+
+// Under a pressure of 5 % of Young's modulus.
+TEST_P(BodiesTouch, a_plate_presses_evenly_and_hardly_goes_in)
+{
+  BlockSettings settings;
+  settings.voxels = { { 5, 4, 4 } };
+  settings.damping = 3000;
+  for (const double poisson : { 0.3, 0.49 })
+  {
+    settings.poisson = poisson;
+    Model model = block_model(settings);
+    Load floor;
+    floor.kind = Load::Kind::displacement;
+    floor.fixed = { { false, false, true } };
+    model.loads.push_back(floor);
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n][2] == 0)
+        model.prescribed.push_back({ static_cast<std::int32_t>(n), 0 });
+    model.bones = { "plate" };
+    model.contacts.push_back(touching_side(model, true, plate(4e-3, 1)));
+    model.contacts[0].bone = 0;
+    const auto solver = make(model);
+    Controls controls = solver->controls();
+    controls.bone[0].translation[2] = -0.206e-3;
+    solver->advance(0.02, controls);
+    for (int i = 0; i < 8; ++i)
+      solver->advance(0.02, controls);
+    const double pressure = solver->reactions()[0].force[2] / 20e-6;
+    EXPECT_NEAR(pressure, 0.05 * settings.young, 0.1 * 0.05 * settings.young);
+    const Vectors u = displacements(*solver);
+    double least = 1, most = 0;
+    for (std::size_t n = 0; n < u.size(); ++n)
+      if (model.nodes[n][2] == 4)
+      {
+        least = std::min(least, u[n][2] + 0.206e-3);
+        most = std::max(most, u[n][2] + 0.206e-3);
+      }
+    EXPECT_LT(most, 0.02e-3);
+    EXPECT_LT(most - least, 0.05 * most);
+    // pressure and penetration belong together
+    EXPECT_NEAR(0.5 * (most + least) * 3.5 * settings.young / 1e-3, pressure, 0.03 * pressure);
+  }
+}
+
+Model falling_block(double gap)
+{
+  BlockSettings settings;
+  settings.voxels = { { 5, 4, 4 } };
+  Model model = block_model(settings);
+  model.contacts.push_back(touching_side(model, false, plate(-gap, -1)));
+  return model;
+}
+
+TEST_P(BodiesTouch, an_impact_keeps_the_energy)
+{
+  const Model model = falling_block(0.1e-3);
+  const auto solver = make(model, 2, true);
+  solver->set_velocities(Vectors(model.nodes.size(), { { 0.05, 0, -0.3 } }));
+  const double initial = solver->ledger().initial;
+  double stored = 0, least = initial, most = initial;
+  for (int slice = 0; slice < 60; ++slice)
+  {
+    solver->advance(0.1e-3, solver->controls());
+    const EnergyLedger ledger = solver->ledger();
+    stored = std::max(stored, ledger.contact_stored);
+    least = std::min(least, mechanical(ledger));
+    most = std::max(most, mechanical(ledger));
+    EXPECT_LT(std::abs(ledger.imbalance()), 0.02 * initial);
+  }
+  EXPECT_GT(stored, 0.01 * initial);
+  EXPECT_GT(least, 0.98 * initial);
+  EXPECT_LT(most, 1.02 * initial);
+  EXPECT_EQ(solver->reactions()[0].force[2], 0);
+  EXPECT_GT(mean(displacements(*solver), 2), 0.05e-3);  // it has bounced
+}
+
+// The reaction is the opposite of the rate of change of momentum, its moment that of angular momentum. The plate is
+// rough and the block arrives obliquely, so that all components of both differ from zero.
+TEST_P(BodiesTouch, what_a_body_gets_the_tissue_loses)
+{
+  Model model = falling_block(1e-6);
+  model.contacts[0].friction = 0.4;
+  const Discretisation discretisation(model);
+  const double dt = 2e-6;
+  const auto solver = make(model, 2, false, dt);
+  Vectors v(model.nodes.size());
+  for (std::size_t n = 0; n < v.size(); ++n)
+    v[n] = { { 0.1 + 10 * rest(model, n)[1], -0.05, -0.3 - 20 * rest(model, n)[0] } };
+  solver->set_velocities(v);
+  std::array<double, 6> gained{}, lost{};
+  Vectors before = displacements(*solver), velocity = v;
+  for (int step = 0; step < 600; ++step)
+  {
+    solver->advance(dt, solver->controls());
+    const Reaction reaction = solver->reactions()[0];
+    const Vectors after = displacements(*solver);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      gained[axis] += dt * reaction.force[axis];
+      gained[3 + axis] += dt * reaction.moment[axis];
+    }
+    for (std::size_t n = 0; n < v.size(); ++n)
+    {
+      std::array<double, 3> change{}, place{};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const double now = (after[n][axis] - before[n][axis]) / dt;
+        change[axis] = discretisation.node_mass[n] * (velocity[n][axis] - now);
+        place[axis] = rest(model, n)[axis] + before[n][axis];
+        velocity[n][axis] = now;
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
+        lost[axis] += change[axis];
+        lost[3 + axis] += place[j] * change[k] - place[k] * change[j];
+      }
+    }
+    before = after;
+  }
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    EXPECT_GT(std::abs(lost[i]), i < 3 ? 1e-7 : 1e-10) << i;
+    EXPECT_NEAR(gained[i], lost[i], 0.01 * std::abs(lost[i])) << i;
+  }
+}
+
+TEST_P(BodiesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_it)
+{
+  const double friction = 0.5, damping = 50, gravity = 9.81, settling = 0.05, time = 0.15;  // 26.6 degrees
+  const auto on_incline = [&](double degrees)
+  {
+    BlockSettings settings;
+    settings.voxels = { { 6, 4, 2 } };
+    settings.damping = damping;
+    Model model = block_model(settings);
+    model.contacts.push_back(touching_side(model, false, plate(0, -1)));
+    model.contacts[0].friction = friction;
+    model.gravity = { { gravity * std::sin(degrees * degree), 0, -gravity * std::cos(degrees * degree) } };
+    return model;
+  };
+  const auto sticking = make(on_incline(22));
+  sticking->advance(settling, {});
+  const double settled = mean(displacements(*sticking), 0);
+  sticking->advance(time - settling, {});
+  EXPECT_NEAR(mean(displacements(*sticking), 0), settled, 1e-6);
+  for (const double degrees : { 35.0, 60.0 })
+  {
+    const double acceleration = gravity * (std::sin(degrees * degree) - friction * std::cos(degrees * degree));
+    const auto travelled = [&](double t)
+    { return acceleration / damping * (t - (1 - std::exp(-damping * t)) / damping); };
+    const double expected = travelled(time) - travelled(settling);
+    const auto sliding = make(on_incline(degrees));
+    sliding->advance(settling, {});
+    const double begin = mean(displacements(*sliding), 0);
+    sliding->advance(time - settling, {});
+    EXPECT_NEAR(mean(displacements(*sliding), 0) - begin, expected, 0.01 * expected) << degrees;
+  }
+}
+
+TEST_P(BodiesTouch, the_ledger_closes_over_a_stroke)
+{
+  for (const double friction : { 0.0, 0.4 })
+  {
+    const auto solver = make(block_and_finger(friction), 2, true);
+    press_and_stroke(*solver, 40e-3);
+    const EnergyLedger ledger = solver->ledger();
+    EXPECT_GT(ledger.contact, 0.3 * ledger.largest);
+    EXPECT_GT(ledger.contact_stored, 0);
+    if (friction > 0)
+      EXPECT_GT(ledger.friction, 0.02 * ledger.largest);
+    else
+      EXPECT_EQ(ledger.friction, 0);
+    EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.largest) << friction;
+  }
+}
+
+TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
+{
+  const auto exact = make(block_and_finger(0.4)), sampled = make(block_and_finger(0.4, true));
+  for (Solver* const solver : { exact.get(), sampled.get() })
+    press_and_stroke(*solver, 40e-3);
+  for (std::size_t axis : { 0, 2 })
+  {
+    const double expected = exact->reactions()[0].force[axis];
+    EXPECT_GT(std::abs(expected), 1e-3);
+    EXPECT_NEAR(sampled->reactions()[0].force[axis], expected, 0.03 * std::abs(expected)) << axis;
+  }
+}
+
+// Points that are far from a body are not looked at. A body that comes from far at a high speed must be met nonetheless.
+TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
+{
+  const auto near = make(block_and_finger(0)), far = make(block_and_finger(0));
+  Controls controls = far->controls();
+  controls.bone[1].translation[2] = 60e-3;
+  far->advance(1e-3, controls);
+  controls.bone[1] = rigid_motion({ { 0, 3, 0 } }, { { 20e-3, 0, 30e-3 } });
+  far->advance(4e-3, controls);
+  for (Solver* const solver : { near.get(), far.get() })
+  {
+    controls.bone[1] = RigidTransform();
+    solver->advance(2e-3, controls);
+    EXPECT_EQ(solver->reactions()[0].force[2], 0);
+    controls.bone[1].translation[2] = -1e-3;
+    solver->advance(10e-3, controls);
+    solver->advance(50e-3, controls);
+  }
+  const double expected = near->reactions()[0].force[2];
+  EXPECT_GT(expected, 0.01);
+  EXPECT_NEAR(far->reactions()[0].force[2], expected, 1e-3 * expected);
+}
+
+TEST_P(BodiesTouch, a_motion_goes_on_with_the_same_bits)
+{
+  const Model model = block_and_finger(0.4);
+  const auto solver = make(model), other = make(model);
+  press_and_stroke(*solver, 10e-3);
+  std::unique_ptr<Snapshot> snapshot;
+  solver->save(snapshot);
+  const std::string bytes = solver->pack();
+  press_and_stroke(*solver, 4e-3);
+  const Vectors expected = displacements(*solver);
+  const Reaction reaction = solver->reactions()[0];
+  EXPECT_GT(std::abs(reaction.force[0]), 1e-3);
+  solver->restore(*snapshot);
+  other->unpack(bytes);
+  for (Solver* const again : { solver.get(), other.get() })
+  {
+    press_and_stroke(*again, 4e-3);
+    EXPECT_EQ(displacements(*again), expected);
+    EXPECT_EQ(again->reactions()[0].force, reaction.force);
+  }
+}
+
+TEST_P(BodiesTouch, any_number_of_threads_gives_the_same_bits)
+{
+  const Model model = block_and_finger(0.4);
+  Vectors expected;
+  for (const int threads : { 1, 2, 3 })
+  {
+    const auto solver = make(model, threads, true);
+    press_and_stroke(*solver, 10e-3);
+    if (expected.empty())
+      expected = displacements(*solver);
+    EXPECT_EQ(displacements(*solver), expected) << threads;
+  }
+}
+
+TEST_P(BodiesTouch, contact_is_switched_while_running)
+{
+  const Model model = block_and_finger(0.4);
+  Model without = model;
+  switch_off(without, EffectSet().with(Effect::contact));
+  const auto solver = make(model), other = make(without);
+  solver->switch_effect(Effect::contact, false);
+  for (Solver* const one : { solver.get(), other.get() })
+    press_and_stroke(*one, 4e-3);
+  EXPECT_EQ(displacements(*solver), displacements(*other));
+  solver->switch_effect(Effect::contact, true);
+  const double stroke = 10e-3;
+  solver->advance(stroke, solver->controls());
+  EXPECT_GT(solver->reactions()[0].force[2], 1e-3);
+  solver->switch_effect(Effect::contact, false);
+  EXPECT_EQ(solver->reactions()[0].force[2], 0);
+  solver->switch_effect(Effect::contact, true);
+  solver->reset();
+  const auto fresh = make(model);
+  for (Solver* const one : { solver.get(), fresh.get() })
+    press_and_stroke(*one, 4e-3);
+  EXPECT_EQ(displacements(*solver), displacements(*fresh));
+}
+
+// The bound of the highest frequency holds with all points in contact, and contact costs few steps.
+TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
+{
+  Model model = block_and_finger(0), without = model;
+  without.contacts.clear();
+  const double with = make(model)->time_step(), plain = make(without)->time_step();
+  EXPECT_LT(with, plain);
+  EXPECT_GT(with, 0.97 * plain);
+  // undamped at the full step, pressed
+  model.damping = 0;
+  model.time_step_share = 1;
+  const auto solver = make(model, 2, true);
+  press_and_stroke(*solver, 10e-3);
+  const double before = mechanical(solver->ledger());
+  for (int slice = 0; slice < 10; ++slice)
+    solver->advance(1e-3, solver->controls());
+  EXPECT_NEAR(mechanical(solver->ledger()), before, 0.02 * before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, BodiesTouch, testing::ValuesIn(host_backends()), backend_name);
+
+}  // namespace
+}  // namespace frontalis
