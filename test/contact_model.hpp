@@ -9,8 +9,8 @@ namespace frontalis
 namespace test
 {
 
-/// A body with a plane surface through (0, 0, z): a sphere so large that a block sees no curvature. `side`: -1 where the
-/// body is below its surface, +1 where it is above.
+/// A body with a plane surface through (0, 0, z): a sphere so large that a block sees no curvature. `side`: -1 where
+/// the body is below its surface, +1 where it is above.
 inline SampledField plate(double z, int side)
 {
   const double radius = 1000;
@@ -30,8 +30,7 @@ inline Contact touching_side(const Model& model, bool upper, const SampledField&
   const auto add = [&](double x, double y)
   {
     const int i = std::min(static_cast<int>(x), nx - 1), j = std::min(static_cast<int>(y), ny - 1);
-    mesh.vertices.push_back(
-        { { x * model.spacing[0], y * model.spacing[1], (upper ? nz : 0) * model.spacing[2] } });
+    mesh.vertices.push_back({ { x * model.spacing[0], y * model.spacing[1], (upper ? nz : 0) * model.spacing[2] } });
     binding.voxel.push_back((k * ny + j) * nx + i);
     binding.coordinates.push_back({ { static_cast<float>(x - i), static_cast<float>(y - j), upper ? 1.0F : 0.0F } });
   };

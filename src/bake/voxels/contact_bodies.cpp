@@ -24,18 +24,16 @@ struct Body
   const PreparedSurface* surface;
   double sign;
 
-  double distance(const Vector3d& p) const
-  {
-    return sign * surface->signed_distance(p, surface->tree().closest(p));
-  }
+  double distance(const Vector3d& p) const { return sign * surface->signed_distance(p, surface->tree().closest(p)); }
 };
 
 Body closed_body(const PreparedSurface& surface, const std::string& place)
 {
   if (!surface.closed())
-    throw Error(fmt::format("{}: surface '{}' is open, so that it has no inside that tissue could be kept out of; close "
-                            "it, or take a part of it that is closed",
-                            place, surface.name()));
+    throw Error(
+        fmt::format("{}: surface '{}' is open, so that it has no inside that tissue could be kept out of; close "
+                    "it, or take a part of it that is closed",
+                    place, surface.name()));
   return { &surface, signed_volume(surface.mesh()) < 0 ? -1.0 : 1.0 };
 }
 
@@ -58,10 +56,9 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
     return least;
   };
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  return sample_band(to_array(box.min()), to_array(box.max()), distance,
-                     std::min(largest_spacing, spacing_share * edge), reach,
-                     [&](std::size_t count, const std::function<void(std::size_t)>& body)
-                     { parallel_for(monitor, count, 1, body); });
+  return sample_band(
+      to_array(box.min()), to_array(box.max()), distance, std::min(largest_spacing, spacing_share * edge), reach,
+      [&](std::size_t count, const std::function<void(std::size_t)>& body) { parallel_for(monitor, count, 1, body); });
 }
 
 // Index in the model of the bone of this name, added if it is new; -1: none.
@@ -91,10 +88,10 @@ void check_overlap(const Scene& scene, const std::string& place, const Contact& 
         where[frame.scene_axis(a)] = frame.origin[frame.scene_axis(a)] + p[a];
     }
   if (deepest > allowed)
-    throw Error(fmt::format("{}: at rest its surface lies {} inside of the body, for example at {}; at most {}, half of a "
-                            "voxel, are allowed: move the body away, or crop the part that it must not touch",
-                            place, length_text(deepest, scene.unit), place_text(where, scene.unit),
-                            length_text(allowed, scene.unit)));
+    throw Error(fmt::format(
+        "{}: at rest its surface lies {} inside of the body, for example at {}; at most {}, half of a "
+        "voxel, are allowed: move the body away, or crop the part that it must not touch",
+        place, length_text(deepest, scene.unit), place_text(where, scene.unit), length_text(allowed, scene.unit)));
 }
 
 }  // namespace
@@ -133,9 +130,10 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     const BoundMesh bound = bind_mesh(named_surface(surfaces, on, place).mesh(), constraint.crop, frame,
                                       PointBinder(model, extrapolation), monitor);
     if (bound.mesh.triangles.empty())
-      throw Error(fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue; check 'on' "
-                              "and the crop",
-                              place, on, length_text(extrapolation, scene.unit)));
+      throw Error(
+          fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue; check 'on' "
+                      "and the crop",
+                      place, on, length_text(extrapolation, scene.unit)));
     if (bound.too_far > 0)
       monitor.found(fmt::format("constraint '{}': {} triangles of '{}' left out, too far from the tissue",
                                 constraint.name, bound.too_far, on));

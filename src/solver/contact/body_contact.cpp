@@ -40,6 +40,9 @@ void add_reaction(Reaction& sum, const Vector& arm, const Vector& force)
   add_to(sum.moment, cross(force, arm));
 }
 
+// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+constexpr double forgotten_depth = 1e-9;
+
 // Longest way between two poses of a point of tissue.
 double longest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& far_corner)
 {
@@ -105,9 +108,9 @@ void BodyContact::reset()
   forces_.assign(points_.size(), {});
   next_.assign(bodies, {});
   motion_.assign(bodies, {});
-  anchors_.assign(points_.size(), {});
+  grips_.assign(points_.size(), {});
   due_.assign(points_.size(), 0);
-  touches_.assign(points_.size(), 0);
+  touches_.assign(points_.size(), Touching::no);
   bodies_.assign(bodies, {});
   node_way_.assign(planes + 1, 0);
   sums_.assign(planes * bodies, {});
@@ -125,7 +128,7 @@ void BodyContact::list_arrays(ArrayList& list)
   list.add(effect, "forces", forces_);
   list.add(effect, "bodies", next_);
   list.add(effect, "bodies", motion_);
-  list.add_state(effect, "anchors of friction", anchors_);
+  list.add_state(effect, "grips", grips_);
   list.add_state(effect, "distances", due_);
   list.add_state(effect, "distances", touches_);
   list.add_state(effect, "bodies", bodies_);
@@ -153,11 +156,11 @@ RigidTransform BodyContact::pose_of(std::size_t body, const std::vector<RigidTra
   return bone < 0 ? RigidTransform() : bones[bone];
 }
 
-BodyContact::BodyState BodyContact::next(std::size_t body, const std::vector<RigidTransform>& bones) const
+BodyContact::BodyState BodyContact::next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const
 {
   const BodyState& before = bodies_[body];
-  BodyState now{ pose_of(body, bones), 0, 1 };
-  if (before.known != 0)
+  BodyState now{ pose_of(body, bones), 0, dt };
+  if (before.dt > 0)
     now.way = before.way + spread_ * *std::max_element(node_way_.begin(), node_way_.end()) +
               longest_way(before.pose, now.pose, far_corner(model_));
   return now;
@@ -186,39 +189,44 @@ void BodyContact::look(int thread, int threads, const Real* const u[3], const Co
   std::vector<physics::Pose> pose;
   for (std::size_t b = 0; b < bodies_.size(); ++b)
   {
-    now.push_back(next(b, step.bone_before));
+    now.push_back(next(b, step.bone_before, step.dt));
     pose.push_back(pose_from(now.back().pose));
   }
   const std::size_t begin = points_.size() * thread / threads, end = points_.size() * (thread + 1) / threads;
+  const double response = physics::friction_response(step.dt);
   for (std::size_t p = begin; p < end; ++p)
   {
     const Point& point = points_[p];
-    const double way = now[point.body].way;
+    const double way = now[point.body].way, stiffness = double(point.stiffness);
     if (due_[p] > way)
       continue;
     const Contact& contact = model_.contacts[point.body];
     const physics::DistanceField& field = fields_[point.body];
-    const Vector x = pose[point.body].inwards(place(point, u));
+    const Vector x = pose[point.body].inwards(place(point, u)), arm = pose[point.body].turned(x);
     physics::FieldValue<double> value{};
     const bool sampled = physics::sample(field, physics::field_point(field, x), value);
-    if (!sampled || value.value >= 0)
+    physics::Grip<double>& grip = grips_[p];
+    due_[p] = 0;
+    if (sampled && value.value < 0)
     {
-      touches_[p] = 0;
-      // the gradient of a spline of distances is not longer than sqrt(3)
-      due_[p] = way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+      const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
+      touches_[p] = Touching::yes;
+      grip = touch.grip;
+      forces_[p] = { pose[point.body].turned(touch.force), arm, touch.lost };
       continue;
     }
-    const auto touch = physics::touch<double>(value, x, touches_[p] != 0 ? anchors_[p] : x, double(point.stiffness),
-                                              contact.friction);
-    touches_[p] = 1;
-    due_[p] = 0;
-    anchors_[p] = touch.anchor;
-    forces_[p] = { pose[point.body].turned(touch.force), pose[point.body].turned(x), touch.lost };
+    forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
+    touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
+    if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
+      continue;
+    grip.normal = 0;
+    // the gradient of a spline of distances is not longer than sqrt(3)
+    due_[p] = touches_[p] == Touching::no ? way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x)) : 0;
   }
   if (thread != 0)
     return;
   for (std::size_t b = 0; b < now.size(); ++b)
-    motion_[b] = bodies_[b].known != 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
+    motion_[b] = bodies_[b].dt > 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
   next_ = now;
 }
 
@@ -233,7 +241,7 @@ void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
     std::fill(now.begin(), now.end(), Reaction());
     PlaneSum* const sums = sums_.data() + k * bodies;
     for (auto p = plane_points_[k]; p < plane_points_[k + 1]; ++p)
-      if (touches_[p] != 0)
+      if (touches_[p] != Touching::no)
       {
         add_reaction(now[points_[p].body], forces_[p].arm, forces_[p].force);
         sums[points_[p].body].lost += forces_[p].lost;
@@ -300,10 +308,15 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
     const physics::Pose pose = pose_from(pose_of(point.body, bones));
     const Vector x = pose.inwards(place(point, u));
     physics::FieldValue<double> value{};
+    const double stiffness = double(point.stiffness), response = physics::friction_response(bodies_[point.body].dt);
     if (!physics::sample(field, physics::field_point(field, x), value) || value.value >= 0)
+    {
+      physics::Grip<double> grip = grips_[p];
+      energy.lost += physics::let_go<double>(grip, stiffness, response);
       continue;
-    const auto touch = physics::touch<double>(value, x, touches_[p] != 0 ? anchors_[p] : x, double(point.stiffness),
-                                              model_.contacts[point.body].friction);
+    }
+    const auto touch =
+        physics::touch<double>(value, x, grip_at(p, x), stiffness, model_.contacts[point.body].friction, response);
     energy.stored += touch.stored;
     energy.lost += touch.lost;
     const Vector force = pose.turned(touch.force);
@@ -314,7 +327,7 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   }
   const std::vector<Reaction> before = reactions();
   for (std::size_t b = 0; b < now.size(); ++b)
-    if (bodies_[b].known != 0)
+    if (bodies_[b].dt > 0)
       energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, pose_of(b, bones)));
   if (open)
     opened_[0] = energy;
@@ -332,8 +345,8 @@ BodyContact::BodyMotion BodyContact::motion_between(const RigidTransform& from, 
     for (int k = 0; k < 3; ++k)
     {
       const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-      *turn[axis] += 0.5 * (to.rotation[3 * j + k] * from.rotation[3 * i + k] -
-                            to.rotation[3 * i + k] * from.rotation[3 * j + k]);
+      *turn[axis] +=
+          0.5 * (to.rotation[3 * j + k] * from.rotation[3 * i + k] - to.rotation[3 * i + k] * from.rotation[3 * j + k]);
     }
   return motion;
 }
@@ -344,10 +357,10 @@ double BodyContact::work_between(const Reaction& before, const Reaction& after, 
                  dot(vector(before.moment) + vector(after.moment), motion.turn));
 }
 
-#define FRONTALIS_BODY_CONTACT(Real)                                                                                \
-  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                           \
-  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);         \
-  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool,        \
+#define FRONTALIS_BODY_CONTACT(Real)                                                                         \
+  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                    \
+  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);  \
+  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool, \
                                              std::vector<std::array<double, 3>>&);
 FRONTALIS_BODY_CONTACT(float)
 FRONTALIS_BODY_CONTACT(double)

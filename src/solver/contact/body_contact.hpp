@@ -50,7 +50,7 @@ public:
   void add(int thread, std::int32_t first, std::int32_t last, const Push& push)
   {
     for (auto p = plane_points_[std::max(first - 1, 0)]; p < plane_points_[last]; ++p)
-      if (touches_[p] != 0)
+      if (touches_[p] != Touching::no)
         push_point(points_[p], forces_[p].force, first, last, push);
     add_up(thread, first, last);
   }
@@ -83,11 +83,17 @@ private:
     Vector force, arm;  // on the point [N]; from the origin of the body's frame [m]
     double lost;        // to friction in this step [J]
   };
+  enum class Touching : std::uint8_t
+  {
+    no,
+    yes,
+    let_go  // in this step
+  };
   struct BodyState
   {
     RigidTransform pose;  // at the start of the latest step
     double way;           // by which points and body can have come closer to each other [m]
-    std::int64_t known;   // whether there was a step
+    double dt;            // length of the latest step [s]; 0: there was none
   };
   // of a body in a plane of voxels
   struct PlaneSum
@@ -117,7 +123,12 @@ private:
   template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
   RigidTransform pose_of(std::size_t body, const std::vector<RigidTransform>& bones) const;
-  BodyState next(std::size_t body, const std::vector<RigidTransform>& bones) const;
+  BodyState next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const;
+  physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
+  {
+    const auto& grip = grips_[p];
+    return touches_[p] == Touching::yes ? grip : physics::Grip<double>{ x, grip.normal, 0 };
+  }
   double slack(const Contact& contact, const Vector& x) const;
   static BodyMotion motion_between(const RigidTransform& from, const RigidTransform& to);
   /// Of a body that moves, against the mean of two reactions [J].
@@ -138,9 +149,9 @@ private:
   std::vector<BodyMotion> motion_;  // since the step before
 
   // state
-  std::vector<Vector> anchors_;  // of points that touch
-  std::vector<double> due_;      // BodyState::way at which a point is looked at again
-  std::vector<std::uint8_t> touches_;
+  std::vector<physics::Grip<double>> grips_;  // of points that touch or did lately
+  std::vector<double> due_;                   // BodyState::way at which a point is looked at again
+  std::vector<Touching> touches_;
   std::vector<BodyState> bodies_;
   std::vector<double> node_way_;       // longest way of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;         // one per plane of voxels and body

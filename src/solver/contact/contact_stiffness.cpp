@@ -13,6 +13,10 @@ namespace frontalis
 namespace
 {
 
+// Limit of the stiffness of contact at a node, over that on a flat side of whole voxels with as much tissue. Points
+// that lie far outside of their voxel have large weights, and many points may be bound to a voxel with little tissue.
+constexpr double stiffest_node = 2;
+
 double young_modulus(const VoxelProperties& voxel)
 {
   double shear = voxel.mu;
@@ -28,43 +32,66 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
   if (model.contacts.empty())
     return;
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  // The stiffness of a point on the nodes of its voxel is k w w^T, w its weights. Its rows, added over the points of a
-  // voxel, bound the largest eigenvalue of their sum (Gershgorin).
-  std::vector<std::array<float, 8>> rows(model.voxels.size(), std::array<float, 8>{});
+  // Of each node: the bound of the stiffness of its voxels, and the stiffness of contact if it were on a flat side of
+  // whole voxels, whose four at the node carry a quarter of an edge^2 each.
+  std::vector<double> of_voxels(model.nodes.size(), 0), of_flat_side(model.nodes.size(), 0);
+  std::vector<double> young(model.voxels.size());
+  voxels_.resize(model.voxels.size());
   VoxelProperties properties;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, properties);
+    young[e] = young_modulus(properties);
+    voxels_[e] = static_cast<float>(properties.stiffness);
+    for (const auto node : model.voxel_nodes[e])
+    {
+      of_voxels[node] += properties.stiffness;
+      of_flat_side[node] += physics::contact_stiffness * young[e] * properties.tissue_volume / (4 * edge * edge);
+    }
+  }
   for (const Contact& contact : model.contacts)
   {
     auto& points = points_.emplace_back();
     for (std::size_t p = 0; p < contact.points.size(); ++p)
-    {
-      const auto voxel = contact.binding.voxel[p];
-      discretisation.voxel(static_cast<std::size_t>(voxel), properties);
       points.push_back(
-          static_cast<float>(physics::contact_stiffness * young_modulus(properties) / edge * contact.area[p]));
-      const auto& c = contact.binding.coordinates[p];
-      float weight[8], sum = 0;
-      physics::trilinear_weights(c[0], c[1], c[2], weight);
-      for (const float w : weight)
-        sum += std::abs(w);
-      for (std::size_t b = 0; b < 8; ++b)
-        rows[voxel][b] += points.back() * std::abs(weight[b]) * sum;
-    }
+          static_cast<float>(physics::contact_stiffness * young[contact.binding.voxel[p]] / edge * contact.area[p]));
   }
-  // points far outside of their voxel have large weights, which would shorten the steps: they are softer
-  voxels_.assign(model.voxels.size(), 0);
-  std::vector<float> share(model.voxels.size(), 1);
-  for (std::size_t e = 0; e < rows.size(); ++e)
-  {
-    const float largest = *std::max_element(rows[e].begin(), rows[e].end());
-    if (!(largest > 0))
-      continue;
-    discretisation.voxel(e, properties);
-    share[e] = std::min(1.0F, static_cast<float>(properties.stiffness) / largest);
-    voxels_[e] = share[e] * largest;
-  }
+  const std::vector<double> asked = rows(model);
   for (std::size_t c = 0; c < points_.size(); ++c)
     for (std::size_t p = 0; p < points_[c].size(); ++p)
-      points_[c][p] *= share[model.contacts[c].binding.voxel[p]];
+      for (const auto node : model.voxel_nodes[model.contacts[c].binding.voxel[p]])
+        if (asked[node] > stiffest_node * of_flat_side[node])
+          points_[c][p] = std::min(
+              points_[c][p], static_cast<float>(points_[c][p] * stiffest_node * of_flat_side[node] / asked[node]));
+  // What contact adds to a node is shared by its voxels in proportion to their own bounds.
+  const std::vector<double> added = rows(model);
+  for (std::size_t e = 0; e < voxels_.size(); ++e)
+  {
+    double share = 0;
+    for (const auto node : model.voxel_nodes[e])
+      share = std::max(share, added[node] / of_voxels[node]);
+    voxels_[e] *= static_cast<float>(share);
+  }
+}
+
+// The stiffness of a point on the nodes of its voxel is k w w^T, w its weights. The rows of these matrices, added over
+// all points, bound the eigenvalues of their sum divided by the masses (Gershgorin).
+std::vector<double> ContactStiffness::rows(const Model& model) const
+{
+  std::vector<double> rows(model.nodes.size(), 0);
+  for (std::size_t c = 0; c < points_.size(); ++c)
+    for (std::size_t p = 0; p < points_[c].size(); ++p)
+    {
+      const Binding& binding = model.contacts[c].binding;
+      const auto& at = binding.coordinates[p];
+      double weight[8], sum = 0;
+      physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+      for (const double w : weight)
+        sum += std::abs(w);
+      for (std::size_t b = 0; b < 8; ++b)
+        rows[model.voxel_nodes[binding.voxel[p]][b]] += double(points_[c][p]) * std::abs(weight[b]) * sum;
+    }
+  return rows;
 }
 
 void ContactStiffness::add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,

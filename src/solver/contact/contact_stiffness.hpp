@@ -21,8 +21,8 @@ public:
 
   /// Of a point [N/m].
   double of(std::size_t contact, std::size_t point) const { return points_[contact][point]; }
-  /// Bound of the largest eigenvalue that contact adds to the stiffness of a voxel [N/m]; at most the bound of the
-  /// voxel's own stiffness, so that steps are never shorter than 1 / sqrt(2) of those without contact.
+  /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue of Poisson's ratio 0.49 it is at most 7 % of
+  /// the voxel's own.
   double in_voxel(std::size_t voxel) const { return voxels_.empty() ? 0 : double(voxels_[voxel]); }
   /// Adds the internal forces [N] of points that all touch and stick, and are as stiff along the surface as along its
   /// normal, at displacements [m].
@@ -30,6 +30,8 @@ public:
                   std::vector<std::array<double, 3>>& forces) const;
 
 private:
+  std::vector<double> rows(const Model& model) const;
+
   std::vector<std::vector<float>> points_;  // [N/m] of each contact's points
   std::vector<float> voxels_;               // empty: no contact
 };
