@@ -1,5 +1,7 @@
 #include "cli/frame_folder.hpp"
 
+#include "cli/reactions.hpp"
+
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
@@ -49,7 +51,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model)
     : path_(std::move(path)), model_(model), table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
 {
   make_folder(path_);
-  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|run\.json)(\.partial)?)");
+  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
   std::vector<std::filesystem::path> earlier;
   for (const auto& entry : std::filesystem::directory_iterator(path_))
     if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
@@ -58,7 +60,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model)
     std::filesystem::remove(file);
 }
 
-void FrameFolder::add(double time, const SkinState& skin)
+void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reaction>& reactions)
 {
   if (frames_ == 0)
     first_ = skin;
@@ -71,12 +73,15 @@ void FrameFolder::add(double time, const SkinState& skin)
                           model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
                           1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
   }
+  reactions_ += reaction_rows(model_, frames_, time, reactions);
   ++frames_;
 }
 
 void FrameFolder::finish(const std::string& summary)
 {
   write_text(path_ + "/landmarks.csv", table_);
+  if (!model_.contacts.empty())
+    write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
   write_text(path_ + "/run.json", summary);
 }
 

@@ -17,8 +17,9 @@ public:
   FrameFolder(std::string path, const Model& model);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
-  void add(double time, const SkinState& skin);
-  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame) and run.json.
+  void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), reactions.csv where
+  /// the model has contact (force [N] and moment [N m], face frame) and run.json.
   void finish(const std::string& summary);
 
 private:
@@ -26,7 +27,7 @@ private:
   const Model& model_;
   int frames_ = 0;
   SkinState first_;
-  std::string table_;
+  std::string table_, reactions_;
 };
 
 }  // namespace frontalis

@@ -5,6 +5,7 @@
 #include "cli/model_source.hpp"
 #include "cli/motion.hpp"
 #include "cli/progress.hpp"
+#include "cli/reactions.hpp"
 #include "cli/run_summary.hpp"
 #include "cli/solver_options.hpp"
 
@@ -62,6 +63,7 @@ void look(Solver& solver, const Model& model, double time, RunSummary& summary)
   if (summary.ledger)
     summary.ledger = solver.ledger();
   check_motion(summary.monitor, summary.end, time);
+  summary.reactions = reactions_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;
   summary.time_step = solver.time_step();
@@ -89,7 +91,7 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
     if (frame == 0)
       summary.rest = summary.end;
     if (folder)
-      folder->add(time, summary.end);
+      folder->add(time, summary.end, summary.reactions);
     summary.frames = frame + 1;
     summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
@@ -124,7 +126,7 @@ void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& 
   summary.equilibrium = found;
   summary.complete = !interrupt_requested() || found.reached;
   if (folder)
-    folder->add(time, summary.end);
+    folder->add(time, summary.end, summary.reactions);
 }
 
 void check_options(const RunOptions& options)
@@ -251,7 +253,8 @@ void add_run_command(CLI::App& app, Action& action)
       ->delimiter(',');
   command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
   command->add_option("--frames", options->frames,
-                      "folder for skin_NNNN.ply, landmarks.csv and run.json; files of an earlier run are replaced");
+                      "folder for skin_NNNN.ply, landmarks.csv, reactions.csv (of bodies that tissue touches) and "
+                      "run.json; files of an earlier run are replaced");
   command->add_option("--frame-rate", options->frame_rate, "frames per simulated second (as the model says)")
       ->check(CLI::PositiveNumber);
   add_solver_options(*command, options->solver);

@@ -1,5 +1,6 @@
 #include "cli/run_summary.hpp"
 
+#include "cli/reactions.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
@@ -40,10 +41,11 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
 // terms of the ledger by name [J]
 std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
 {
-  return { { "initial", l.initial },     { "kinetic", l.kinetic },       { "internal", l.internal },
-           { "hourglass", l.hourglass }, { "viscous", l.viscous },       { "damping", l.damping },
-           { "friction", l.friction },   { "muscle", l.muscle },         { "load", l.load },
-           { "gravity", l.gravity },     { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+  return { { "initial", l.initial },       { "kinetic", l.kinetic },      { "internal", l.internal },
+           { "hourglass", l.hourglass },   { "viscous", l.viscous },      { "damping", l.damping },
+           { "friction", l.friction },     { "muscle", l.muscle },        { "load", l.load },
+           { "gravity", l.gravity },       { "contact", l.contact },      { "contact_stored", l.contact_stored },
+           { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
 }
 
 }  // namespace
@@ -76,10 +78,11 @@ void print_result(const Model& model, const RunSummary& summary)
   if (summary.ledger)
   {
     for (const auto& [name, joules] : terms_of(*summary.ledger))
-      fmt::print("energy             {:<10} {:+.5e} J\n", name, joules);
+      fmt::print("energy             {:<14} {:+.5e} J\n", name, joules);
     fmt::print("energy balance     closes within {:.3g} % of the largest term\n",
                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
   }
+  print_reactions(model, summary.reactions);
   if (summary.guard)
     fmt::print("guard              {} checks, went back {} times{}\n", summary.guard->checks, summary.guard->rollbacks,
                summary.guard->rollbacks > 0 ? ", the last because " + words_for(summary.guard->latest) : "");
@@ -133,6 +136,9 @@ std::string json_of(const Model& model, const RunSummary& summary)
   if (summary.ledger)
     for (const auto& [name, joules] : terms_of(*summary.ledger))
       json[fmt::format("ledger_{}_J", name)] = joules;
+  for (std::size_t c = 0; c < summary.reactions.size(); ++c)
+    json["reactions"][model.contacts[c].name] = { { "force_N", summary.reactions[c].force },
+                                                  { "moment_Nm", summary.reactions[c].moment } };
   if (summary.guard)
   {
     json["guard_checks"] = summary.guard->checks;

@@ -26,6 +26,7 @@ struct RunSummary
   Profile profile;
   std::optional<GuardCounts> guard;        ///< where the motion was guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
+  std::vector<Reaction> reactions;         ///< at the end, face frame, one per contact of the model
   std::optional<Equilibrium> equilibrium;  ///< empty: none was looked for
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame

@@ -74,8 +74,8 @@ SampledField empty_field(const Point& lower, const Point& upper, double spacing)
   field.spacing = spacing;
   field.origin = lower;
   for (int axis = 0; axis < 3; ++axis)
-    field.bricks[axis] = 1 + static_cast<std::int32_t>((upper[axis] - lower[axis] + spacing) /
-                                                       (DistanceField::brick_edge * spacing));
+    field.bricks[axis] =
+        1 + static_cast<std::int32_t>((upper[axis] - lower[axis] + spacing) / (DistanceField::brick_edge * spacing));
   field.table.resize(static_cast<std::size_t>(field.bricks[0]) * field.bricks[1] * field.bricks[2], -1);
   return field;
 }

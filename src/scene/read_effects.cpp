@@ -14,8 +14,9 @@ void read_effects(const Node& node, Scene& scene)
   Mapping mapping(node);
   EffectSet present = EffectSet::all();
   const bool rubs = std::any_of(scene.constraints.begin(), scene.constraints.end(),
-                                [](const SceneConstraint& constraint)
-                                { return constraint.kind == SceneConstraint::Kind::sliding && constraint.friction > 0; });
+                                [](const SceneConstraint& constraint) {
+                                  return constraint.kind == SceneConstraint::Kind::sliding && constraint.friction > 0;
+                                });
   present = present.with(Effect::friction, rubs);
   for (const Effect effect : every_effect())
     if (const Node entry = mapping.optional(name_of(effect)); entry.given())

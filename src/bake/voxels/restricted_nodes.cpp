@@ -225,7 +225,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
       { return other.name == surface.name() && other.bone == bone && other.friction == constraint.friction; };
       const auto index = static_cast<std::size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
       if (index == list.size())
-        list.push_back({ surface.name(), finder.local_mesh(surface, bone >= 0), bone, constraint.friction });
+        list.push_back({ surface.name(), finder.local_mesh(surface, bone >= 0), bone, constraint.friction, {} });
       return static_cast<std::int32_t>(index);
     };
     for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,

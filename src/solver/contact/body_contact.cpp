@@ -2,6 +2,7 @@
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
+#include "solver/contact/gliding_nodes.hpp"
 
 #include <cmath>
 #include <numeric>
@@ -17,14 +18,6 @@ using Vector = physics::Vec3<double>;
 constexpr double farthest_outside = 0.1;
 
 Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-
-physics::Pose pose_from(const RigidTransform& transform)
-{
-  physics::Pose pose;
-  std::copy(transform.rotation.begin(), transform.rotation.end(), pose.r);
-  std::copy(transform.translation.begin(), transform.translation.end(), pose.t);
-  return pose;
-}
 
 void add_to(std::array<double, 3>& sum, const Vector& v)
 {
@@ -150,7 +143,7 @@ Vector BodyContact::place(const Point& point, const Real* const u[3]) const
   return p;
 }
 
-RigidTransform BodyContact::pose_of(std::size_t body, const std::vector<RigidTransform>& bones) const
+RigidTransform BodyContact::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
 {
   const std::int32_t bone = model_.contacts[body].bone;
   return bone < 0 ? RigidTransform() : bones[bone];
@@ -159,7 +152,7 @@ RigidTransform BodyContact::pose_of(std::size_t body, const std::vector<RigidTra
 BodyContact::BodyState BodyContact::next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const
 {
   const BodyState& before = bodies_[body];
-  BodyState now{ pose_of(body, bones), 0, dt };
+  BodyState now{ body_pose(body, bones), 0, dt };
   if (before.dt > 0)
     now.way = before.way + spread_ * *std::max_element(node_way_.begin(), node_way_.end()) +
               longest_way(before.pose, now.pose, far_corner(model_));
@@ -190,7 +183,7 @@ void BodyContact::look(int thread, int threads, const Real* const u[3], const Co
   for (std::size_t b = 0; b < bodies_.size(); ++b)
   {
     now.push_back(next(b, step.bone_before, step.dt));
-    pose.push_back(pose_from(now.back().pose));
+    pose.push_back(pose_of(now.back().pose));
   }
   const std::size_t begin = points_.size() * thread / threads, end = points_.size() * (thread + 1) / threads;
   const double response = physics::friction_response(step.dt);
@@ -305,7 +298,7 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   {
     const Point& point = points_[p];
     const physics::DistanceField& field = fields_[point.body];
-    const physics::Pose pose = pose_from(pose_of(point.body, bones));
+    const physics::Pose pose = pose_of(body_pose(point.body, bones));
     const Vector x = pose.inwards(place(point, u));
     physics::FieldValue<double> value{};
     const double stiffness = double(point.stiffness), response = physics::friction_response(bodies_[point.body].dt);
@@ -328,7 +321,7 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   const std::vector<Reaction> before = reactions();
   for (std::size_t b = 0; b < now.size(); ++b)
     if (bodies_[b].dt > 0)
-      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, pose_of(b, bones)));
+      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, body_pose(b, bones)));
   if (open)
     opened_[0] = energy;
   energy.work -= opened_[0].work;

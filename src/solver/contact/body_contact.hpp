@@ -122,7 +122,7 @@ private:
   }
   template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
-  RigidTransform pose_of(std::size_t body, const std::vector<RigidTransform>& bones) const;
+  RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
   BodyState next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const;
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {

@@ -95,8 +95,8 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
     const double weight = mass * (discretisation_.weight_share.empty() ? 1.0 : double(discretisation_.weight_share[n]));
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double next =
-          physics::kicked(kick, axis, v[n][axis], kick.gain / mass, internal[n][axis] - external[n][axis] - touching[n][axis]);
+      const double next = physics::kicked(kick, axis, v[n][axis], kick.gain / mass,
+                                          internal[n][axis] - external[n][axis] - touching[n][axis]);
       l.kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       l.gravity += weight * pull * u[n][axis];

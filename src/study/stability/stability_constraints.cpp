@@ -36,7 +36,7 @@ double distance_to(const TriangleMesh& mesh, const Point& p)
 void slide(Model& model, const TriangleMesh& mesh, const std::function<bool(const Point&)>& condition, double sign = 1)
 {
   const auto surface = static_cast<std::int32_t>(model.constraint_surfaces.size());
-  model.constraint_surfaces.push_back({ fmt::format("surface {}", surface), mesh });
+  model.constraint_surfaces.push_back({ fmt::format("surface {}", surface), mesh, -1, 0, {} });
   for (const auto node : nodes_where(model, condition))
     model.sliding.push_back({ node, surface, sign * distance_to(mesh, rest_position(model, node)) });
 }

@@ -21,6 +21,7 @@ Finding verify_cook(const VerificationSettings& settings);
 Finding verify_staircase(const VerificationSettings& settings);
 Finding verify_wrinkling(const VerificationSettings& settings);
 Finding verify_viscosity(const VerificationSettings& settings);
+Finding verify_hertz(const VerificationSettings& settings);
 Finding verify_energy_balance(const VerificationSettings& settings);
 Finding verify_precision(const VerificationSettings& settings);
 Finding verify_heart_beam(const VerificationSettings& settings);
