@@ -5,6 +5,7 @@
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace frontalis
@@ -36,6 +37,12 @@ void add_reaction(Reaction& sum, const Vector& arm, const Vector& force)
 // Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
 constexpr double forgotten_depth = 1e-9;
 
+// Runs of bound nodes are joined over this many others.
+constexpr std::int32_t largest_gap = 8;
+
+// More than rounding errors take from a way that is found in single precision.
+constexpr double rounding = 1.00001;
+
 // Longest way between two poses of a point of tissue.
 double longest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& far_corner)
 {
@@ -65,10 +72,11 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
   std::stable_sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.voxel < b.voxel; });
   const auto planes = static_cast<std::size_t>(model.size[2]);
   plane_points_.assign(planes + 2, 0);
+  std::vector<std::int32_t> nodes;
   for (const Point& point : points_)
   {
     ++plane_points_[model.voxels[point.voxel][2] + 1];
-    nodes_.insert(nodes_.end(), model.voxel_nodes[point.voxel].begin(), model.voxel_nodes[point.voxel].end());
+    nodes.insert(nodes.end(), model.voxel_nodes[point.voxel].begin(), model.voxel_nodes[point.voxel].end());
     float weight[8], sum = 0;
     physics::trilinear_weights(point.coordinates[0], point.coordinates[1], point.coordinates[2], weight);
     for (const float w : weight)
@@ -76,13 +84,21 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
     spread_ = std::max(spread_, double(sum));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
-  std::sort(nodes_.begin(), nodes_.end());
-  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-  nodes_.shrink_to_fit();
-  plane_nodes_.assign(planes + 2, 0);
-  for (const auto node : nodes_)
-    ++plane_nodes_[model.nodes[node][2] + 1];
-  std::partial_sum(plane_nodes_.begin(), plane_nodes_.end(), plane_nodes_.begin());
+  std::sort(nodes.begin(), nodes.end());
+  plane_runs_.assign(planes + 2, 0);
+  for (const auto node : nodes)
+  {
+    const auto plane = model.nodes[node][2];
+    const bool goes_on = !runs_of_nodes_.empty() && node <= runs_of_nodes_.back().last + largest_gap &&
+                         model.nodes[runs_of_nodes_.back().first][2] == plane;
+    if (!goes_on)
+    {
+      runs_of_nodes_.push_back({ node, node });
+      ++plane_runs_[plane + 1];
+    }
+    runs_of_nodes_.back().last = node + 1;
+  }
+  std::partial_sum(plane_runs_.begin(), plane_runs_.end(), plane_runs_.begin());
   reset();
 }
 
@@ -104,6 +120,7 @@ void BodyContact::reset()
   grips_.assign(points_.size(), {});
   due_.assign(points_.size(), 0);
   touches_.assign(points_.size(), Touching::no);
+  chunks_.assign((points_.size() + chunk_size - 1) / chunk_size, {});
   bodies_.assign(bodies, {});
   node_way_.assign(planes + 1, 0);
   sums_.assign(planes * bodies, {});
@@ -115,8 +132,8 @@ void BodyContact::list_arrays(ArrayList& list)
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
   list.add(effect, "points", plane_points_);
-  list.add(effect, "bound nodes", nodes_);
-  list.add(effect, "bound nodes", plane_nodes_);
+  list.add(effect, "bound nodes", runs_of_nodes_);
+  list.add(effect, "bound nodes", plane_runs_);
   list.add(effect, "bodies", fields_);
   list.add(effect, "forces", forces_);
   list.add(effect, "bodies", next_);
@@ -124,6 +141,7 @@ void BodyContact::list_arrays(ArrayList& list)
   list.add_state(effect, "grips", grips_);
   list.add_state(effect, "distances", due_);
   list.add_state(effect, "distances", touches_);
+  list.add_state(effect, "distances", chunks_);
   list.add_state(effect, "bodies", bodies_);
   list.add_state(effect, "distances", node_way_);
   list.add_state(effect, "sums", sums_);
@@ -149,13 +167,18 @@ RigidTransform BodyContact::body_pose(std::size_t body, const std::vector<RigidT
   return bone < 0 ? RigidTransform() : bones[bone];
 }
 
-BodyContact::BodyState BodyContact::next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const
+std::vector<BodyContact::BodyState> BodyContact::next(const ConstraintStep& step) const
 {
-  const BodyState& before = bodies_[body];
-  BodyState now{ body_pose(body, bones), 0, dt };
-  if (before.dt > 0)
-    now.way = before.way + spread_ * *std::max_element(node_way_.begin(), node_way_.end()) +
-              longest_way(before.pose, now.pose, far_corner(model_));
+  std::vector<BodyState> now;
+  double way = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+  {
+    now.push_back({ body_pose(b, step.bone_before), 0, step.dt });
+    way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
+  }
+  way += bodies_.front().way + spread_ * *std::max_element(node_way_.begin(), node_way_.end());
+  for (BodyState& body : now)
+    body.way = bodies_.front().dt > 0 ? way : 0;
   return now;
 }
 
@@ -176,45 +199,56 @@ double BodyContact::slack(const Contact& contact, const Vector& x) const
 }
 
 template <class Real>
+void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+{
+  const Point& point = points_[p];
+  const double stiffness = double(point.stiffness);
+  const Contact& contact = model_.contacts[point.body];
+  const physics::DistanceField& field = fields_[point.body];
+  const physics::Pose pose = pose_of(body.pose);
+  const Vector x = pose.inwards(place(point, u)), arm = pose.turned(x);
+  physics::FieldValue<double> value{};
+  const bool sampled = physics::sample(field, physics::field_point(field, x), value);
+  physics::Grip<double>& grip = grips_[p];
+  due_[p] = 0;
+  if (sampled && value.value < 0)
+  {
+    const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
+    touches_[p] = Touching::yes;
+    grip = touch.grip;
+    forces_[p] = { pose.turned(touch.force), arm, touch.lost };
+    return;
+  }
+  forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
+  touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
+  if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
+    return;
+  grip.normal = 0;
+  // the gradient of a spline of distances is not longer than sqrt(3)
+  if (touches_[p] == Touching::no)
+    due_[p] = body.way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+}
+
+template <class Real>
 void BodyContact::look(int thread, int threads, const Real* const u[3], const ConstraintStep& step)
 {
-  std::vector<BodyState> now;
-  std::vector<physics::Pose> pose;
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-  {
-    now.push_back(next(b, step.bone_before, step.dt));
-    pose.push_back(pose_of(now.back().pose));
-  }
-  const std::size_t begin = points_.size() * thread / threads, end = points_.size() * (thread + 1) / threads;
+  const std::vector<BodyState> now = next(step);
   const double response = physics::friction_response(step.dt);
-  for (std::size_t p = begin; p < end; ++p)
+  const std::size_t begin = chunks_.size() * thread / threads, end = chunks_.size() * (thread + 1) / threads;
+  for (std::size_t c = begin; c < end; ++c)
   {
-    const Point& point = points_[p];
-    const double way = now[point.body].way, stiffness = double(point.stiffness);
-    if (due_[p] > way)
+    Chunk& chunk = chunks_[c];
+    if (chunk.due > now.front().way)
       continue;
-    const Contact& contact = model_.contacts[point.body];
-    const physics::DistanceField& field = fields_[point.body];
-    const Vector x = pose[point.body].inwards(place(point, u)), arm = pose[point.body].turned(x);
-    physics::FieldValue<double> value{};
-    const bool sampled = physics::sample(field, physics::field_point(field, x), value);
-    physics::Grip<double>& grip = grips_[p];
-    due_[p] = 0;
-    if (sampled && value.value < 0)
+    chunk = { std::numeric_limits<double>::max(), 0 };
+    for (std::size_t p = c * chunk_size; p < std::min((c + 1) * chunk_size, points_.size()); ++p)
     {
-      const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
-      touches_[p] = Touching::yes;
-      grip = touch.grip;
-      forces_[p] = { pose[point.body].turned(touch.force), arm, touch.lost };
-      continue;
+      const BodyState& body = now[points_[p].body];
+      if (!(due_[p] > body.way))
+        look_at(p, u, body, response);
+      chunk.due = std::min(chunk.due, due_[p]);
+      chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }
-    forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
-    touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
-    if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
-      continue;
-    grip.normal = 0;
-    // the gradient of a spline of distances is not longer than sqrt(3)
-    due_[p] = touches_[p] == Touching::no ? way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x)) : 0;
   }
   if (thread != 0)
     return;
@@ -233,12 +267,12 @@ void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
   {
     std::fill(now.begin(), now.end(), Reaction());
     PlaneSum* const sums = sums_.data() + k * bodies;
-    for (auto p = plane_points_[k]; p < plane_points_[k + 1]; ++p)
-      if (touches_[p] != Touching::no)
-      {
-        add_reaction(now[points_[p].body], forces_[p].arm, forces_[p].force);
-        sums[points_[p].body].lost += forces_[p].lost;
-      }
+    each_touching(plane_points_[k], plane_points_[k + 1],
+                  [&](std::int32_t p)
+                  {
+                    add_reaction(now[points_[p].body], forces_[p].arm, forces_[p].force);
+                    sums[points_[p].body].lost += forces_[p].lost;
+                  });
     for (std::size_t b = 0; b < bodies; ++b)
     {
       sums[b].work += work_between(sums[b].reaction, now[b], motion_[b]);
@@ -252,18 +286,26 @@ void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const
 {
   for (auto k = first; k < last; ++k)
   {
-    double longest = 0;
-    for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
+    // squares, in lanes that the compiler makes vectors of
+    constexpr std::int32_t width = 8;
+    Real longest[width] = {};
+    const auto compare = [&](std::int32_t lane, std::int32_t n)
     {
-      double squared = 0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double way = double(after[axis][nodes_[n]]) - double(before[axis][nodes_[n]]);
-        squared += way * way;
-      }
-      longest = std::max(longest, squared);
+      const Real x = after[0][n] - before[0][n], y = after[1][n] - before[1][n], z = after[2][n] - before[2][n];
+      const Real squared = x * x + y * y + z * z;
+      longest[lane] = squared > longest[lane] ? squared : longest[lane];
+    };
+    for (auto run = plane_runs_[k]; run < plane_runs_[k + 1]; ++run)
+    {
+      const auto [begin, end] = runs_of_nodes_[run];
+      std::int32_t n = begin;
+      for (; n + width <= end; n += width)
+        for (std::int32_t lane = 0; lane < width; ++lane)
+          compare(lane, n + lane);
+      for (; n < end; ++n)
+        compare(0, n);
     }
-    node_way_[k] = std::sqrt(longest);
+    node_way_[k] = rounding * std::sqrt(double(*std::max_element(longest, longest + width)));
   }
 }
 

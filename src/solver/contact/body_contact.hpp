@@ -49,9 +49,8 @@ public:
   template <class Push>
   void add(int thread, std::int32_t first, std::int32_t last, const Push& push)
   {
-    for (auto p = plane_points_[std::max(first - 1, 0)]; p < plane_points_[last]; ++p)
-      if (touches_[p] != Touching::no)
-        push_point(points_[p], forces_[p].force, first, last, push);
+    each_touching(plane_points_[std::max(first - 1, 0)], plane_points_[last],
+                  [&](std::int32_t p) { push_point(points_[p], forces_[p].force, first, last, push); });
     add_up(thread, first, last);
   }
 
@@ -92,7 +91,7 @@ private:
   struct BodyState
   {
     RigidTransform pose;  // at the start of the latest step
-    double way;           // by which points and body can have come closer to each other [m]
+    double way;           // by which a point and any body can have come closer to each other [m]
     double dt;            // length of the latest step [s]; 0: there was none
   };
   // of a body in a plane of voxels
@@ -101,12 +100,34 @@ private:
     Reaction reaction;
     double work, lost;
   };
+  // Points are looked at in chunks of this many.
+  static constexpr std::int32_t chunk_size = 64;
+  struct Chunk
+  {
+    double due = 0;            // the earliest of its points
+    std::int64_t touches = 0;  // whether one does
+  };
+  // nodes [first, last), among which bound ones are not far apart
+  struct Run
+  {
+    std::int32_t first, last;
+  };
   // shift [m] and rotation vector [rad] of a body's frame
   struct BodyMotion
   {
     Vector shift, turn;
   };
 
+  /// Calls visit(p) for the points in [first, last) that touch.
+  template <class Visit>
+  void each_touching(std::int32_t first, std::int32_t last, const Visit& visit) const
+  {
+    for (auto p = first; p < last; ++p)
+      if (chunks_[p / chunk_size].touches == 0)
+        p |= chunk_size - 1;
+      else if (touches_[p] != Touching::no)
+        visit(p);
+  }
   template <class Push>
   void push_point(const Point& point, const Vector& force, std::int32_t first, std::int32_t last,
                   const Push& push) const
@@ -123,7 +144,9 @@ private:
   template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
   RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
-  BodyState next(std::size_t body, const std::vector<RigidTransform>& bones, double dt) const;
+  std::vector<BodyState> next(const ConstraintStep& step) const;
+  template <class Real>
+  void look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
     const auto& grip = grips_[p];
@@ -140,8 +163,8 @@ private:
   double spread_ = 1;                       // by which factor a point may move more than the nodes of its voxel
   std::vector<Point> points_;               // sorted by voxel
   std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, twice more their number
-  std::vector<std::int32_t> nodes_;         // bound nodes, ascending
-  std::vector<std::int32_t> plane_nodes_;   // first of them in each plane of nodes, and their number
+  std::vector<Run> runs_of_nodes_;          // that hold all bound nodes, ascending
+  std::vector<std::int32_t> plane_runs_;    // first of them in each plane of nodes, and their number
   std::vector<physics::DistanceField> fields_;
   // of the step under way
   std::vector<PointForce> forces_;  // of points that touch
@@ -152,6 +175,7 @@ private:
   std::vector<physics::Grip<double>> grips_;  // of points that touch or did lately
   std::vector<double> due_;                   // BodyState::way at which a point is looked at again
   std::vector<Touching> touches_;
+  std::vector<Chunk> chunks_;
   std::vector<BodyState> bodies_;
   std::vector<double> node_way_;       // longest way of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;         // one per plane of voxels and body
