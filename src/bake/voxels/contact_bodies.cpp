@@ -61,6 +61,46 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
       [&](std::size_t count, const std::function<void(std::size_t)>& body) { parallel_for(monitor, count, 1, body); });
 }
 
+// The part of a surface in a box, its triangles halved until no edge is longer than `longest` [m]: only vertices touch.
+// Vertices of halved triangles may lie on edges of others, which changes neither area nor shape.
+TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
+{
+  TriangleMesh mesh;
+  mesh.vertices = surface.vertices;
+  std::vector<Triangle> left;
+  for (const Triangle& t : surface.triangles)
+  {
+    const auto [a, b, c] = corners(surface, t);
+    if (Box(a).extend(b).extend(c).intersects(box))
+      left.push_back(t);
+  }
+  while (!left.empty())
+  {
+    const Triangle t = left.back();
+    left.pop_back();
+    double length = 0;
+    int edge = 0;
+    for (int e = 0; e < 3; ++e)
+      if (const double now = (vertex(mesh, t[(e + 1) % 3]) - vertex(mesh, t[e])).norm(); now > length)
+      {
+        length = now;
+        edge = e;
+      }
+    if (length <= longest)
+    {
+      mesh.triangles.push_back(t);
+      continue;
+    }
+    const std::int32_t from = t[edge], to = t[(edge + 1) % 3], opposite = t[(edge + 2) % 3];
+    const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(to_array(0.5 * (vertex(mesh, from) + vertex(mesh, to))));
+    left.push_back({ from, middle, opposite });
+    left.push_back({ middle, to, opposite });
+  }
+  join_vertices(mesh);
+  return mesh;
+}
+
 // Index in the model of the bone of this name, added if it is new; -1: none.
 std::int32_t bone_of(const std::string& name, Model& model)
 {
@@ -127,8 +167,9 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
       contact.field = field_of(bodies, frame, model, contact.reach, monitor);
 
     const std::string& on = constraint.on.empty() ? scene.skin.surface : constraint.on;
-    const BoundMesh bound = bind_mesh(named_surface(surfaces, on, place).mesh(), constraint.crop, frame,
-                                      PointBinder(model, extrapolation), monitor);
+    const TriangleMesh surface = refined(named_surface(surfaces, on, place).mesh(), to_box(constraint.crop),
+                                         *std::min_element(model.spacing.begin(), model.spacing.end()));
+    const BoundMesh bound = bind_mesh(surface, constraint.crop, frame, PointBinder(model, extrapolation), monitor);
     if (bound.mesh.triangles.empty())
       throw Error(
           fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue; check 'on' "
