@@ -18,6 +18,14 @@ constexpr double spacing_share = 0.5;       // the same in shortest voxel edges
 constexpr double reach_share = 2;           // how far from a surface there are samples, in longest voxel edges
 constexpr double overlap_share = 0.5;       // how deep tissue may lie in a body at rest, in shortest voxel edges
 
+Vector3d to_scene(const LocalFrame& frame, const std::array<double, 3>& local)
+{
+  Vector3d p = frame.origin;
+  for (int a = 0; a < 3; ++a)
+    p[frame.scene_axis(a)] += local[a];
+  return p;
+}
+
 // A closed surface, outwards positive.
 struct Body
 {
@@ -37,7 +45,19 @@ Body closed_body(const PreparedSurface& surface, const std::string& place)
   return { &surface, signed_volume(surface.mesh()) < 0 ? -1.0 : 1.0 };
 }
 
-// The union of several bodies.
+// Distance from the union of several bodies, of a point in local coordinates.
+Distance distance_from(const std::vector<Body>& bodies, const LocalFrame& frame)
+{
+  return [&](const std::array<double, 3>& local)
+  {
+    const Vector3d p = to_scene(frame, local);
+    double least = bodies.front().distance(p);
+    for (std::size_t b = 1; b < bodies.size(); ++b)
+      least = std::min(least, bodies[b].distance(p));
+    return least;
+  };
+}
+
 SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model, double reach,
                       BakeMonitor& monitor)
 {
@@ -45,20 +65,11 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
   for (const Body& body : bodies)
     for (const Vector3& v : body.surface->mesh().vertices)
       box.extend(frame.to_local(to_vector(v)));
-  const auto distance = [&](const std::array<double, 3>& local)
-  {
-    Vector3d p = frame.origin;
-    for (int a = 0; a < 3; ++a)
-      p[frame.scene_axis(a)] += local[a];
-    double least = bodies.front().distance(p);
-    for (std::size_t b = 1; b < bodies.size(); ++b)
-      least = std::min(least, bodies[b].distance(p));
-    return least;
-  };
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  return sample_band(
-      to_array(box.min()), to_array(box.max()), distance, std::min(largest_spacing, spacing_share * edge), reach,
-      [&](std::size_t count, const std::function<void(std::size_t)>& body) { parallel_for(monitor, count, 1, body); });
+  return sample_band(to_array(box.min()), to_array(box.max()), distance_from(bodies, frame),
+                     std::min(largest_spacing, spacing_share * edge), reach,
+                     [&](std::size_t count, const std::function<void(std::size_t)>& body)
+                     { parallel_for(monitor, count, 1, body); });
 }
 
 // The part of a surface in a box, its triangles halved until no edge is longer than `longest` [m]: only vertices touch.
@@ -114,18 +125,18 @@ std::int32_t bone_of(const std::string& name, Model& model)
 }
 
 // Refuses tissue that lies in a body at rest, which would throw it out.
-void check_overlap(const Scene& scene, const std::string& place, const Contact& contact, const LocalFrame& frame,
-                   const Model& model)
+void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
+                   const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
 {
   const double allowed = overlap_share * *std::min_element(model.spacing.begin(), model.spacing.end());
+  const Distance distance = distance_from(bodies, frame);
   double deepest = 0;
   Vector3d where{ 0, 0, 0 };
   for (const auto& p : contact.points)
-    if (const double level = level_at(contact.field, p); level < -deepest)
+    if (const double level = distance(p); level < -deepest)
     {
       deepest = -level;
-      for (int a = 0; a < 3; ++a)
-        where[frame.scene_axis(a)] = frame.origin[frame.scene_axis(a)] + p[a];
+      where = to_scene(frame, p);
     }
   if (deepest > allowed)
     throw Error(fmt::format(
@@ -179,7 +190,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
       monitor.found(fmt::format("constraint '{}': {} triangles of '{}' left out, too far from the tissue",
                                 constraint.name, bound.too_far, on));
     set_points(contact, bound.mesh, bound.binding);
-    check_overlap(scene, place, contact, frame, model);
+    check_overlap(scene, place, contact, bodies, frame, model);
     model.contacts.push_back(std::move(contact));
   }
 }

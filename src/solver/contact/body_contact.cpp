@@ -1,7 +1,6 @@
 #include "solver/contact/body_contact.hpp"
 
 #include "frontalis/model/sample_field.hpp"
-#include "frontalis/solver/rigid_motion.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <cmath>
@@ -15,25 +14,6 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Tissue is never farther than this from the box of its grid [m].
-constexpr double farthest_outside = 0.1;
-
-Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-
-void add_to(std::array<double, 3>& sum, const Vector& v)
-{
-  sum[0] += v.x;
-  sum[1] += v.y;
-  sum[2] += v.z;
-}
-
-// Adds the opposite of a force on the tissue.
-void add_reaction(Reaction& sum, const Vector& arm, const Vector& force)
-{
-  add_to(sum.force, -1.0 * force);
-  add_to(sum.moment, cross(force, arm));
-}
-
 // Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
 constexpr double forgotten_depth = 1e-9;
 
@@ -42,17 +22,6 @@ constexpr std::int32_t largest_gap = 8;
 
 // More than rounding errors take from a way that is found in single precision.
 constexpr double rounding = 1.00001;
-
-// Longest way between two poses of a point of tissue.
-double longest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& far_corner)
-{
-  if (from.rotation == to.rotation && from.translation == to.translation)
-    return 0;
-  double turned = 0;
-  for (std::size_t i = 0; i < 9; ++i)
-    turned += (to.rotation[i] - from.rotation[i]) * (to.rotation[i] - from.rotation[i]);
-  return farthest_way(from, to, far_corner) + std::sqrt(turned) * farthest_outside;
-}
 
 }  // namespace
 
@@ -358,7 +327,7 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
     add_reaction(now[point.body], pose.turned(x), force);
     if (!forces.empty())
       push_point(point, force, 0, model_.size[2] + 1,
-                 [&](std::int32_t node, const Vector& part) { add_to(forces[node], part); });
+                 [&](std::int32_t node, const Vector& part) { add_vector(forces[node], part); });
   }
   const std::vector<Reaction> before = reactions();
   for (std::size_t b = 0; b < now.size(); ++b)
@@ -369,27 +338,6 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   energy.work -= opened_[0].work;
   energy.lost -= opened_[0].lost;
   return energy;
-}
-
-BodyContact::BodyMotion BodyContact::motion_between(const RigidTransform& from, const RigidTransform& to)
-{
-  BodyMotion motion{ vector(to.translation) - vector(from.translation), { 0, 0, 0 } };
-  // a small rotation: its vector is the skew part of to * from^T
-  double* const turn[3] = { &motion.turn.x, &motion.turn.y, &motion.turn.z };
-  for (int axis = 0; axis < 3; ++axis)
-    for (int k = 0; k < 3; ++k)
-    {
-      const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-      *turn[axis] +=
-          0.5 * (to.rotation[3 * j + k] * from.rotation[3 * i + k] - to.rotation[3 * i + k] * from.rotation[3 * j + k]);
-    }
-  return motion;
-}
-
-double BodyContact::work_between(const Reaction& before, const Reaction& after, const BodyMotion& motion)
-{
-  return -0.5 * (dot(vector(before.force) + vector(after.force), motion.shift) +
-                 dot(vector(before.moment) + vector(after.moment), motion.turn));
 }
 
 #define FRONTALIS_BODY_CONTACT(Real)                                                                         \

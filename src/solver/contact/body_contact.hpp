@@ -4,7 +4,7 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "frontalis/solver/reaction.hpp"
+#include "solver/contact/body_motion.hpp"
 #include "solver/stepping/array_list.hpp"
 #include "solver/stepping/constraint_step.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -112,12 +112,6 @@ private:
   {
     std::int32_t first, last;
   };
-  // shift [m] and rotation vector [rad] of a body's frame
-  struct BodyMotion
-  {
-    Vector shift, turn;
-  };
-
   /// Calls visit(p) for the points in [first, last) that touch.
   template <class Visit>
   void each_touching(std::int32_t first, std::int32_t last, const Visit& visit) const
@@ -153,9 +147,6 @@ private:
     return touches_[p] == Touching::yes ? grip : physics::Grip<double>{ x, grip.normal, 0 };
   }
   double slack(const Contact& contact, const Vector& x) const;
-  static BodyMotion motion_between(const RigidTransform& from, const RigidTransform& to);
-  /// Of a body that moves, against the mean of two reactions [J].
-  static double work_between(const Reaction& before, const Reaction& after, const BodyMotion& motion);
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;
