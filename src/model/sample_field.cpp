@@ -24,9 +24,15 @@ bool reaches(const Distance& distance, const Band& band, const Point& middle, do
 {
   const SurfaceDistance d = distance(middle);
   const double radius = 0.5 * std::sqrt(3.0) * edge;
-  if (d.value < band.least - radius || d.value > band.largest + radius || d.past_rim > radius)
+  // the nearest point may jump to the rim and back, and sign and way past the rim with it, but not the true distance
+  const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
+  const bool too_far =
+      std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;
+  if (too_far || (beside_band && d.past_rim == 0))
     return false;
-  if (edge <= smallest || (d.value >= band.least && d.value <= band.largest && d.past_rim == 0))
+  if (edge <= smallest)
+    return !beside_band && d.past_rim <= radius;
+  if (d.value >= band.least && d.value <= band.largest && d.past_rim == 0)
     return true;
   for (int part = 0; part < 8; ++part)
   {

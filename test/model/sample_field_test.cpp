@@ -68,9 +68,14 @@ TEST(SampleField, CoversWhereNodesMayComeAndNoMore)
   for (double x = -10e-3; x <= 18e-3; x += 0.7e-3)
     for (double y = -10e-3; y <= 10e-3; y += 0.9e-3)
       for (const double z : { 0.6e-3, 1.4e-3, 1.6e-3, 2.4e-3 })
+      {
         // each node is on its own level
-        if (z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3)
+        const bool covered = z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3;
+        if (covered)
+        {
           EXPECT_NEAR(level_at(field, { { x, y, z } }), z, 1e-9);
+        }
+      }
   EXPECT_TRUE(std::isnan(level_at(field, { { 0, 0, 8e-3 } })));
   EXPECT_TRUE(std::isnan(level_at(field, { { 0, 0, -8e-3 } })));
   EXPECT_TRUE(std::isnan(level_at(field, { { 30e-3, 0, 1e-3 } })));

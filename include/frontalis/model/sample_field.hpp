@@ -7,7 +7,8 @@
 namespace frontalis
 {
 
-/// Distance of a point from a surface [m]. Neither figure changes by more than the way that the point moves.
+/// Distance of a point from a surface [m]. The nearest point of the surface, to which both figures belong, is
+/// hypot(value, past_rim) away.
 struct SurfaceDistance
 {
   SurfaceDistance(double signed_distance, double past = 0) : value(signed_distance), past_rim(past) {}
