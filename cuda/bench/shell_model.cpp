@@ -201,12 +201,12 @@ struct ShellBuilder
       }
       sliding.push_back(node);
     }
-    const auto height = [&](const std::array<double, 3>& local)
+    const auto above_bone = [&](const std::array<double, 3>& local)
     {
       const Point p = origin + Point{ local[0], local[1], local[2] };
       return thickness(p.x) + 1e-3 - depth(p);
     };
-    slide_on(model, "bone", height, sliding);
+    slide_on(model, "bone", above_bone, sliding);
   }
 
   // binds points to the nearest voxel straight below them
