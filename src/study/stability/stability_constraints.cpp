@@ -83,7 +83,7 @@ void drag(
     way = std::max(way, come);
   }
   motion.check_balance(file, of);
-  trial.checks.absolute("error of kept levels, " + of, "um", 0, 1e6 * worst, file.bound("kept_distance", "um"));
+  trial.checks.absolute("error of kept levels, " + of, "um", 0, 1e6 * worst, file.bound("kept_level", "um"));
   trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
                         std::max(0.0, least_way - 1e3 * way), 0);
 }
