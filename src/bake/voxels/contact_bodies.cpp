@@ -18,14 +18,6 @@ constexpr double spacing_share = 0.5;       // the same in shortest voxel edges
 constexpr double reach_share = 2;           // how far from a surface there are samples, in longest voxel edges
 constexpr double overlap_share = 0.5;       // how deep tissue may lie in a body at rest, in shortest voxel edges
 
-Vector3d to_scene(const LocalFrame& frame, const std::array<double, 3>& local)
-{
-  Vector3d p = frame.origin;
-  for (int a = 0; a < 3; ++a)
-    p[frame.scene_axis(a)] += local[a];
-  return p;
-}
-
 // A closed surface, outwards positive.
 struct Body
 {
@@ -50,7 +42,7 @@ Distance distance_from(const std::vector<Body>& bodies, const LocalFrame& frame)
 {
   return [&](const std::array<double, 3>& local)
   {
-    const Vector3d p = to_scene(frame, local);
+    const Vector3d p = frame.to_scene(to_vector(local));
     double least = bodies.front().distance(p);
     for (std::size_t b = 1; b < bodies.size(); ++b)
       least = std::min(least, bodies[b].distance(p));
@@ -133,10 +125,10 @@ void check_overlap(const Scene& scene, const std::string& place, const Contact& 
   double deepest = 0;
   Vector3d where{ 0, 0, 0 };
   for (const auto& p : contact.points)
-    if (const double level = distance(p); level < -deepest)
+    if (const double level = distance(p).value; level < -deepest)
     {
       deepest = -level;
-      where = to_scene(frame, p);
+      where = frame.to_scene(to_vector(p));
     }
   if (deepest > allowed)
     throw Error(fmt::format(
