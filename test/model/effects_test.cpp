@@ -93,9 +93,10 @@ TEST(ModelEffects, what_others_need_stays_and_unknown_names_are_told_what_there_
   }
   catch (const Error& error)
   {
-    EXPECT_STREQ(error.what(),
-                 "there is no effect 'magic'; the effects are elasticity, fibre_stiffness, contraction, viscosity, "
-                 "gravity, surface_loads, prescribed_displacement, rigid_nodes, sliding, friction, contact, output_fields");
+    EXPECT_STREQ(
+        error.what(),
+        "there is no effect 'magic'; the effects are elasticity, fibre_stiffness, contraction, viscosity, "
+        "gravity, surface_loads, prescribed_displacement, rigid_nodes, sliding, friction, contact, output_fields");
   }
 }
 

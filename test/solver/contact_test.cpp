@@ -1,15 +1,8 @@
-// Tissue that touches rigid bodies.
+// Tissue that touches rigid bodies: the forces.
 
-#include "backends.hpp"
-#include "contact_model.hpp"
+#include "bodies_touch.hpp"
 
-#include "frontalis/error.hpp"
-#include "frontalis/model/effects.hpp"
-#include "frontalis/solver/rigid_motion.hpp"
 #include "solver/stepping/discretisation.hpp"
-
-#include <cmath>
-#include <numeric>
 
 namespace frontalis
 {
@@ -17,108 +10,6 @@ namespace
 {
 
 using namespace test;
-using Vectors = std::vector<std::array<double, 3>>;
-
-constexpr double degree = 3.14159265358979 / 180;
-
-std::vector<Backend> host_backends()
-{
-  auto backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
-class BodiesTouch : public EveryBackend
-{
-protected:
-  std::unique_ptr<Solver> make(const Model& model, int threads = 2, bool ledger = false, double time_step = 0) const
-  {
-    return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, time_step, ledger });
-  }
-};
-
-Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
-}
-
-double mean(const Vectors& vectors, std::size_t axis)
-{
-  double sum = 0;
-  for (const auto& v : vectors)
-    sum += v[axis];
-  return sum / static_cast<double>(vectors.size());
-}
-
-double mechanical(const EnergyLedger& l) { return l.kinetic + l.internal + l.hourglass + l.contact_stored; }
-
-// A block with a fingertip above it, which is a bone; its lower side is held.
-Model block_and_finger(double friction, bool sampled = false)
-{
-  BlockSettings settings;
-  settings.voxels = { { 10, 8, 4 } };
-  settings.damping = 100;
-  Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
-  model.bones = { "other", "finger" };
-  const double radius = 4e-3;
-  const std::array<double, 3> centre{ { 4e-3, 4e-3, 8.2e-3 } };
-  Contact contact = touching_side(model, true, sphere_field(centre, radius));
-  if (sampled)
-  {
-    const auto distance = [&](const std::array<double, 3>& p)
-    { return std::hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]) - radius; };
-    std::vector<std::array<double, 3>> near;
-    for (int n = 0; n < 20; ++n)
-      for (int m = 0; m < 40; ++m)
-        for (const double r : { radius - 2e-3, radius, radius + 2e-3 })
-          near.push_back({ { centre[0] + r * std::sin(9 * n * degree) * std::cos(9 * m * degree),
-                             centre[1] + r * std::sin(9 * n * degree) * std::sin(9 * m * degree),
-                             centre[2] + r * std::cos(9 * n * degree) } });
-    contact.field = sample_field(near, distance, 0.125e-3, 1e-3);
-    contact.reach = 2e-3;
-  }
-  contact.bone = 1;
-  contact.friction = friction;
-  model.contacts.push_back(contact);
-  return model;
-}
-
-// Presses the finger in by 0.8 mm and draws it along x by 2 mm while it turns.
-void press_and_stroke(Solver& solver, double seconds)
-{
-  Controls controls = solver.controls();
-  controls.bone[1] = rigid_motion({ { 0, 0, 0 } }, { { 0, 0, -1e-3 } });
-  solver.advance(0.4 * seconds, controls);
-  controls.bone[1] = rigid_motion({ { 0, 0.02, 0.01 } }, { { 2e-3, 0, -1e-3 } });
-  solver.advance(0.6 * seconds, controls);
-}
-
-TEST_P(BodiesTouch, one_that_is_not_there_costs_nothing)
-{
-  const Model touched = block_and_finger(0.3);
-  EXPECT_TRUE(effects_of(touched).has(Effect::contact));
-  EXPECT_EQ(presence_of(touched, Effect::contact).nodes, touched.contacts[0].points.size());
-  Model off = touched, never = touched;
-  switch_off(off, EffectSet().with(Effect::contact));
-  never.contacts.clear();
-  check_model(off);
-  std::size_t bytes = 0;
-  for (const Allocation& allocation : make(touched)->allocations())
-    bytes += allocation.effect == Effect::contact ? allocation.bytes : 0;
-  EXPECT_GT(bytes, 100 * touched.contacts[0].points.size());
-  for (const Model& model : { off, never })
-  {
-    const auto solver = make(model);
-    EXPECT_TRUE(solver->reactions().empty());
-    for (const Allocation& allocation : solver->allocations())
-      EXPECT_NE(allocation.effect, Effect::contact) << allocation.what;
-  }
-}
 
 // Under a pressure of 5 % of Young's modulus.
 TEST_P(BodiesTouch, a_plate_presses_evenly_and_hardly_goes_in)
@@ -335,89 +226,6 @@ TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
   EXPECT_NEAR(far->reactions()[0].force[2], expected, 1e-3 * expected);
 }
 
-TEST_P(BodiesTouch, a_motion_goes_on_with_the_same_bits)
-{
-  const Model model = block_and_finger(0.4);
-  const auto solver = make(model), other = make(model);
-  press_and_stroke(*solver, 10e-3);
-  std::unique_ptr<Snapshot> snapshot;
-  solver->save(snapshot);
-  const std::string bytes = solver->pack();
-  press_and_stroke(*solver, 4e-3);
-  const Vectors expected = displacements(*solver);
-  const Reaction reaction = solver->reactions()[0];
-  EXPECT_GT(std::abs(reaction.force[0]), 1e-3);
-  solver->restore(*snapshot);
-  other->unpack(bytes);
-  for (Solver* const again : { solver.get(), other.get() })
-  {
-    press_and_stroke(*again, 4e-3);
-    EXPECT_EQ(displacements(*again), expected);
-    EXPECT_EQ(again->reactions()[0].force, reaction.force);
-  }
-}
-
-TEST_P(BodiesTouch, any_number_of_threads_gives_the_same_bits)
-{
-  const Model model = block_and_finger(0.4);
-  Vectors expected;
-  for (const int threads : { 1, 2, 3 })
-  {
-    const auto solver = make(model, threads, true);
-    press_and_stroke(*solver, 10e-3);
-    if (expected.empty())
-      expected = displacements(*solver);
-    EXPECT_EQ(displacements(*solver), expected) << threads;
-  }
-}
-
-TEST_P(BodiesTouch, contact_is_switched_while_running)
-{
-  const Model model = block_and_finger(0.4);
-  Model without = model;
-  switch_off(without, EffectSet().with(Effect::contact));
-  const auto solver = make(model), other = make(without);
-  solver->switch_effect(Effect::contact, false);
-  for (Solver* const one : { solver.get(), other.get() })
-    press_and_stroke(*one, 4e-3);
-  EXPECT_EQ(displacements(*solver), displacements(*other));
-  solver->switch_effect(Effect::contact, true);
-  const double stroke = 10e-3;
-  solver->advance(stroke, solver->controls());
-  EXPECT_GT(solver->reactions()[0].force[2], 1e-3);
-  solver->switch_effect(Effect::contact, false);
-  EXPECT_EQ(solver->reactions()[0].force[2], 0);
-  solver->switch_effect(Effect::contact, true);
-  solver->reset();
-  const auto fresh = make(model);
-  for (Solver* const one : { solver.get(), fresh.get() })
-    press_and_stroke(*one, 4e-3);
-  EXPECT_EQ(displacements(*solver), displacements(*fresh));
-}
-
-// The bound of the highest frequency holds with all points in contact, and contact costs few steps.
-TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
-{
-  Model model = block_and_finger(0), without = model;
-  without.contacts.clear();
-  const double with = make(model)->time_step(), plain = make(without)->time_step();
-  EXPECT_LT(with, plain);
-  EXPECT_GT(with, 0.97 * plain);
-  // undamped at the full step, pressed
-  model.damping = 0;
-  model.time_step_share = 1;
-  for (const auto estimate : { TimeStepEstimate::element, TimeStepEstimate::assembled })
-  {
-    model.time_step_estimate = estimate;
-    const auto solver = make(model, 2, true);
-    press_and_stroke(*solver, 10e-3);
-    const double before = mechanical(solver->ledger());
-    for (int slice = 0; slice < 10; ++slice)
-      solver->advance(1e-3, solver->controls());
-    EXPECT_NEAR(mechanical(solver->ledger()), before, 0.02 * before);
-  }
-}
-
 // An edge of a box that jumps into the tissue by a voxel leaves it as it was.
 TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
 {
@@ -448,7 +256,7 @@ TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
   EXPECT_LT(solver->monitor().internal, 1e-4 * pressed.internal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, BodiesTouch, testing::ValuesIn(host_backends()), backend_name);
+FRONTALIS_HOST_BACKENDS(BodiesTouch);
 
 }  // namespace
 }  // namespace frontalis
