@@ -2,7 +2,6 @@
 #include "frontalis/study/accuracy.hpp"
 #include "frontalis/study/voxel_model.hpp"
 #include "study/accuracy/accuracy_comparison.hpp"
-#include "study/accuracy/accuracy_front.hpp"
 
 #include <gtest/gtest.h>
 

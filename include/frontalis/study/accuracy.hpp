@@ -1,11 +1,11 @@
 #pragma once
 
+#include "frontalis/byte_archive.hpp"
 #include "frontalis/scene/scene.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -42,7 +42,7 @@ struct AccuracyPlan
 {
   /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. If it is
   /// given, settled skins are compared with it, and there is no reference of finer voxels.
-  std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
+  std::function<Vector3(const Vector3&)> exact;
   AccuracySetting standard;               ///< each knob is varied from here
   std::vector<AccuracyProfile> profiles;  ///< the scene's own, which are measured too
   std::vector<std::string> knobs;         ///< knobs to vary, without combinations; empty: all
@@ -62,26 +62,38 @@ struct SkinError
   double largest = NAN;
 };
 
+/// The cost of one setting on one machine, measured in one run.
+struct VariantCost
+{
+  static constexpr const char* extension = "cost";  // of its file
+
+  std::string machine;      ///< empty: not measured yet
+  double step = NAN;        ///< wall seconds per step, median of repeated timings
+  double spread = NAN;      ///< distance of their quartiles over their median
+  double processors = NAN;  ///< share of its processors that the solver got while it was timed
+  double skin = NAN;        ///< wall seconds per published skin
+  double memory = NAN;      ///< host memory of model and solver [bytes]
+  double build = NAN;       ///< wall seconds to make the model
+
+  /// Whether the spread is above 20 %, or other programs took more than a fifth of the processors.
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
+  void archive(ByteArchive& archive);
+};
+
 /// The figures of one setting.
-struct AccuracyRow
+struct AccuracyRow : VariantCost
 {
   std::string name;  ///< its differences from the standard setting
   AccuracySetting setting;
-  std::string fault;        ///< why there are no figures (unstable, no model); empty: no fault
-  SkinError error;          ///< in the worst phase of the history, settled included
-  SkinError settled;        ///< once settled
-  double averaged = NAN;    ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
-  double landmark = NAN;    ///< largest error of a landmark in any phase [m]
-  double energy = NAN;      ///< imbalance of the energy ledger over its largest term
-  double cost = NAN;        ///< wall seconds per simulated second, skins published at the scene's frame rate
-  double spread = NAN;      ///< distance of the quartiles of repeated timings over their median
-  double processors = NAN;  ///< share of its processors that the solver got while it was timed
-  double step = NAN;        ///< wall seconds per step, median
-  double steps = NAN;       ///< steps per simulated second
-  double memory = NAN;      ///< host memory of model and solver [bytes]
-  double build = NAN;       ///< wall seconds to make the model
+  std::string fault;      ///< why there are no figures (unstable, no model); empty: no fault
+  SkinError error;        ///< in the worst phase of the history, settled included
+  SkinError settled;      ///< once settled
+  double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
+  double landmark = NAN;  ///< largest error of a landmark in any phase [m]
+  double energy = NAN;    ///< imbalance of the energy ledger over its largest term
+  double cost = NAN;      ///< wall seconds per simulated second, skins published at the scene's frame rate
+  double steps = NAN;     ///< steps per simulated second
   double voxels = NAN;
-  bool noisy = false;  ///< spread above 20 %, or other programs took more than a fifth of the processors
 
   /// Whether a profile of a scene file can express the setting.
   bool is_profile(const AccuracySetting& standard) const
@@ -93,7 +105,7 @@ struct AccuracyRow
 /// The rows that vary one knob.
 struct KnobLine
 {
-  std::string knob;
+  std::string knob, words;  ///< as the command line and as plots name it
   std::vector<std::size_t> rows;
 };
 
@@ -137,5 +149,17 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 /// most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
+
+/// A body whose settled deformation is known. The plan has the closed form, the voxel edges that fit the body and the
+/// knobs that can be varied.
+struct ClosedForm
+{
+  std::string name;
+  AccuracyPlan plan;
+  ModelMaker maker;
+};
+
+/// "cantilever", "stretched_block" and "active_bar"; accuracy_closed_forms.cpp has their sources.
+std::vector<ClosedForm> closed_forms();
 
 }  // namespace frontalis

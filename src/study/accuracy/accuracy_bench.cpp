@@ -47,7 +47,7 @@ std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) c
 std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting, Backend& played_by) const
 {
   for (const Backend& backend : backends_of(setting))
-    if (std::optional<VariantMotion> motion = store_.motion(key_of(setting, backend)))
+    if (std::optional<VariantMotion> motion = store_.read<VariantMotion>(key_of(setting, backend)))
     {
       played_by = backend;
       return motion;
@@ -87,7 +87,7 @@ double VariantBench::predicted(const AccuracySetting& setting) const
 {
   if (!is_kept(setting))
     return overhead_ + rate_ * relative_time(setting);
-  return is_timed(setting, store_.cost(key_of(setting))) ? 0 : timing_;
+  return is_timed(setting, store_.read<VariantCost>(key_of(setting))) ? 0 : timing_;
 }
 
 bool VariantBench::fits(const AccuracySetting& setting)
@@ -121,7 +121,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     throw StudyInterrupted();
 
   std::optional<VariantMotion> motion = kept_motion(setting, measured.played_by);
-  std::optional<VariantCost> cost = store_.cost(key);
+  std::optional<VariantCost> cost = store_.read<VariantCost>(key);
   const bool kept = motion.has_value();
   if (!kept || (!is_timed(setting, cost) && motion->fault.empty()))
   {
@@ -140,9 +140,9 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     {
       // without a ledger for the reference, whose balance of energies is not reported: a GPU takes twice as long with
       // one
-      motion =
-          play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
-                       { store_.checkpoint(key), [&](const VariantCheckpoint& c) { store_.keep(key, c); } }, go_on);
+      motion = play_variant(
+          model, setting, plan_.history, plan_.threads, !is_reference(setting),
+          { store_.read<VariantCheckpoint>(key), [&](const VariantCheckpoint& c) { store_.keep(key, c); } }, go_on);
       if (!motion)
         throw StudyInterrupted();
       store_.keep(key, *motion);

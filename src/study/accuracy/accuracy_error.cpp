@@ -1,6 +1,6 @@
 // distances between skins, and how they fall with the voxel edge
 
-#include "study/accuracy/accuracy_run.hpp"
+#include "study/accuracy/accuracy_comparison.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -8,13 +8,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace frontalis
 {
 namespace
 {
 
-using Points = std::vector<std::array<float, 3>>;
+using Place = std::array<float, 3>;
+using Points = std::vector<Place>;
 
 // distance between the displacements of two points from their rest
 double apart(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest, std::size_t p)
@@ -28,6 +30,50 @@ double apart(const Points& a, const Points& a_rest, const Points& b, const Point
   }
   return std::sqrt(square);
 }
+
+constexpr double reach = 3;  // standard deviations
+
+// vertices sorted into cubes, to find neighbours
+class Cubes
+{
+public:
+  Cubes(const std::vector<Place>& points, double edge) : edge_(edge)
+  {
+    for (std::size_t v = 0; v < points.size(); ++v)
+      members_[key(cube(points[v]))].push_back(v);
+  }
+
+  // visits the vertices in the cube of a point and in the 26 cubes around it
+  template <class Visit>
+  void visit_near(const Place& point, Visit&& visit) const
+  {
+    const auto middle = cube(point);
+    for (int i = 0; i < 27; ++i)
+    {
+      const auto found =
+          members_.find(key({ { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 } }));
+      if (found != members_.end())
+        for (const std::size_t v : found->second)
+          visit(v);
+    }
+  }
+
+private:
+  std::array<std::int64_t, 3> cube(const Place& p) const
+  {
+    const auto place = [this](float x) { return static_cast<std::int64_t>(std::floor(x / edge_)); };
+    return { { place(p[0]), place(p[1]), place(p[2]) } };
+  }
+  // unique within half a million cubes of the origin
+  static std::int64_t key(const std::array<std::int64_t, 3>& c)
+  {
+    constexpr std::int64_t stride = 1 << 20;
+    return (c[2] * stride + c[1]) * stride + c[0];
+  }
+
+  double edge_;
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> members_;
+};
 
 }  // namespace
 
@@ -89,8 +135,7 @@ VariantMotion settled_part(const VariantMotion& motion)
   return part;
 }
 
-VariantMotion exact_motion(const VariantMotion& like,
-                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement)
+VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement)
 {
   VariantMotion exact = settled_part(like);
   exact.phases.back() = exact.phases.front();
@@ -112,17 +157,59 @@ double observed_order(const std::array<double, 3>& edges, double coarse, double 
     return (std::pow(edges[0], p) - std::pow(edges[1], p)) * fine -
            (std::pow(edges[1], p) - std::pow(edges[2], p)) * coarse;
   };
-  double low = 1e-3, high = 8;
-  if (!(excess(low) < 0) || !(excess(high) > 0))
-    return NAN;
-  for (int halving = 0; halving < 60; ++halving)
-    (excess(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
-  return low;
+  constexpr double low = 1e-3, high = 8;
+  return excess(low) < 0 && excess(high) > 0 ? zero_between(low, high, excess) : NAN;
 }
 
 double richardson(double before, double finest, double difference, double order)
 {
   return difference / (std::pow(before / finest, order) - 1);
 }
+
+SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
+{
+  const auto& rest = reference.phases.at(0).vertices;
+  const Cubes cubes(rest, reach * deviation);
+  for (std::size_t v = 0; v < weights_.size(); ++v)
+  {
+    float sum = 0;
+    cubes.visit_near(rest[v],
+                     [&](std::size_t other)
+                     {
+                       double square = 0;
+                       for (int axis = 0; axis < 3; ++axis)
+                       {
+                         const double d = (static_cast<double>(rest[v][axis]) - rest[other][axis]) / deviation;
+                         square += d * d;
+                       }
+                       if (square > reach * reach)
+                         return;
+                       weights_[v].emplace_back(other,
+                                                static_cast<float>(std::exp(-0.5 * square)) * reference.area[other]);
+                       sum += weights_[v].back().second;
+                     });
+    for (auto& weight : weights_[v])
+      weight.second = sum > 0 ? weight.second / sum : static_cast<float>(weight.first == v);
+  }
+  reference_ = of(reference);
+}
+
+VariantMotion SkinAverage::of(const VariantMotion& motion) const
+{
+  VariantMotion averaged = motion;
+  const auto& rest = motion.phases[0].vertices;
+  for (std::size_t p = 1; p < motion.phases.size(); ++p)
+    for (std::size_t v = 0; v < weights_.size(); ++v)
+    {
+      auto place = rest[v];
+      for (const auto& [other, weight] : weights_[v])
+        for (int axis = 0; axis < 3; ++axis)
+          place[axis] += weight * (motion.phases[p].vertices[other][axis] - rest[other][axis]);
+      averaged.phases[p].vertices[v] = place;
+    }
+  return averaged;
+}
+
+SkinError SkinAverage::error(const VariantMotion& motion) const { return worst(skin_errors(of(motion), reference_)); }
 
 }  // namespace frontalis

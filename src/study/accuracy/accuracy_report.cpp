@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace frontalis
@@ -16,19 +15,6 @@ namespace
 {
 
 double mm(double metres) { return 1e3 * metres; }
-
-// the name of a knob in the plot
-std::string knob_words(const std::string& knob)
-{
-  static const std::map<std::string, std::string> words = {
-    { "voxel", "voxel edge" },         { "samples", "sampling density" },      { "fill_min", "least filling" },
-    { "hourglass", "hourglass form" }, { "integration", "selective reduced" }, { "share", "share of critical step" },
-    { "time_step", "time step form" }, { "mass_scaling", "mass scaling" },     { "poisson", "Poisson's ratio" },
-    { "time_scaling", "time scaling" }
-  };
-  const auto known = words.find(knob);
-  return known == words.end() ? knob : known->second;
-}
 
 // rows that have figures, cheapest first
 std::vector<std::size_t> by_cost(const AccuracyFindings& findings, std::vector<std::size_t> rows)
@@ -82,7 +68,7 @@ Table accuracy_table(const AccuracyFindings& findings)
                 three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
                 three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
                 three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
-                row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault, three(mm(row.averaged)) });
+                row.fault.empty() ? (row.is_noisy() ? "noisy" : "") : row.fault, three(mm(row.averaged)) });
   }
   return table;
 }
@@ -123,7 +109,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   plot.curves.back().style = Plot::Style::faint;
   for (const KnobLine& line : findings.knobs)
   {
-    Plot::Curve curve = curve_of(findings, line.rows, knob_words(line.knob));
+    Plot::Curve curve = curve_of(findings, line.rows, line.words);
     if (curve.x.size() < 2)
       continue;
     if (line.knob == "voxel")
@@ -183,7 +169,7 @@ std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
       f.machine + ".\n";
   for (const std::string& note : f.notes)
     out += "\n- " + note;
-  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy; });
+  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.is_noisy(); });
   if (noisy > 0)
     out += fmt::format(
         "\n- The machine was disturbed while {} settings were timed (spread above 20 %, or other programs "

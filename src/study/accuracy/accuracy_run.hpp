@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/byte_archive.hpp"
 #include "frontalis/study/accuracy.hpp"
 
 #include <array>
@@ -21,6 +20,8 @@ struct SkinPhase
 /// The motion of one variant, which is the same on every run.
 struct VariantMotion
 {
+  static constexpr const char* extension = "motion";  // of its file
+
   std::string fault;              ///< why the motion cannot be used; empty: it can
   std::vector<SkinPhase> phases;  ///< at rest, mid-ramp, end of ramp, end of history, settled
   std::vector<float> area;        ///< area of the skin at rest, shared out to its vertices [m2]
@@ -32,24 +33,11 @@ struct VariantMotion
   void archive(ByteArchive& archive);
 };
 
-/// The cost of one variant on one machine, measured in one run.
-struct VariantCost
-{
-  std::string machine;    ///< empty: not measured yet
-  double step = 0;        ///< time per step, median of the repetitions [s]
-  double spread = 0;      ///< distance of the quartiles over the median
-  double processors = 1;  ///< share of its processors that the study got
-  double skin = 0;        ///< time per published skin [s]
-  double memory = 0;      ///< memory of model and solver [bytes]
-  double build = 0;       ///< time to make the model [s]
-
-  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
-  void archive(ByteArchive& archive);
-};
-
 /// A motion that is not finished.
 struct VariantCheckpoint
 {
+  static constexpr const char* extension = "checkpoint";
+
   VariantMotion motion;     ///< so far; `steps` is the number of steps made
   std::int64_t slices = 0;  ///< slices of the history that have been played
   std::string solver;       ///< Solver::pack()
@@ -90,8 +78,7 @@ SkinError worst(const std::vector<SkinError>& errors);
 /// The phases at rest and settled of a motion, and the same of a body whose settled displacements [m] are known for all
 /// positions [m].
 VariantMotion settled_part(const VariantMotion& motion);
-VariantMotion exact_motion(const VariantMotion& like,
-                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement);
+VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
 /// Root mean square displacement [m] of the phase where it is largest.
 double motion_size(const VariantMotion& motion);
@@ -110,12 +97,12 @@ public:
   explicit VariantStore(std::string folder);
 
   bool has_motion(const std::string& key) const;
-  std::optional<VariantMotion> motion(const std::string& key) const;
-  std::optional<VariantCost> cost(const std::string& key) const;
-  void keep(const std::string& key, const VariantMotion& motion) const;
-  void keep(const std::string& key, const VariantCost& cost) const;
-  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;  ///< removed once the motion is kept
-  void keep(const std::string& key, const VariantCheckpoint& checkpoint) const;
+  /// A VariantMotion, VariantCost or VariantCheckpoint; nothing if its file is missing or incomplete.
+  template <class T>
+  std::optional<T> read(const std::string& key) const;
+  /// A checkpoint is removed once its motion is kept.
+  template <class T>
+  void keep(const std::string& key, T value) const;
 
 private:
   std::string path(const std::string& key, const char* extension) const;
@@ -126,7 +113,7 @@ private:
 /// The settings of one knob, all others as in the standard setting.
 struct Sweep
 {
-  std::string knob;
+  std::string knob, words;  ///< as the command line and as plots name it
   std::vector<AccuracySetting> settings;
 };
 /// `critical`: time step of the standard setting without scaled mass [s].

@@ -3,7 +3,6 @@
 
 #include "study/accuracy/accuracy_run.hpp"
 
-#include "frontalis/byte_archive.hpp"
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/study/table.hpp"
 
@@ -20,17 +19,8 @@ namespace
 
 const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
 
-template <class T>
-void write(const std::string& path, T value)
-{
-  ByteArchive out;
-  value.archive(out);
-  const std::string content = out.bytes();
-  write_text(path, signature + content_hash(content) + content);
-}
-
 // the content of a file; nothing if the file is missing or incomplete
-std::optional<ByteArchive> read(const std::string& path)
+std::optional<ByteArchive> content_of(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);
   const std::string whole{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
@@ -41,17 +31,6 @@ std::optional<ByteArchive> read(const std::string& path)
   if (whole.compare(begin, hash, content_hash(content)) != 0)
     return std::nullopt;
   return ByteArchive(std::move(content));
-}
-
-template <class T>
-std::optional<T> archived(const std::string& path)
-{
-  std::optional<ByteArchive> in = read(path);
-  if (!in)
-    return std::nullopt;
-  T value;
-  value.archive(*in);
-  return in->ended() ? std::optional<T>(std::move(value)) : std::nullopt;
 }
 
 }  // namespace
@@ -77,39 +56,41 @@ void VariantCheckpoint::archive(ByteArchive& archive)
 
 VariantStore::VariantStore(std::string folder) : folder_(std::move(folder)) { make_folder(folder_); }
 
-bool VariantStore::has_motion(const std::string& key) const { return std::filesystem::exists(path(key, "motion")); }
-
-std::optional<VariantMotion> VariantStore::motion(const std::string& key) const
-{
-  return archived<VariantMotion>(path(key, "motion"));
-}
-
-std::optional<VariantCost> VariantStore::cost(const std::string& key) const
-{
-  return archived<VariantCost>(path(key, "cost"));
-}
-
-std::optional<VariantCheckpoint> VariantStore::checkpoint(const std::string& key) const
-{
-  return archived<VariantCheckpoint>(path(key, "checkpoint"));
-}
-
-void VariantStore::keep(const std::string& key, const VariantMotion& motion) const
-{
-  write(path(key, "motion"), motion);
-  std::filesystem::remove(path(key, "checkpoint"));
-}
-
-void VariantStore::keep(const std::string& key, const VariantCost& cost) const { write(path(key, "cost"), cost); }
-
-void VariantStore::keep(const std::string& key, const VariantCheckpoint& checkpoint) const
-{
-  write(path(key, "checkpoint"), checkpoint);
-}
-
 std::string VariantStore::path(const std::string& key, const char* extension) const
 {
   return folder_ + "/" + key + "." + extension;
 }
+
+bool VariantStore::has_motion(const std::string& key) const
+{
+  return std::filesystem::exists(path(key, VariantMotion::extension));
+}
+
+template <class T>
+std::optional<T> VariantStore::read(const std::string& key) const
+{
+  std::optional<ByteArchive> in = content_of(path(key, T::extension));
+  T value;
+  if (in)
+    value.archive(*in);
+  return in && in->ended() ? std::optional<T>(std::move(value)) : std::nullopt;
+}
+
+template <class T>
+void VariantStore::keep(const std::string& key, T value) const
+{
+  ByteArchive out;
+  value.archive(out);
+  write_text(path(key, T::extension), signature + content_hash(out.bytes()) + out.bytes());
+  if (std::is_same_v<T, VariantMotion>)
+    std::filesystem::remove(path(key, VariantCheckpoint::extension));
+}
+
+template std::optional<VariantMotion> VariantStore::read(const std::string&) const;
+template std::optional<VariantCost> VariantStore::read(const std::string&) const;
+template std::optional<VariantCheckpoint> VariantStore::read(const std::string&) const;
+template void VariantStore::keep(const std::string&, VariantMotion) const;
+template void VariantStore::keep(const std::string&, VariantCost) const;
+template void VariantStore::keep(const std::string&, VariantCheckpoint) const;
 
 }  // namespace frontalis

@@ -1,8 +1,6 @@
 // a study of accuracy: the reference, then each knob, then combinations of knobs
 
-#include "study/accuracy/accuracy_bench.hpp"
 #include "study/accuracy/accuracy_comparison.hpp"
-#include "study/accuracy/accuracy_front.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
@@ -116,7 +114,7 @@ void Study::measure_knobs()
   {
     if (!wanted(sweep.knob))
       continue;
-    KnobLine line{ sweep.knob, { standard } };
+    KnobLine line{ sweep.knob, sweep.words, { standard } };
     for (const AccuracySetting& setting : sweep.settings)
     {
       const std::string& profile = setting.profile.name;

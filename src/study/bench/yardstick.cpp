@@ -1,6 +1,5 @@
-#include "frontalis/study/yardstick.hpp"
-
 #include "frontalis/study/step_time.hpp"
+
 #include "study/bench/bare_loop.hpp"
 
 #include <algorithm>

@@ -156,4 +156,16 @@ void write_plot(const Plot& plot, const std::string& path)
   std::filesystem::remove(commands);
 }
 
+std::string write_plots(const Plots& plots, const std::string& folder)
+{
+  const std::filesystem::path place(folder);
+  std::string lines;
+  for (const auto& [file, plot] : plots)
+  {
+    write_plot(plot, (place / file).string());
+    lines += "\n![" + plot.title + "](" + place.filename().string() + "/" + file + ".png)\n";
+  }
+  return lines;
+}
+
 }  // namespace frontalis

@@ -20,6 +20,8 @@ namespace
 
 namespace fs = std::filesystem;
 
+constexpr const char* check_format = "{:<17} {:<44} {:>12} {:>12} {:<6} {:>10} {:>8}  {}";
+
 std::string shown(const Table::Cell& cell)
 {
   const auto* number = std::get_if<double>(&cell);
@@ -47,6 +49,52 @@ std::string csv_cell(const Table::Cell& cell)
 }
 
 }  // namespace
+
+double Check::error() const { return std::abs(found - expected) / (relative ? std::abs(expected) : 1); }
+
+std::string Check::verdict() const { return std::isnan(bound) ? "shown" : passed() ? "pass" : "FAIL"; }
+
+std::string Check::error_text(double value) const
+{
+  if (std::isnan(value))
+    return {};
+  return relative ? readable(100 * value, 3) + " %" : readable(value, 3);
+}
+
+std::string check_heading()
+{
+  return fmt::format(check_format, "case", "check", "expected", "got", "unit", "error", "bound", "");
+}
+
+std::string check_line(const std::string& name, const Check& check)
+{
+  const auto or_dash = [](const std::string& text) { return text.empty() ? "-" : text; };
+  return fmt::format(check_format, name, check.name, readable(check.expected), readable(check.found), check.unit,
+                     or_dash(check.error_text(check.error())), or_dash(check.error_text(check.bound)), check.verdict());
+}
+
+double slope(const std::vector<double>& x, const std::vector<double>& y)
+{
+  double mx = 0, my = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    mx += std::log(x[i]) / static_cast<double>(x.size());
+    my += std::log(y[i]) / static_cast<double>(x.size());
+  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    xx += (std::log(x[i]) - mx) * (std::log(x[i]) - mx);
+    xy += (std::log(x[i]) - mx) * (std::log(y[i]) - my);
+  }
+  return xy / xx;
+}
+
+double zero_between(double low, double high, const std::function<double(double)>& increasing, int halvings)
+{
+  for (int halving = 0; halving < halvings; ++halving)
+    (increasing(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+  return 0.5 * (low + high);
+}
 
 std::string readable(double value, int digits)
 {
