@@ -27,11 +27,9 @@ struct AccuracySetting
 struct ActivationHistory
 {
   std::vector<float> activation;
-  double ramp = 0.3;
-  double hold = 0.3;
+  double ramp = 0.3, hold = 0.3;
 };
 
-/// Makes the models of a study.
 struct ModelMaker
 {
   std::function<std::string(const AccuracySetting&)> content;  ///< all that the model depends on, as text
@@ -55,18 +53,15 @@ struct AccuracyPlan
   int threads = 0;         ///< CPU threads; 0: one per core
 };
 
-/// Distance of a published skin from the reference's [m].
+/// Distance of a published skin from the reference's [m]; the root mean square is weighted by area.
 struct SkinError
 {
-  double rms = NAN;  ///< weighted by area
-  double largest = NAN;
+  double rms = NAN, largest = NAN;
 };
 
 /// The cost of one setting on one machine, measured in one run.
 struct VariantCost
 {
-  static constexpr const char* extension = "cost";  // of its file
-
   std::string machine;      ///< empty: not measured yet
   double step = NAN;        ///< wall seconds per step, median of repeated timings
   double spread = NAN;      ///< distance of their quartiles over their median
@@ -75,8 +70,7 @@ struct VariantCost
   double memory = NAN;      ///< host memory of model and solver [bytes]
   double build = NAN;       ///< wall seconds to make the model
 
-  /// Whether the spread is above 20 %, or other programs took more than a fifth of the processors.
-  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }  ///< the machine was disturbed
   void archive(ByteArchive& archive);
 };
 
@@ -94,12 +88,6 @@ struct AccuracyRow : VariantCost
   double cost = NAN;      ///< wall seconds per simulated second, skins published at the scene's frame rate
   double steps = NAN;     ///< steps per simulated second
   double voxels = NAN;
-
-  /// Whether a profile of a scene file can express the setting.
-  bool is_profile(const AccuracySetting& standard) const
-  {
-    return setting.poisson == 0 && setting.time_scaling == 1 && setting.backend == standard.backend;
-  }
 };
 
 /// The rows that vary one knob.
@@ -121,7 +109,6 @@ struct AccuracyFindings
   double reference_error = 0;  ///< [m], estimated
   double averaged_over = 0;    ///< standard deviation of the Gaussian [m]; 0: nothing was averaged
   double order = NAN;          ///< observed order of convergence in the voxel edge
-  bool extrapolated = false;   ///< whether the order is good enough to extrapolate with (0.5 to 2.5)
   std::string machine;
   std::vector<std::string> notes;  ///< sentences about checks of the reference, and what was left out
 };
@@ -131,7 +118,6 @@ struct AccuracyFindings
 using AccuracyProgress = std::function<bool(const std::string& stage, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
-
 /// Measures the error and the cost of each setting. Throws Error on unknown knobs, a budget that is too small for a
 /// comparison, a reference that diverges and a folder that cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
@@ -150,8 +136,7 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 
-/// A body whose settled deformation is known. The plan has the closed form, the voxel edges that fit the body and the
-/// knobs that can be varied.
+/// A body whose settled deformation is known, and a plan with its closed form and the edges and knobs that suit it.
 struct ClosedForm
 {
   std::string name;

@@ -23,9 +23,6 @@ public:
   /// Throws Error if there are not as many cells as columns.
   void add(std::vector<Cell> row);
 
-  const std::vector<std::string>& columns() const { return columns_; }
-  const std::vector<std::vector<Cell>>& rows() const { return rows_; }
-
   std::string text() const;      ///< columns aligned by spaces
   std::string markdown() const;  ///< a pipe table
   std::string csv() const;       ///< RFC 4180

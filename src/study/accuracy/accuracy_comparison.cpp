@@ -1,6 +1,6 @@
 // the errors of variants against the reference or a closed form, the Pareto front, and the choice of a setting from it
 
-#include "study/accuracy/accuracy_comparison.hpp"
+#include "study/accuracy/accuracy_bench.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -79,8 +79,7 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
   if (levels.size() > 2)
   {
     findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
-    findings.extrapolated = findings.order >= 0.5 && findings.order <= 2.5;
-    if (findings.extrapolated)
+    if (is_credible(findings.order))
       findings.reference_error = richardson(edge(2), edge(1), apart(1), findings.order);
   }
   findings.motion = motion_size(level(1)->motion);
@@ -136,9 +135,11 @@ void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
 std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
                                       double floor)
 {
+  const auto is_profile = [&](const AccuracySetting& s)
+  { return s.poisson == 0 && s.time_scaling == 1 && s.backend == standard.backend; };
   std::vector<std::size_t> order;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    if (rows[r].fault.empty() && rows[r].is_profile(standard) && rows[r].cost > 0 && rows[r].error.rms >= 0)
+    if (rows[r].fault.empty() && is_profile(rows[r].setting) && rows[r].cost > 0 && rows[r].error.rms >= 0)
       order.push_back(r);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return rows[a].cost < rows[b].cost; });

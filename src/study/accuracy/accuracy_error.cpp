@@ -1,6 +1,6 @@
 // distances between skins, and how they fall with the voxel edge
 
-#include "study/accuracy/accuracy_comparison.hpp"
+#include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
 
 namespace frontalis
 {
@@ -33,47 +33,13 @@ double apart(const Points& a, const Points& a_rest, const Points& b, const Point
 
 constexpr double reach = 3;  // standard deviations
 
-// vertices sorted into cubes, to find neighbours
-class Cubes
+using Cube = std::array<std::int64_t, 3>;
+
+Cube cube_of(const Place& p, double edge)
 {
-public:
-  Cubes(const std::vector<Place>& points, double edge) : edge_(edge)
-  {
-    for (std::size_t v = 0; v < points.size(); ++v)
-      members_[key(cube(points[v]))].push_back(v);
-  }
-
-  // visits the vertices in the cube of a point and in the 26 cubes around it
-  template <class Visit>
-  void visit_near(const Place& point, Visit&& visit) const
-  {
-    const auto middle = cube(point);
-    for (int i = 0; i < 27; ++i)
-    {
-      const auto found =
-          members_.find(key({ { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 } }));
-      if (found != members_.end())
-        for (const std::size_t v : found->second)
-          visit(v);
-    }
-  }
-
-private:
-  std::array<std::int64_t, 3> cube(const Place& p) const
-  {
-    const auto place = [this](float x) { return static_cast<std::int64_t>(std::floor(x / edge_)); };
-    return { { place(p[0]), place(p[1]), place(p[2]) } };
-  }
-  // unique within half a million cubes of the origin
-  static std::int64_t key(const std::array<std::int64_t, 3>& c)
-  {
-    constexpr std::int64_t stride = 1 << 20;
-    return (c[2] * stride + c[1]) * stride + c[0];
-  }
-
-  double edge_;
-  std::unordered_map<std::int64_t, std::vector<std::size_t>> members_;
-};
+  const auto along = [=](float x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
+  return { { along(p[0]), along(p[1]), along(p[2]) } };
+}
 
 }  // namespace
 
@@ -169,25 +135,30 @@ double richardson(double before, double finest, double difference, double order)
 SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
 {
   const auto& rest = reference.phases.at(0).vertices;
-  const Cubes cubes(rest, reach * deviation);
+  // the vertices sorted into cubes, so that all neighbours of one are in its cube and the 26 around that
+  std::map<Cube, std::vector<std::size_t>> cubes;
+  for (std::size_t v = 0; v < weights_.size(); ++v)
+    cubes[cube_of(rest[v], reach * deviation)].push_back(v);
   for (std::size_t v = 0; v < weights_.size(); ++v)
   {
+    const Cube middle = cube_of(rest[v], reach * deviation);
     float sum = 0;
-    cubes.visit_near(rest[v],
-                     [&](std::size_t other)
-                     {
-                       double square = 0;
-                       for (int axis = 0; axis < 3; ++axis)
-                       {
-                         const double d = (static_cast<double>(rest[v][axis]) - rest[other][axis]) / deviation;
-                         square += d * d;
-                       }
-                       if (square > reach * reach)
-                         return;
-                       weights_[v].emplace_back(other,
-                                                static_cast<float>(std::exp(-0.5 * square)) * reference.area[other]);
-                       sum += weights_[v].back().second;
-                     });
+    for (int i = 0; i < 27; ++i)
+    {
+      const auto found = cubes.find({ { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 } });
+      if (found == cubes.end())
+        continue;
+      for (const std::size_t other : found->second)
+      {
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          square += std::pow((static_cast<double>(rest[v][axis]) - rest[other][axis]) / deviation, 2);
+        if (square > reach * reach)
+          continue;
+        weights_[v].emplace_back(other, static_cast<float>(std::exp(-0.5 * square)) * reference.area[other]);
+        sum += weights_[v].back().second;
+      }
+    }
     for (auto& weight : weights_[v])
       weight.second = sum > 0 ? weight.second / sum : static_cast<float>(weight.first == v);
   }

@@ -20,8 +20,6 @@ struct SkinPhase
 /// The motion of one variant, which is the same on every run.
 struct VariantMotion
 {
-  static constexpr const char* extension = "motion";  // of its file
-
   std::string fault;              ///< why the motion cannot be used; empty: it can
   std::vector<SkinPhase> phases;  ///< at rest, mid-ramp, end of ramp, end of history, settled
   std::vector<float> area;        ///< area of the skin at rest, shared out to its vertices [m2]
@@ -36,8 +34,6 @@ struct VariantMotion
 /// A motion that is not finished.
 struct VariantCheckpoint
 {
-  static constexpr const char* extension = "checkpoint";
-
   VariantMotion motion;     ///< so far; `steps` is the number of steps made
   std::int64_t slices = 0;  ///< slices of the history that have been played
   std::string solver;       ///< Solver::pack()
@@ -83,32 +79,31 @@ double landmark_error(const VariantMotion& found, const VariantMotion& exact);
 /// Root mean square displacement [m] of the phase where it is largest.
 double motion_size(const VariantMotion& motion);
 
+/// Averages the displacements of a skin over the neighbourhood of each vertex at rest, so that single folds do not
+/// dominate the errors.
+class SkinAverage
+{
+public:
+  /// All motions must have the reference's rest positions. The weights are a Gaussian of this standard deviation [m]
+  /// times the area.
+  SkinAverage(const VariantMotion& reference, double deviation);
+
+  /// The motion with averaged displacements; landmarks stay as they are.
+  VariantMotion of(const VariantMotion& motion) const;
+  /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
+  SkinError error(const VariantMotion& motion) const;
+
+private:
+  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex
+  VariantMotion reference_;                                          // averaged
+};
+
 /// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
 /// `coarse` between the first and the second, `fine` between the second and the third. NaN if there is none in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
+inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }  ///< good enough to extrapolate with
 /// Richardson's estimate of the error at the finest edge, from the difference to the solution at the edge before.
 double richardson(double before, double finest, double difference, double order);
-
-/// Variants on disk, each in files of its own that are written whole or not at all.
-class VariantStore
-{
-public:
-  /// Makes the folder. Throws Error.
-  explicit VariantStore(std::string folder);
-
-  bool has_motion(const std::string& key) const;
-  /// A VariantMotion, VariantCost or VariantCheckpoint; nothing if its file is missing or incomplete.
-  template <class T>
-  std::optional<T> read(const std::string& key) const;
-  /// A checkpoint is removed once its motion is kept.
-  template <class T>
-  void keep(const std::string& key, T value) const;
-
-private:
-  std::string path(const std::string& key, const char* extension) const;
-
-  std::string folder_;
-};
 
 /// The settings of one knob, all others as in the standard setting.
 struct Sweep

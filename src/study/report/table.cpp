@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <sstream>
 
 namespace frontalis
@@ -42,10 +44,7 @@ std::string csv_cell(const Table::Cell& cell)
   const auto& text = std::get<std::string>(cell);
   if (text.find_first_of(",\"\n\r") == std::string::npos)
     return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+  return '"' + std::regex_replace(text, std::regex("\""), "\"\"") + '"';
 }
 
 }  // namespace
@@ -168,29 +167,21 @@ void Table::add(std::vector<Cell> row)
 
 std::string Table::text() const
 {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < columns_.size(); ++c)
-  {
-    std::size_t widest = width(columns_[c]);
-    for (const auto& row : rows_)
-      widest = std::max(widest, width(shown(row[c])));
-    widths.push_back(widest);
-  }
-  std::string out;
-  const auto line = [&](auto&& cell_of)
-  {
-    std::string padded;
-    for (std::size_t c = 0; c < columns_.size(); ++c)
-    {
-      const std::string cell = cell_of(c);
-      padded += cell + std::string(widths[c] - width(cell) + 2, ' ');
-    }
-    padded.erase(padded.find_last_not_of(' ') + 1);
-    out += padded + '\n';
-  };
-  line([&](std::size_t c) { return columns_[c]; });
+  std::vector<std::vector<std::string>> lines{ columns_ };
   for (const auto& row : rows_)
-    line([&](std::size_t c) { return shown(row[c]); });
+    std::transform(row.begin(), row.end(), std::back_inserter(lines.emplace_back()), shown);
+  std::vector<std::size_t> widths(columns_.size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t c = 0; c < line.size(); ++c)
+      widths[c] = std::max(widths[c], width(line[c]));
+  std::string out;
+  for (const auto& line : lines)
+  {
+    for (std::size_t c = 0; c < line.size(); ++c)
+      out += line[c] + std::string(widths[c] - width(line[c]) + 2, ' ');
+    out.erase(out.find_last_not_of(' ') + 1);
+    out += '\n';
+  }
   return out;
 }
 
@@ -205,9 +196,8 @@ std::string Table::markdown() const
   out += '\n' + rule + '\n';
   for (const auto& row : rows_)
   {
-    out += "|";
     for (const auto& cell : row)
-      out += " " + shown(cell) + " |";
+      out += (&cell == row.data() ? "| " : " ") + shown(cell) + " |";
     out += '\n';
   }
   return out;

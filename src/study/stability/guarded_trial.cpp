@@ -184,6 +184,12 @@ void hold_face(Model& model, int axis, bool upper, const std::string& bone)
       model, [=](const Point& p) { return std::abs(p[axis] - at) < 0.5 * h; }, bone);
 }
 
+void hold_ends(Model& model, int axis, const std::string& bone)
+{
+  hold_face(model, axis, false);
+  hold_face(model, axis, true, bone);
+}
+
 double farthest(const Vectors& a, const Vectors& b)
 {
   double largest = 0;

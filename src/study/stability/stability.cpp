@@ -59,7 +59,7 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
       const CaseFile file((std::filesystem::path(folder) / (name + ".yaml")).string());
       const auto run = [file, play = play](const StabilitySettings& settings, Trial& trial)
       {
-        CaseRun now(file, settings, trial);
+        CaseRun now{ file, settings, trial };
         play(now);
         if (const auto unused = now.unused(); !unused.empty())
           trial.failure = fmt::format("the case does not use {} of its file", fmt::join(unused, ", "));

@@ -19,11 +19,6 @@ struct CaseRun : CaseFile
   const StabilitySettings& settings;
   Trial& trial;
 
-  CaseRun(const CaseFile& file, const StabilitySettings& all, Trial& result)
-      : CaseFile(file), settings(all), trial(result)
-  {
-  }
-
   /// A count that the file has for short runs and, as KEY_in_full, for long ones.
   double count(const std::string& key) const;
   /// Checks a figure against the bound of the file's bounds.KEY, which has the unit of the figure.
@@ -115,8 +110,10 @@ private:
 Material soft_tissue(double poisson = 0.49);
 /// A box of voxels of soft tissue, edge 1 mm, of the size and damping that a case's file gives.
 Model damped_block(const CaseFile& file);
-/// Makes the lowest or the highest plane of nodes along an axis rigid, as hold().
+/// Makes the lowest or the highest plane of nodes along an axis rigid, as hold(); and both, of which the bone moves the
+/// highest.
 void hold_face(Model& model, int axis, bool upper, const std::string& bone = {});
+void hold_ends(Model& model, int axis, const std::string& bone = {});
 
 inline physics::Vec3<double> vector(const Point& p) { return { p[0], p[1], p[2] }; }
 /// Largest of |a - b| [m] over all nodes; without `b` of |a|.

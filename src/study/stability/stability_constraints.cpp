@@ -92,11 +92,8 @@ void drag(
 void sharp_ridge(CaseRun& run)
 {
   // a ridge of 53° in the way of a soft block whose nodes start over the left slope and the ridge
-  VoxelBox box;
-  box.size = run.size();
-  box.materials = { neo_hookean(10e3, 0.49) };
-  Model model = voxel_model(box);
-  model.damping = run.number("damping", "1/s");
+  Model model = damped_block(run);
+  model.materials = { neo_hookean(10e3, 0.49) };
   const double ridge = 1e-3 * run.number("ridge", "mm");
   slide(model, strip_of({ { ridge - 49e-3, -98e-3 }, { ridge, -1e-3 }, { ridge + 49e-3, -98e-3 } }), underside);
   model.gravity = { { run.number("pull", "m/s2"), 0, 0 } };

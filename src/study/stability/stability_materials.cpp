@@ -34,8 +34,7 @@ Model gripped_block(const CaseRun& run, const std::vector<Material>& materials)
 {
   Model model = damped_block(run);
   model.materials = materials;
-  hold_face(model, 0, false);
-  hold_face(model, 0, true, "grip");
+  hold_ends(model, 0, "grip");
   return model;
 }
 

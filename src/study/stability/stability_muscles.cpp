@@ -15,12 +15,6 @@ namespace
 
 using Fibres = std::vector<Fibre>;
 
-void hold_both_ends(Model& model)
-{
-  hold_face(model, 0, false);
-  hold_face(model, 0, true);
-}
-
 // Half of a bar that is held at both ends contracts and stretches the other half. Under a moderate stress it comes back
 // to rest; under a high one it crushes itself.
 void held_neighbours(CaseRun& run)
@@ -34,7 +28,7 @@ void held_neighbours(CaseRun& run)
                 [&](std::size_t e) {
                   return 2 * model.voxels[e][0] < model.size[0] ? Fibres{ { 0, along_x(e) } } : Fibres();
                 });
-    hold_both_ends(model);
+    hold_ends(model, 0);
     GuardedTrial motion(run, model);
     const std::string name = readable(stress / 1e6) + " MPa";
     const auto play = [&]
@@ -79,7 +73,7 @@ void opposed_muscles(CaseRun& run)
                 return fibres;
               });
   mix(model, [](std::size_t) { return Mixture{ { 0, 0.5F }, { 1, 0.5F } }; });
-  hold_both_ends(model);
+  hold_ends(model, 0);
   GuardedTrial motion(run, model);
   const double switched = run.seconds("switch");
   motion.play_and_release({ { switched, motion.controls(1), 10 },

@@ -22,11 +22,23 @@ void expect_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, doub
   run.check("smallest J in the end, " + of, "1", 1, m.worst_jacobian, "smallest_J");
 }
 
+// lets a block go that starts in a deformation that is forced on it
+void let_go(CaseRun& run, const Model& model, const Vectors& displacements, int looks, const std::string& of,
+            const std::string& picture, const std::string& title)
+{
+  GuardedTrial motion(run, model);
+  motion.set(displacements);
+  const double stored = motion.energies().initial;
+  motion.advance({ run.seconds("watched"), motion.controls(), looks });
+  motion.check_balance(of, picture, title);
+  motion.advance({ run.seconds("rest"), motion.controls(), 10 });
+  expect_rest(run, motion, of, stored);
+}
+
 void crushed(CaseRun& run)
 {
   Model model = damped_block(run);
-  hold_face(model, 2, false);
-  hold_face(model, 2, true, "press");
+  hold_ends(model, 2, "press");
   GuardedTrial motion(run, model);
   const RigidTransform down = shifted({ { 0, 0, -0.01 * run.number("pressed_by", "%") * model.size[2] * 1e-3 } });
   const double press = run.seconds("press");
@@ -43,8 +55,7 @@ void crushed(CaseRun& run)
 void twisted(CaseRun& run)
 {
   Model model = damped_block(run);
-  hold_face(model, 2, false);
-  hold_face(model, 2, true, "grip");
+  hold_ends(model, 2, "grip");
   GuardedTrial motion(run, model);
   const Point axis{ { 0.5e-3 * model.size[0], 0.5e-3 * model.size[1], 0 } };
   double stored = 0;
@@ -60,7 +71,6 @@ void twisted(CaseRun& run)
   expect_rest(run, motion, "twisted", stored);
 }
 
-// a free block starts in a deformation that was forced on it, and is let go at once
 void released(CaseRun& run)
 {
   const Model model = damped_block(run);
@@ -82,13 +92,7 @@ void released(CaseRun& run)
     Vectors u;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
       u.push_back(displacement(rest_position(model, n)));
-    GuardedTrial motion(run, model);
-    motion.set(u);
-    const double stored = motion.energies().initial;
-    motion.advance({ run.seconds("watched"), motion.controls(), 50 });
-    motion.check_balance(name, "released_" + name, "A free block is let go, " + name);
-    motion.advance({ run.seconds("rest"), motion.controls(), 10 });
-    expect_rest(run, motion, name, stored);
+    let_go(run, model, u, 50, name, "released_" + name, "A free block is let go, " + name);
   }
 }
 
@@ -123,14 +127,8 @@ void scrambled(CaseRun& run)
       for (double& x : p)
         x *= 1e-3 * run.number("moved_by", "mm") / length;
     }
-    GuardedTrial motion(run, model);
-    motion.set(u);
-    const double stored = motion.energies().initial;
-    motion.advance({ run.seconds("watched"), motion.controls(), 40 });
-    motion.check_balance(form.name, "scrambled_" + form.file,
-                         "Every node of a block moved by half a voxel, " + form.name);
-    motion.advance({ run.seconds("rest"), motion.controls(), 10 });
-    expect_rest(run, motion, form.name, stored);
+    let_go(run, model, u, 40, form.name, "scrambled_" + form.file,
+           "Every node of a block moved by half a voxel, " + form.name);
   }
 }
 

@@ -238,6 +238,11 @@ struct Comparison
 
 bool start(const Point& p) { return p[0] < tiny; }
 
+std::function<Point(const Point&)> moved(const Point& by)
+{
+  return [by](const Point&) { return by; };
+}
+
 Comparison stretched_block()
 {
   const auto end = [](const Point& p) { return p[0] > 20e-3 - tiny; };
@@ -245,11 +250,7 @@ Comparison stretched_block()
            { { { 20e-3, 10e-3, 10e-3 } },
              { neo_hookean(30e3, 0.45) },
              {},
-             { { start },
-               { end, everything,
-                 [](const Point&) {
-                   return Point{ { 10e-3, 0, 0 } };
-                 } } } },
+             { { start }, { end, everything, moved({ { 10e-3, 0, 0 } }) } } },
            { { 10, 6, 6 } },
            { 2.5e-3, 1.25e-3 },
            0.03,
@@ -315,11 +316,7 @@ Comparison indented_slab()
              { { [](const Point& p) { return p[2] < tiny; } },
                { [](const Point& p) { return p[0] < tiny && p[2] > tiny; }, { { true, false, false } } },
                { [](const Point& p) { return p[1] < tiny && p[2] > tiny; }, { { false, true, false } } },
-               { patch,
-                 { { false, false, true } },
-                 [](const Point&) {
-                   return Point{ { 0, 0, -2e-3 } };
-                 } } } },
+               { patch, { { false, false, true } }, moved({ { 0, 0, -2e-3 } }) } } },
            { { 12, 12, 8 } },
            { 2.5e-3, 1.25e-3, 0.625e-3 },
            0.03,
