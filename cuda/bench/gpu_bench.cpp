@@ -3,7 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/dense_block.hpp"
+#include "frontalis/study/voxel_model.hpp"
 #include "cuda/bench/shell_model.hpp"
 #include "cuda/bench/yardstick.hpp"
 

@@ -59,7 +59,7 @@ void choose(const AccuracyFindings& findings, const AccuracyOptions& options)
   const std::string profile = profile_text(row, "chosen", findings.machine);
   fmt::print("chosen    {}: error {:.3g} mm RMS, {:.3g} mm at most; {:.3g} s per simulated second{}\n\n  {}\n",
              row.name, 1e3 * row.error.rms, 1e3 * row.error.largest, row.cost,
-             row.noisy ? " (timed on a disturbed machine)" : "", profile);
+             row.is_noisy() ? " (timed on a disturbed machine)" : "", profile);
   if (!options.save.empty())
   {
     write_text(options.save, fmt::format("# {}, as measured by: frontalis accuracy {}\n{}\n", row.name,

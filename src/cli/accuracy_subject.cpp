@@ -7,7 +7,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/scene/read_scene.hpp"
-#include "frontalis/study/closed_form.hpp"
+#include "frontalis/study/accuracy.hpp"
 
 #include <fmt/format.h>
 

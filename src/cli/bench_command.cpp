@@ -5,11 +5,10 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/dense_block.hpp"
-#include "frontalis/study/effect_presence.hpp"
+#include "frontalis/study/effect_costs.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
-#include "frontalis/study/yardstick.hpp"
+#include "frontalis/study/voxel_model.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>

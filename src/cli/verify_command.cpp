@@ -29,7 +29,7 @@ struct VerifyOptions
 void verify(const VerifyOptions& options)
 {
   const auto cases = chosen_cases(verification_cases(), options.only, !options.quick);
-  const VerificationSettings settings{ backend_from_name(options.backend) };
+  const Backend backend = backend_from_name(options.backend);
   Findings findings;
   int failed = 0, bounded = 0;
   double seconds = 0;
@@ -37,7 +37,8 @@ void verify(const VerifyOptions& options)
   for (const auto& c : cases)
   {
     const double start = wall_seconds();
-    Finding finding = c.run(settings);
+    Finding finding;
+    c.run(backend, finding);
     seconds += wall_seconds() - start;
     for (const auto& check : finding.checks)
     {

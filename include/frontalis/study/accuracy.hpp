@@ -1,11 +1,11 @@
 #pragma once
 
+#include "frontalis/byte_archive.hpp"
 #include "frontalis/scene/scene.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -27,11 +27,9 @@ struct AccuracySetting
 struct ActivationHistory
 {
   std::vector<float> activation;
-  double ramp = 0.3;
-  double hold = 0.3;
+  double ramp = 0.3, hold = 0.3;
 };
 
-/// Makes the models of a study.
 struct ModelMaker
 {
   std::function<std::string(const AccuracySetting&)> content;  ///< all that the model depends on, as text
@@ -42,7 +40,7 @@ struct AccuracyPlan
 {
   /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. If it is
   /// given, settled skins are compared with it, and there is no reference of finer voxels.
-  std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
+  std::function<Vector3(const Vector3&)> exact;
   AccuracySetting standard;               ///< each knob is varied from here
   std::vector<AccuracyProfile> profiles;  ///< the scene's own, which are measured too
   std::vector<std::string> knobs;         ///< knobs to vary, without combinations; empty: all
@@ -55,45 +53,47 @@ struct AccuracyPlan
   int threads = 0;         ///< CPU threads; 0: one per core
 };
 
-/// Distance of a published skin from the reference's [m].
+/// Distance of a published skin from the reference's [m]; the root mean square is weighted by area.
 struct SkinError
 {
-  double rms = NAN;  ///< weighted by area
-  double largest = NAN;
+  double rms = NAN, largest = NAN;
+};
+
+/// The cost of one setting on one machine, measured in one run.
+struct VariantCost
+{
+  std::string machine;      ///< empty: not measured yet
+  double step = NAN;        ///< wall seconds per step, median of repeated timings
+  double spread = NAN;      ///< distance of their quartiles over their median
+  double processors = NAN;  ///< share of its processors that the solver got while it was timed
+  double skin = NAN;        ///< wall seconds per published skin
+  double memory = NAN;      ///< host memory of model and solver [bytes]
+  double build = NAN;       ///< wall seconds to make the model
+
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }  ///< the machine was disturbed
+  void archive(ByteArchive& archive);
 };
 
 /// The figures of one setting.
-struct AccuracyRow
+struct AccuracyRow : VariantCost
 {
   std::string name;  ///< its differences from the standard setting
   AccuracySetting setting;
-  std::string fault;        ///< why there are no figures (unstable, no model); empty: no fault
-  SkinError error;          ///< in the worst phase of the history, settled included
-  SkinError settled;        ///< once settled
-  double averaged = NAN;    ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
-  double landmark = NAN;    ///< largest error of a landmark in any phase [m]
-  double energy = NAN;      ///< imbalance of the energy ledger over its largest term
-  double cost = NAN;        ///< wall seconds per simulated second, skins published at the scene's frame rate
-  double spread = NAN;      ///< distance of the quartiles of repeated timings over their median
-  double processors = NAN;  ///< share of its processors that the solver got while it was timed
-  double step = NAN;        ///< wall seconds per step, median
-  double steps = NAN;       ///< steps per simulated second
-  double memory = NAN;      ///< host memory of model and solver [bytes]
-  double build = NAN;       ///< wall seconds to make the model
+  std::string fault;      ///< why there are no figures (unstable, no model); empty: no fault
+  SkinError error;        ///< in the worst phase of the history, settled included
+  SkinError settled;      ///< once settled
+  double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
+  double landmark = NAN;  ///< largest error of a landmark in any phase [m]
+  double energy = NAN;    ///< imbalance of the energy ledger over its largest term
+  double cost = NAN;      ///< wall seconds per simulated second, skins published at the scene's frame rate
+  double steps = NAN;     ///< steps per simulated second
   double voxels = NAN;
-  bool noisy = false;  ///< spread above 20 %, or other programs took more than a fifth of the processors
-
-  /// Whether a profile of a scene file can express the setting.
-  bool is_profile(const AccuracySetting& standard) const
-  {
-    return setting.poisson == 0 && setting.time_scaling == 1 && setting.backend == standard.backend;
-  }
 };
 
 /// The rows that vary one knob.
 struct KnobLine
 {
-  std::string knob;
+  std::string knob, words;  ///< as the command line and as plots name it
   std::vector<std::size_t> rows;
 };
 
@@ -109,7 +109,6 @@ struct AccuracyFindings
   double reference_error = 0;  ///< [m], estimated
   double averaged_over = 0;    ///< standard deviation of the Gaussian [m]; 0: nothing was averaged
   double order = NAN;          ///< observed order of convergence in the voxel edge
-  bool extrapolated = false;   ///< whether the order is good enough to extrapolate with (0.5 to 2.5)
   std::string machine;
   std::vector<std::string> notes;  ///< sentences about checks of the reference, and what was left out
 };
@@ -119,7 +118,6 @@ struct AccuracyFindings
 using AccuracyProgress = std::function<bool(const std::string& stage, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
-
 /// Measures the error and the cost of each setting. Throws Error on unknown knobs, a budget that is too small for a
 /// comparison, a reference that diverges and a folder that cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
@@ -137,5 +135,16 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 /// most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
+
+/// A body whose settled deformation is known, and a plan with its closed form and the edges and knobs that suit it.
+struct ClosedForm
+{
+  std::string name;
+  AccuracyPlan plan;
+  ModelMaker maker;
+};
+
+/// "cantilever", "stretched_block" and "active_bar"; accuracy_closed_forms.cpp has their sources.
+std::vector<ClosedForm> closed_forms();
 
 }  // namespace frontalis

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -53,5 +54,10 @@ struct Plot
 /// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error with gnuplot's message if it fails. Where
 /// gnuplot is missing it throws too, and leaves PATH.gnuplot, which can be drawn on another machine.
 void write_plot(const Plot& plot, const std::string& path);
+
+/// Plots by the names of their files, without extension.
+using Plots = std::vector<std::pair<std::string, Plot>>;
+/// Writes plots to a folder; returns the lines that show them, with their titles, in a markdown file beside it.
+std::string write_plots(const Plots& plots, const std::string& folder);
 
 }  // namespace frontalis

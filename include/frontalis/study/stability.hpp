@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/check.hpp"
 #include "frontalis/study/plot.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -25,13 +25,13 @@ struct Trial
   /// was no ledger.
   double energy_error = std::numeric_limits<double>::quiet_NaN();
   double hourglass_share = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t rollbacks = 0;                       ///< how often the guard went back
-  Checks checks;                                    ///< all must pass
-  std::string stopped;                              ///< the guard's report if it stopped the motion, which it may
-  std::string failure;                              ///< why the case ended early; empty: it did not
-  std::string skipped;                              ///< why it was not run; empty: it ran
-  std::vector<std::pair<std::string, Plot>> plots;  ///< file name without extension, plot
-  double seconds = 0;                               ///< wall time
+  std::int64_t rollbacks = 0;  ///< how often the guard went back
+  Checks checks;               ///< all must pass
+  std::string stopped;         ///< the guard's report if it stopped the motion, which it may
+  std::string failure;         ///< why the case ended early; empty: it did not
+  std::string skipped;         ///< why it was not run; empty: it ran
+  Plots plots;
+  double seconds = 0;  ///< wall time
 
   bool passed() const;  ///< true for a skipped case too
 };

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,9 +23,6 @@ public:
   /// Throws Error if there are not as many cells as columns.
   void add(std::vector<Cell> row);
 
-  const std::vector<std::string>& columns() const { return columns_; }
-  const std::vector<std::vector<Cell>>& rows() const { return rows_; }
-
   std::string text() const;      ///< columns aligned by spaces
   std::string markdown() const;  ///< a pipe table
   std::string csv() const;       ///< RFC 4180
@@ -34,6 +32,45 @@ private:
   std::vector<std::string> columns_;
   std::vector<std::vector<Cell>> rows_;
 };
+
+/// A computed figure beside the expected one.
+struct Check
+{
+  std::string name;
+  std::string unit;
+  double expected = 0;
+  double found = 0;
+  double bound = 0;  ///< largest error that passes; NaN: there is none, and the figure is only shown
+  bool relative = true;
+
+  double error() const;  ///< |found - expected|, divided by |expected| where relative
+  bool passed() const { return !(error() > bound) && error() == error(); }
+  std::string verdict() const;                 ///< "pass", "FAIL", or "shown" if there is no bound
+  std::string error_text(double value) const;  ///< an error or a bound: in percent where relative; NaN: empty
+};
+
+/// The checks of a case, to which each function adds one.
+struct Checks : std::vector<Check>
+{
+  void relative(const std::string& name, const std::string& unit, double expected, double found, double bound)
+  {
+    push_back({ name, unit, expected, found, bound, true });
+  }
+  void absolute(const std::string& name, const std::string& unit, double expected, double found, double bound)
+  {
+    push_back({ name, unit, expected, found, bound, false });
+  }
+};
+
+/// The heading of check_line(), and one line per check; `name` is that of its case.
+std::string check_heading();
+std::string check_line(const std::string& name, const Check& check);
+
+/// Slope of log y against log x by least squares: the order at which an error y falls with a voxel edge x.
+double slope(const std::vector<double>& x, const std::vector<double>& y);
+
+/// The zero of an increasing function between two arguments, by so many halvings.
+double zero_between(double low, double high, const std::function<double(double)>& increasing, int halvings = 60);
 
 /// A number in so many significant digits; empty if it is NaN.
 std::string readable(double value, int digits = 6);

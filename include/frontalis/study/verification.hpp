@@ -1,11 +1,9 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/check.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,20 +16,16 @@ struct Finding
 {
   Checks checks;
   std::vector<std::pair<std::string, Table>> tables;  ///< caption, table
-  std::vector<std::pair<std::string, Plot>> plots;    ///< file name without extension, plot; its title is the caption
+  Plots plots;                                        ///< their titles are their captions
   std::string skipped;                                ///< why nothing was checked; empty: the case ran
-};
-
-struct VerificationSettings
-{
-  Backend backend = "cpu";  ///< of the motions; figures of single elements come from the reference backend
 };
 
 struct VerificationCase
 {
   std::string name;
   bool quick;  ///< takes at most some seconds and belongs to the short set
-  std::function<Finding(const VerificationSettings&)> run;
+  /// `backend`: of the motions; figures of single elements come from the reference backend.
+  void (*run)(const Backend& backend, Finding& finding);
 };
 
 /// All cases, in the order of the manual.

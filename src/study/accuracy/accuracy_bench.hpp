@@ -24,7 +24,8 @@ struct MeasuredVariant
   VariantCost cost;
 };
 
-/// Measures variants one by one, and reuses earlier results from the study's folder.
+/// Measures variants one by one, and reuses earlier results from the study's folder. There each has a file for its
+/// motion, its cost and a checkpoint, which are written whole or not at all.
 class VariantBench
 {
 public:
@@ -53,20 +54,17 @@ public:
   const std::string& machine() const { return machine_.at(plan_.standard.backend); }
 
 private:
+  /// Path of the setting's files without their extension.
   std::string key_of(const AccuracySetting& setting, const Backend& backend) const;
   std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
   bool is_reference(const AccuracySetting& setting) const;
-  std::vector<Backend> backends_of(const AccuracySetting& setting) const;
-  bool is_kept(const AccuracySetting& setting) const;
+  std::optional<Backend> kept_backend(const AccuracySetting& setting) const;
   bool is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const;
-  std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
   void learn(const AccuracySetting& setting, double wall);
-  void look_at_standard();
 
   const AccuracyPlan& plan_;
   const ModelMaker& maker_;
   const AccuracyProgress& progress_;
-  VariantStore store_;
   double begin_;
   std::map<Backend, std::string> machine_;
   double critical_ = 0;
@@ -78,5 +76,24 @@ private:
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };
+
+/// The figures of a variant against the plan's closed form, or else against the reference's motion; `average` (may be
+/// null) gives the error of averaged displacements too.
+AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
+                   const SkinAverage* average);
+
+/// Estimates the reference's error from the finest levels of its form, and finds the observed order, the motion of its
+/// skin and the differences of averaged skins. Throws Error if there are less than two levels.
+void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
+                              AccuracyFindings& findings);
+
+/// Notes the order in the voxel edge at which the errors of the standard setting's form and of the reference's form
+/// fall, against the closed form.
+void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings);
+
+/// The rows that a scene's profile can express and that no other such row beats in both error and cost, cheapest first.
+/// Errors below `floor` [m] count as equal, and a dearer row must have an error that is smaller by a twentieth.
+std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
+                                      double floor);
 
 }  // namespace frontalis

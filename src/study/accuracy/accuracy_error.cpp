@@ -8,13 +8,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace frontalis
 {
 namespace
 {
 
-using Points = std::vector<std::array<float, 3>>;
+using Place = std::array<float, 3>;
+using Points = std::vector<Place>;
 
 // distance between the displacements of two points from their rest
 double apart(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest, std::size_t p)
@@ -27,6 +29,16 @@ double apart(const Points& a, const Points& a_rest, const Points& b, const Point
     square += d * d;
   }
   return std::sqrt(square);
+}
+
+constexpr double reach = 3;  // standard deviations
+
+using Cube = std::array<std::int64_t, 3>;
+
+Cube cube_of(const Place& p, double edge)
+{
+  const auto along = [=](float x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
+  return { { along(p[0]), along(p[1]), along(p[2]) } };
 }
 
 }  // namespace
@@ -89,8 +101,7 @@ VariantMotion settled_part(const VariantMotion& motion)
   return part;
 }
 
-VariantMotion exact_motion(const VariantMotion& like,
-                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement)
+VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement)
 {
   VariantMotion exact = settled_part(like);
   exact.phases.back() = exact.phases.front();
@@ -112,17 +123,64 @@ double observed_order(const std::array<double, 3>& edges, double coarse, double 
     return (std::pow(edges[0], p) - std::pow(edges[1], p)) * fine -
            (std::pow(edges[1], p) - std::pow(edges[2], p)) * coarse;
   };
-  double low = 1e-3, high = 8;
-  if (!(excess(low) < 0) || !(excess(high) > 0))
-    return NAN;
-  for (int halving = 0; halving < 60; ++halving)
-    (excess(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
-  return low;
+  constexpr double low = 1e-3, high = 8;
+  return excess(low) < 0 && excess(high) > 0 ? zero_between(low, high, excess) : NAN;
 }
 
 double richardson(double before, double finest, double difference, double order)
 {
   return difference / (std::pow(before / finest, order) - 1);
 }
+
+SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
+{
+  const auto& rest = reference.phases.at(0).vertices;
+  // the vertices sorted into cubes, so that all neighbours of one are in its cube and the 26 around that
+  std::map<Cube, std::vector<std::size_t>> cubes;
+  for (std::size_t v = 0; v < weights_.size(); ++v)
+    cubes[cube_of(rest[v], reach * deviation)].push_back(v);
+  for (std::size_t v = 0; v < weights_.size(); ++v)
+  {
+    const Cube middle = cube_of(rest[v], reach * deviation);
+    float sum = 0;
+    for (int i = 0; i < 27; ++i)
+    {
+      const auto found = cubes.find({ { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 } });
+      if (found == cubes.end())
+        continue;
+      for (const std::size_t other : found->second)
+      {
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          square += std::pow((static_cast<double>(rest[v][axis]) - rest[other][axis]) / deviation, 2);
+        if (square > reach * reach)
+          continue;
+        weights_[v].emplace_back(other, static_cast<float>(std::exp(-0.5 * square)) * reference.area[other]);
+        sum += weights_[v].back().second;
+      }
+    }
+    for (auto& weight : weights_[v])
+      weight.second = sum > 0 ? weight.second / sum : static_cast<float>(weight.first == v);
+  }
+  reference_ = of(reference);
+}
+
+VariantMotion SkinAverage::of(const VariantMotion& motion) const
+{
+  VariantMotion averaged = motion;
+  const auto& rest = motion.phases[0].vertices;
+  for (std::size_t p = 1; p < motion.phases.size(); ++p)
+    for (std::size_t v = 0; v < weights_.size(); ++v)
+    {
+      auto place = rest[v];
+      for (const auto& [other, weight] : weights_[v])
+        for (int axis = 0; axis < 3; ++axis)
+          place[axis] += weight * (motion.phases[p].vertices[other][axis] - rest[other][axis]);
+      averaged.phases[p].vertices[v] = place;
+    }
+  return averaged;
+}
+
+SkinError SkinAverage::error(const VariantMotion& motion) const { return worst(skin_errors(of(motion), reference_)); }
 
 }  // namespace frontalis

@@ -3,6 +3,7 @@
 #include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/step_time.hpp"
@@ -52,14 +53,11 @@ SkinPhase look(Solver& solver, const Model& model)
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
 
-// a displacement larger than the model counts as divergence, even if it is finite
-void check_size(const VariantMotion& motion, const Model& model)
+// a displacement larger than this counts as divergence, even if it is finite [m]
+double largest_size(const Model& model)
 {
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size = std::max(size, model.size[axis] * model.spacing[axis]);
-  if (motion_size(motion) > size)
-    throw Diverged("the skin has left the model behind");
+  return std::max(
+      { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] });
 }
 
 std::vector<float> vertex_areas(const Model& model)
@@ -67,33 +65,16 @@ std::vector<float> vertex_areas(const Model& model)
   std::vector<float> areas(model.skin.vertices.size(), 0);
   for (const auto& t : model.skin.triangles)
   {
-    const auto &a = model.skin.vertices[t[0]], &b = model.skin.vertices[t[1]], &c = model.skin.vertices[t[2]];
-    double square = 0;
-    for (int i = 0; i < 3; ++i)
+    const auto corner = [&](int i)
     {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const double n = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
-      square += n * n;
-    }
+      const auto& p = model.skin.vertices[t[i]];
+      return physics::Vec3<double>{ p[0], p[1], p[2] };
+    };
+    const auto normal = cross(corner(1) - corner(0), corner(2) - corner(0));
     for (const auto v : t)
-      areas[v] += static_cast<float>(std::sqrt(square) / 6);
+      areas[v] += static_cast<float>(norm(normal) / 6);
   }
   return areas;
-}
-
-// resumes a motion; false if the checkpoint does not fit the solver
-bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
-{
-  try
-  {
-    solver.unpack(checkpoint.solver);
-  }
-  catch (const Error&)
-  {
-    return false;
-  }
-  state = checkpoint;
-  return true;
 }
 
 }  // namespace
@@ -143,13 +124,27 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
   motion.area = vertex_areas(*model);
   try
   {
-    SolverSettings settings;
-    settings.backend = setting.backend;
-    settings.threads = threads;
+    SolverSettings settings{ setting.backend, threads };
     settings.ledger = wants_ledger;
     const auto solver = make_solver(model, settings);
-    if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
+    const auto add_phase = [&]
+    {
       motion.phases.push_back(look(*solver, *model));
+      if (motion_size(motion) > largest_size(*model))
+        throw Diverged("the skin has left the model behind");
+    };
+    try
+    {
+      if (checkpoints.last)
+        solver->unpack(checkpoints.last->solver);
+      state = checkpoints.last.value_or(state);
+    }
+    catch (const Error&)
+    {
+      // a checkpoint that does not fit the solver is of no use
+    }
+    if (motion.phases.empty())
+      add_phase();
     const double steps_before = motion.steps;
     double next_checkpoint = wall_seconds() + seconds_per_checkpoint;
     const auto keep = [&]
@@ -178,10 +173,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       ++state.slices;
       motion.steps = steps_before + static_cast<double>(solver->profile().steps);
       if (state.slices % slices_a_phase == 0)
-      {
-        motion.phases.push_back(look(*solver, *model));
-        check_size(motion, *model);
-      }
+        add_phase();
       const bool interrupted = !go_on(0.8 * next / length);
       if (interrupted || wall_seconds() > next_checkpoint)
         keep();
@@ -224,8 +216,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       return std::nullopt;
     }
     motion.residual = found.residual;
-    motion.phases.push_back(look(*solver, *model));
-    check_size(motion, *model);
+    add_phase();
   }
   // other errors are faults of the machine and are not stored as faults of the setting
   catch (const Diverged& error)
@@ -244,9 +235,7 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
 {
   VariantCost cost;
   const double heap = heap_bytes();
-  SolverSettings settings;
-  settings.backend = setting.backend;
-  settings.threads = threads;
+  const SolverSettings settings{ setting.backend, threads };
   const auto solver = make_solver(model, settings);
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();

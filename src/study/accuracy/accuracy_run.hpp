@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/byte_archive.hpp"
 #include "frontalis/study/accuracy.hpp"
 
 #include <array>
@@ -29,21 +28,6 @@ struct VariantMotion
   double residual = 0;            ///< remaining motion over the displacement, see Solver::settle()
   double voxels = 0;
 
-  void archive(ByteArchive& archive);
-};
-
-/// The cost of one variant on one machine, measured in one run.
-struct VariantCost
-{
-  std::string machine;    ///< empty: not measured yet
-  double step = 0;        ///< time per step, median of the repetitions [s]
-  double spread = 0;      ///< distance of the quartiles over the median
-  double processors = 1;  ///< share of its processors that the study got
-  double skin = 0;        ///< time per published skin [s]
-  double memory = 0;      ///< memory of model and solver [bytes]
-  double build = 0;       ///< time to make the model [s]
-
-  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
   void archive(ByteArchive& archive);
 };
 
@@ -90,43 +74,41 @@ SkinError worst(const std::vector<SkinError>& errors);
 /// The phases at rest and settled of a motion, and the same of a body whose settled displacements [m] are known for all
 /// positions [m].
 VariantMotion settled_part(const VariantMotion& motion);
-VariantMotion exact_motion(const VariantMotion& like,
-                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement);
+VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
 /// Root mean square displacement [m] of the phase where it is largest.
 double motion_size(const VariantMotion& motion);
 
+/// Averages the displacements of a skin over the neighbourhood of each vertex at rest, so that single folds do not
+/// dominate the errors.
+class SkinAverage
+{
+public:
+  /// All motions must have the reference's rest positions. The weights are a Gaussian of this standard deviation [m]
+  /// times the area.
+  SkinAverage(const VariantMotion& reference, double deviation);
+
+  /// The motion with averaged displacements; landmarks stay as they are.
+  VariantMotion of(const VariantMotion& motion) const;
+  /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
+  SkinError error(const VariantMotion& motion) const;
+
+private:
+  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex
+  VariantMotion reference_;                                          // averaged
+};
+
 /// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
 /// `coarse` between the first and the second, `fine` between the second and the third. NaN if there is none in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
+inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }  ///< good enough to extrapolate with
 /// Richardson's estimate of the error at the finest edge, from the difference to the solution at the edge before.
 double richardson(double before, double finest, double difference, double order);
-
-/// Variants on disk, each in files of its own that are written whole or not at all.
-class VariantStore
-{
-public:
-  /// Makes the folder. Throws Error.
-  explicit VariantStore(std::string folder);
-
-  bool has_motion(const std::string& key) const;
-  std::optional<VariantMotion> motion(const std::string& key) const;
-  std::optional<VariantCost> cost(const std::string& key) const;
-  void keep(const std::string& key, const VariantMotion& motion) const;
-  void keep(const std::string& key, const VariantCost& cost) const;
-  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;  ///< removed once the motion is kept
-  void keep(const std::string& key, const VariantCheckpoint& checkpoint) const;
-
-private:
-  std::string path(const std::string& key, const char* extension) const;
-
-  std::string folder_;
-};
 
 /// The settings of one knob, all others as in the standard setting.
 struct Sweep
 {
-  std::string knob;
+  std::string knob, words;  ///< as the command line and as plots name it
   std::vector<AccuracySetting> settings;
 };
 /// `critical`: time step of the standard setting without scaled mass [s].

@@ -1,8 +1,6 @@
 // a study of accuracy: the reference, then each knob, then combinations of knobs
 
 #include "study/accuracy/accuracy_bench.hpp"
-#include "study/accuracy/accuracy_comparison.hpp"
-#include "study/accuracy/accuracy_front.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
@@ -49,10 +47,6 @@ private:
   {
     return !plan_.exact && setting.profile.voxel[0] < 1.01 * plan_.edges.back();
   }
-  bool wanted(const std::string& knob) const
-  {
-    return plan_.knobs.empty() || std::find(plan_.knobs.begin(), plan_.knobs.end(), knob) != plan_.knobs.end();
-  }
 
   AccuracyPlan plan_;
   VariantBench bench_;
@@ -66,10 +60,8 @@ private:
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
-  std::vector<AccuracySetting> levels;
-  levels.reserve(edges.size());
-  for (const double edge : edges)
-    levels.push_back(reference_at(edge));
+  std::vector<AccuracySetting> levels(edges.size());
+  std::transform(edges.begin(), edges.end(), levels.begin(), [&](double edge) { return reference_at(edge); });
   bench_.expect(levels);
   for (std::size_t level = 0; level < edges.size(); ++level)
   {
@@ -106,17 +98,18 @@ void Study::choose_reference()
 void Study::measure_knobs()
 {
   const std::size_t standard = bench_.measure(plan_.standard);
-  const std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  const auto& knobs = plan_.knobs;  // empty: all
+  const auto unwanted = [&](const Sweep& sweep)
+  { return !knobs.empty() && std::find(knobs.begin(), knobs.end(), sweep.knob) == knobs.end(); };
+  sweeps.erase(std::remove_if(sweeps.begin(), sweeps.end(), unwanted), sweeps.end());
   std::vector<AccuracySetting> all;
   for (const Sweep& sweep : sweeps)
-    if (wanted(sweep.knob))
-      all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
+    all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
   bench_.expect(all);
   for (const Sweep& sweep : sweeps)
   {
-    if (!wanted(sweep.knob))
-      continue;
-    KnobLine line{ sweep.knob, { standard } };
+    KnobLine line{ sweep.knob, sweep.words, { standard } };
     for (const AccuracySetting& setting : sweep.settings)
     {
       const std::string& profile = setting.profile.name;
@@ -176,9 +169,8 @@ void Study::check_reference()
   if (elsewhere)
     exact.backend = "cpu";
   halved.profile.time_step_share *= 0.5;
-  for (const auto& [setting, words] : { std::pair<const AccuracySetting&, const char*>(
-                                            exact, elsewhere ? "double precision on the CPU" : "double precision"),
-                                        std::pair<const AccuracySetting&, const char*>(halved, "half the time step") })
+  const char* const in_double = elsewhere ? "double precision on the CPU" : "double precision";
+  for (const auto& [setting, words] : { std::pair(exact, in_double), std::pair(halved, "half the time step") })
   {
     if (!bench_.fits(setting))
       continue;

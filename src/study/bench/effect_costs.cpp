@@ -1,6 +1,9 @@
 #include "frontalis/study/effect_costs.hpp"
 
+#include "frontalis/study/voxel_model.hpp"
+
 #include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
@@ -24,6 +27,54 @@ Model without(const Model& model, EffectSet off)
 std::unique_ptr<Solver> solver_of(Model model, const SolverSettings& settings)
 {
   return make_solver(std::make_shared<const Model>(std::move(model)), settings);
+}
+
+Controls active_controls(const Solver& solver)
+{
+  Controls controls = solver.controls();
+  std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
+  return controls;
+}
+
+constexpr std::int32_t length = 64, depth = 40;
+
+// gives an effect to a share of the voxels, or of the nodes of the face z = 0
+void give(Model& model, Effect effect, double share)
+{
+  const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
+  const auto has = [&](std::size_t e) { return model.voxels[e][1] < rows; };
+  if (effect == Effect::viscosity)
+  {
+    model.materials.push_back(model.materials[0]);
+    model.materials.back().viscous_share = { { 0.3, 0.2 } };
+    model.materials.back().viscous_time = { { 0.1, 1 } };
+    mix(model, [&](std::size_t e) { return Mixture{ { has(e) ? 1 : 0, 1.0F } }; });
+  }
+  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  {
+    const Muscle muscle{ "pull", 1e3, effect == Effect::fibre_stiffness };
+    add_muscles(model, { muscle },
+                [&](std::size_t e) {
+                  return has(e) ? std::vector<Fibre>{ { 0, along_x(e) } } : std::vector<Fibre>();
+                });
+  }
+  if (effect == Effect::sliding || effect == Effect::friction)
+  {
+    // the cost of friction is what it adds to sliding, so that all nodes of the face slide
+    const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
+    ConstraintSurface floor{ "smooth floor", {} };
+    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
+    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
+    model.constraint_surfaces = { floor };
+    floor.name = "rough floor";
+    floor.friction = 0.3;
+    if (effect == Effect::friction && rows > 0)
+      model.constraint_surfaces.push_back(floor);
+    const auto rough = static_cast<std::int32_t>(model.constraint_surfaces.size()) - 1;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < sliding_rows)
+        model.sliding.push_back({ static_cast<std::int32_t>(n), model.nodes[n][1] < rows ? rough : 0, 0 });
+  }
 }
 
 double time_of_field(Solver& solver)
@@ -66,9 +117,7 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   const EffectSet present = effects_of(*model);
   const std::unique_ptr<Solver> whole = solver_of(with_cheap_time_step(*model), settings),
                                 plain = solver_of(plain_model(*model), settings);
-  const Controls rest = whole->controls();
-  Controls active = rest;
-  std::fill(active.activation.begin(), active.activation.end(), 0.75f);
+  const Controls rest = whole->controls(), active = active_controls(*whole);
 
   // what a step takes without an effect; nodes that nothing holds would fly away, so that rigid nodes are compared at
   // rest, and without the effects that would move the others
@@ -110,6 +159,50 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   if (present.has(Effect::output_fields))
     costs.field = time_of_field(*whole);
   return costs;
+}
+
+std::vector<double> presence_shares() { return { 0, 0.1, 0.5, 1 }; }
+
+std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
+{
+  // where the arrays of a solver lie in memory changes its step by a percent, so solvers are made anew a few times
+  constexpr int rounds = 4;
+  const StepTimer timer = step_timer(settings, seconds / rounds);
+  const std::vector<double> shares = presence_shares();
+  std::vector<PresenceCost> costs;
+  for (const Effect effect :
+       { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding, Effect::friction })
+  {
+    StepTimes times;
+    for (int round = 0; round < rounds; ++round)
+    {
+      std::vector<std::unique_ptr<Solver>> solvers;
+      std::vector<TimedSolver> timed;
+      for (const double share : shares)
+      {
+        Model model = dense_block(length, depth, depth);
+        model.gravity = {};
+        give(model, effect, share);
+        solvers.push_back(solver_of(std::move(model), settings));
+        timed.push_back({ solvers.back().get(), active_controls(*solvers.back()) });
+      }
+      const StepTimes more = timer(timed);
+      times.insert(times.end(), more.begin(), more.end());
+    }
+    for (std::size_t s = 0; s < shares.size(); ++s)
+      costs.push_back({ effect, shares[s], spread_of_difference(times, s, 0), spread_of(times, 0).median });
+  }
+  return costs;
+}
+
+ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
+                                  const StepTimer& timer)
+{
+  const auto one = make_solver(model, settings), all = make_solver(model, settings);
+  Controls of_one = one->controls();
+  of_one.activation.at(0) = 0.75f;
+  const StepTimes times = timer({ { one.get(), of_one }, { all.get(), active_controls(*all) } });
+  return { spread_of(times, 0).median, spread_of(times, 1).median, spread_of_difference(times, 1, 0).half };
 }
 
 }  // namespace frontalis

@@ -1,11 +1,13 @@
-#include "frontalis/study/linear_statics.hpp"
+#include "frontalis/study/statics.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/solver/solver.hpp"
+#include "frontalis/solver/guard.hpp"
 
 #include <Eigen/Cholesky>
+#include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace frontalis
@@ -15,25 +17,25 @@ namespace
 
 using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
 
+// the materials of a voxel with their proportions
+Mixture mixture_of(const Model& model, std::size_t e)
+{
+  Mixture mixture;
+  for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
+    mixture.emplace_back(model.mixture_material[m], model.mixture_proportion[m]);
+  return mixture;
+}
+
 // a model of only voxel e
 Model lone_voxel(const Model& model, std::size_t e)
 {
-  Model one;
-  one.spacing = model.spacing;
-  one.size = { { 1, 1, 1 } };
-  one.voxels = { { { 0, 0, 0 } } };
-  one.fill = { model.fill[e] };
-  one.materials = model.materials;
-  const auto begin = model.mixture_begin[e], end = model.mixture_begin[e + 1];
-  one.mixture_begin = { 0, end - begin };
-  one.mixture_material.assign(model.mixture_material.begin() + begin, model.mixture_material.begin() + end);
-  one.mixture_proportion.assign(model.mixture_proportion.begin() + begin, model.mixture_proportion.begin() + end);
+  Model one =
+      voxel_model({ { { 1, 1, 1 } }, model.spacing, model.materials, [&](const auto&) { return model.fill[e]; } });
+  mix(one, [&](std::size_t) { return mixture_of(model, e); });
   if (!model.material_directions.empty())
     one.material_directions = { model.material_directions[e] };
-  one.fibre_begin = { 0, 0 };
   one.hourglass = model.hourglass;
   one.integration = model.integration;
-  build_nodes(one);
   return one;
 }
 
@@ -41,11 +43,8 @@ Model lone_voxel(const Model& model, std::size_t e)
 std::vector<float> make_of(const Model& model, std::size_t e)
 {
   std::vector<float> make{ model.fill[e] };
-  for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-  {
-    make.push_back(model.mixture_material[m]);
-    make.push_back(model.mixture_proportion[m]);
-  }
+  for (const auto& [material, proportion] : mixture_of(model, e))
+    make.insert(make.end(), { static_cast<float>(material), proportion });
   if (!model.material_directions.empty())
     make.insert(make.end(), model.material_directions[e].begin(), model.material_directions[e].end());
   return make;
@@ -77,6 +76,48 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
 }
 
 }  // namespace
+
+RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
+{
+  constexpr double longest = 60;  // periods
+  model.damping = 4 * std::acos(-1.0) / settings.period;
+  for (auto& load : model.loads)
+    load.ramp = settings.ramp * settings.period;
+  // with few voxels threads would wait for each other longer than they work
+  const int threads = model.voxels.size() < 2000 ? 1 : 0;
+  const auto shared = std::make_shared<const Model>(std::move(model));
+  RestState result{ make_solver(shared, { settings.backend, threads, 0 }), {} };
+  Controls target = result.solver->controls();
+  std::fill(target.activation.begin(), target.activation.end(), settings.activation);
+  Guard guard(*result.solver, shared);
+  guard.advance(settings.ramp * settings.period, target);
+  const Equilibrium end = guard.settle(target, settings.tolerance, longest * settings.period);
+  if (!end.reached)
+    throw Error(fmt::format("no equilibrium within {:g} periods of {:g} s: {:.3g} of the displacement is left", longest,
+                            settings.period, end.residual));
+  result.solver->displacements(result.displacements);
+  return result;
+}
+
+Point mean_displacement(const Vectors& displacements, const std::vector<std::int32_t>& nodes)
+{
+  Point mean{};
+  for (const auto node : nodes)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      mean[axis] += displacements[node][axis] / static_cast<double>(nodes.size());
+  return mean;
+}
+
+Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
+{
+  Vectors forces;
+  solver.internal_forces(forces);
+  Point sum{};
+  for (const auto node : nodes)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sum[axis] += forces[node][axis];
+  return sum;
+}
 
 // Voxels join only neighbouring planes of nodes, so the stiffness is block tridiagonal in the planes across the longest
 // axis of the grid. Its Cholesky factors are those of the dense blocks of planes.
@@ -205,7 +246,7 @@ Vectors LinearStatics::solve(const Vectors& forces) const
   return u;
 }
 
-Vectors face_forces(const Model& model, int axis, std::int32_t index, const std::array<double, 3>& traction)
+Vectors face_forces(const Model& model, int axis, std::int32_t index, const Point& traction)
 {
   Vectors forces(model.nodes.size());
   const int second = (axis + 1) % 3, third = (axis + 2) % 3;

@@ -23,10 +23,9 @@ public:
 
   /// `count`: required number of values; 0: one or more.
   std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
-  double number(const std::string& key, const std::string& unit = {}) const;
+  double number(const std::string& key, const std::string& unit = {}) const { return numbers(key, unit, 1)[0]; }
   double seconds(const std::string& key) const;                             ///< given in ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels
-  double bound(const std::string& key, const std::string& unit = {}) const { return number("bounds." + key, unit); }
 
   /// Keys that have not been read: the case does not use them.
   std::vector<std::string> unused() const;

@@ -1,4 +1,4 @@
-#include "study/stability/stability_file.hpp"
+#include "study/stability/case_file.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -110,8 +110,6 @@ std::vector<double> CaseFile::numbers(const std::string& key, const std::string&
                            count > 0 ? fmt::to_string(count) : "one or more"));
   return numbers;
 }
-
-double CaseFile::number(const std::string& key, const std::string& unit) const { return numbers(key, unit, 1)[0]; }
 
 double CaseFile::seconds(const std::string& key) const
 {
