@@ -77,14 +77,12 @@ Stretch::Stretch(const MuscleGrid& grid, const std::vector<std::array<double, 2>
 
   const auto first = static_cast<std::size_t>(ends * static_cast<double>(bins));
   for (std::size_t b = 0; b < first; ++b)
-  {
     for (const auto& [to, from] : { std::make_pair(b, first), std::make_pair(bins - 1 - b, bins - 1 - first) })
     {
       low_[to] = low_[from];
       high_[to] = high_[from];
       given[to] = given[from];
     }
-  }
   for (int repetition = 0; repetition < 4; ++repetition)
     smooth(given);
 }

@@ -70,10 +70,8 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
       across[m] = to_vector(families[0]).cross(to_vector(families[1])).normalized();
   }
   for (std::size_t e = 0; e < voxels; ++e)
-  {
     if (main[e] >= 0)
       agreement[main[e]] += across[main[e]].dot(normal[e]);
-  }
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});

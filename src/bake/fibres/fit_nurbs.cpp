@@ -179,7 +179,6 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
-  {
     for (int j = 0; j < n; ++j)
     {
       const Vector3d& outer = surface.points()[i * n + j];
@@ -187,7 +186,6 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       points.push_back(0.5 * (outer + opposite));
       points.push_back(outer);
     }
-  }
   return NurbsVolume({ { along, around, SplineAxis(1, 2, false) } }, points);
 }
 
@@ -210,18 +208,14 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
     }
   // caps: strips between the two sides
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
-  {
     for (const std::int32_t i : { 0, along })
     {
       const std::int32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i, around - j - 1),
                          d = vertex(i, around - j);
       for (const Triangle& t : { Triangle{ a, b, c }, Triangle{ a, c, d } })
-      {
         if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
           mesh.triangles.push_back(i == 0 ? t : Triangle{ t[0], t[2], t[1] });
-      }
     }
-  }
   if (signed_volume(mesh) < 0)
     flip(mesh);
   return mesh;

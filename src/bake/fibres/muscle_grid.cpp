@@ -56,17 +56,13 @@ void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
     sample.normal = product.normalized();
     sample.area = 0.5 * product.norm() / (n * n);
     for (int i = 0; i < n; ++i)
-    {
       for (int j = 0; i + j < n; ++j)
-      {
         for (int turned = 0; turned < (i + j + 1 < n ? 2 : 1); ++turned)
         {
           const double s = (i + (1 + turned) / 3.0) / n, r = (j + (1 + turned) / 3.0) / n;
           sample.point = a + s * (b - a) + r * (c - a);
           grid.samples.push_back(sample);
         }
-      }
-    }
   }
 }
 
@@ -114,14 +110,12 @@ std::vector<Vector3i> largest_part(CellBox& box, double& kept)
           continue;
         std::vector<Vector3i> part{ { i, j, k } };
         for (std::size_t front = 0; front < part.size(); ++front)
-        {
           for (int s = 0; s < 27; ++s)
           {
             const Vector3i next = part[front] + Vector3i(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
             if (box.holds(next) && take(next))
               part.push_back(next);
           }
-        }
         all += part.size();
         if (part.size() > best.size())
           best = std::move(part);
@@ -213,14 +207,12 @@ void smooth(const MuscleGrid& grid, double reach, std::vector<Eigen::Matrix3d>& 
   CellBox numbers = cell_numbers(grid, size);
   std::vector<std::vector<std::int32_t>> neighbours(grid.cells.size());
   for (std::size_t c = 0; c < grid.cells.size(); ++c)
-  {
     for (int face = 0; face < 6; ++face)
     {
       const Vector3i next = neighbour(grid.cells[c], face);
       if (numbers.holds(next) && numbers.at(next) >= 0)
         neighbours[c].push_back(numbers.at(next));
     }
-  }
   // each average over a cell and its six neighbours adds a variance of 2/7 edge^2 along each axis
   const double averages = std::min(200.0, 3.5 * (reach / grid.edge) * (reach / grid.edge));
   std::vector<Eigen::Matrix3d> next(tensors.size());

@@ -80,17 +80,13 @@ NurbsVolume::NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vecto
   }
   const std::array<int, 3> count{ { 32, 24, 3 } };
   for (int i = 0; i < count[0]; ++i)
-  {
     for (int j = 0; j < count[1]; ++j)
-    {
       for (int k = 0; k < count[2]; ++k)
       {
         const Vector3d parameter{ (i + 0.5) / count[0], (j + 0.5) / count[1], (k + 0.5) / count[2] };
         sample_parameters_.push_back(parameter);
         samples_.push_back(at(parameter).position);
       }
-    }
-  }
 }
 
 NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
@@ -102,7 +98,6 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
   std::array<Eigen::Vector4d, 4> sum;
   sum.fill(Eigen::Vector4d::Zero());
   for (int i = 0; i <= axes_[0].degree(); ++i)
-  {
     for (int j = 0; j <= axes_[1].degree(); ++j)
     {
       const double value = basis[0].value[i] * basis[1].value[j];
@@ -119,7 +114,6 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
         sum[3] += value * basis[2].derivative[k] * point;
       }
     }
-  }
   Point result;
   result.position = sum[0].head<3>() / sum[0][3];
   for (int d = 0; d < 3; ++d)

@@ -57,7 +57,6 @@ std::vector<std::array<int, 2>> flood(Image& image, int i, int j, int mark)
   std::vector<std::array<int, 2>> region{ { i, j } };
   image.at(i, j) = mark;
   for (std::size_t front = 0; front < region.size(); ++front)
-  {
     for (int k = 0; k < 4; ++k)
     {
       const int p = region[front][0] + (k == 0) - (k == 1), q = region[front][1] + (k == 2) - (k == 3);
@@ -66,7 +65,6 @@ std::vector<std::array<int, 2>> flood(Image& image, int i, int j, int mark)
       image.at(p, q) = mark;
       region.push_back({ p, q });
     }
-  }
   return region;
 }
 

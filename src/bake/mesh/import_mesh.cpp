@@ -66,11 +66,9 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   if (mesh.triangles.empty())
     throw Error("mesh file " + file + no_triangles);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-  {
     if (!to_vector(mesh.vertices[v]).allFinite())
       throw Error(
           fmt::format("mesh file {}: vertex {} is not a number or infinite; every coordinate must be finite", file, v));
-  }
   return mesh;
 }
 

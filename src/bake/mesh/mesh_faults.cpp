@@ -137,14 +137,12 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
     faults.crossing_piece[faults.piece[b]] = true;
   }
   for (const Face face : mesh.faces())
-  {
     for (const auto edge : CGAL::halfedges_around_face(mesh.halfedge(face), mesh))
     {
       const Face other = mesh.face(mesh.opposite(edge));
       if (crosses[face] && other != HalfEdgeMesh::null_face() && crosses[other])
         group[leader(face)] = leader(other);
     }
-  }
   std::map<std::size_t, Box> boxes;
   for (const Face face : mesh.faces())
   {

@@ -29,10 +29,8 @@ PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
                  prepared[s] = std::make_unique<PreparedSurface>(surface.name, std::move(loaded[s].mesh), surface.line);
                });
   for (const LoadedSurface& surface : loaded)
-  {
     for (const std::string& finding : surface.findings)
       monitor.found(finding);
-  }
   return prepared;
 }
 

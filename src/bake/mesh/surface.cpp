@@ -75,10 +75,8 @@ double PreparedSurface::winding_variation(const Vector3d& p, double radius) cons
 bool PreparedSurface::rim_within(const Vector3d& p, double distance) const
 {
   for (const auto& edge : rim_)
-  {
     if (squared_distance_to_edge(p, vertex(mesh_, edge[0]), vertex(mesh_, edge[1])) < distance * distance)
       return true;
-  }
   return false;
 }
 
@@ -101,10 +99,8 @@ const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std
                                      const std::string& place)
 {
   for (const auto& surface : surfaces)
-  {
     if (surface->name() == name)
       return *surface;
-  }
   throw Error(place + ": there is no surface '" + name + "'");
 }
 

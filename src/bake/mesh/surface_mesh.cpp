@@ -27,13 +27,11 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh)
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     for (std::size_t c = 0; c < 3; ++c)
     {
       const std::int32_t a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
       edges.push_back({ std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b });
     }
-  }
   std::sort(edges.begin(), edges.end());
   return edges;
 }
@@ -172,7 +170,6 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
     std::vector<std::size_t> component{ seed };
     turn[seed] = 0;
     for (std::size_t at = 0; at < component.size(); ++at)
-    {
       for (const Neighbour& n : neighbours[component[at]])
       {
         if (n.triangle < 0 || turn[n.triangle] >= 0)
@@ -180,19 +177,16 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
         turn[n.triangle] = static_cast<std::int8_t>(turn[component[at]] ^ (n.disagrees ? 1 : 0));
         component.push_back(n.triangle);
       }
-    }
     std::size_t ones = 0;
     for (const std::size_t t : component)
       ones += turn[t];
     const int wanted = 2 * ones > component.size() ? 0 : 1;
     for (const std::size_t t : component)
-    {
       if (turn[t] == wanted)
       {
         std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
         ++turned;
       }
-    }
   }
   return turned;
 }
@@ -208,11 +202,9 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
 {
   std::vector<std::int32_t> number(mesh.vertices.size(), -1);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     if (keep[t])
       for (const std::int32_t v : mesh.triangles[t])
         number[v] = 0;
-  }
   TriangleMesh kept;
   if (vertex_of != nullptr)
     vertex_of->clear();

@@ -180,10 +180,8 @@ bool TriangleTree::overlaps_triangle(const std::array<Vector3d, 3>& corners, con
   const Vector3d half = 0.5 * box.sizes();
   const Vector3d v[3] = { corners[0] - centre, corners[1] - centre, corners[2] - centre };
   for (int a = 0; a < 3; ++a)
-  {
     if (std::min({ v[0][a], v[1][a], v[2][a] }) > half[a] || std::max({ v[0][a], v[1][a], v[2][a] }) < -half[a])
       return false;
-  }
   const Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const double reach = half.dot(normal.cwiseAbs());
   if (std::abs(normal.dot(v[0])) > reach * (1 + 1e-12))

@@ -8,13 +8,10 @@ void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
 {
   const auto base = static_cast<std::int32_t>(mesh.vertices.size());
   for (std::int32_t j = 0; j <= m; ++j)
-  {
     for (std::int32_t i = 0; i <= n; ++i)
       mesh.vertices.push_back(to_array(at(i, j)));
-  }
   const auto number = [&](std::int32_t i, std::int32_t j) { return base + j * (n + 1) + i; };
   for (std::int32_t j = 0; j < m; ++j)
-  {
     for (std::int32_t i = 0; i < n; ++i)
     {
       const std::int32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
@@ -32,7 +29,6 @@ void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
         mesh.triangles.push_back({ a, c, d });
       }
     }
-  }
 }
 
 }  // namespace frontalis

@@ -110,9 +110,7 @@ bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<fl
     const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
     double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
     for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
-    {
       for (std::int32_t k = -shell; k <= shell; ++k)
-      {
         for (std::int32_t j = -shell; j <= shell; ++j)
         {
           const bool face = std::abs(k) == shell || std::abs(j) == shell;
@@ -132,8 +130,6 @@ bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<fl
             }
           }
         }
-      }
-    }
   }
   if (voxel < 0)
     return false;

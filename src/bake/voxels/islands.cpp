@@ -98,10 +98,8 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
   std::vector<std::int32_t> number(old.size(), -1);
   std::size_t at = 0;
   for (std::size_t n = 0; n < old.size() && at < model.nodes.size(); ++n)
-  {
     if (old[n] == model.nodes[at])
       number[n] = static_cast<std::int32_t>(at++);
-  }
   renumber(model.rigid, number);
   renumber(model.sliding, number);
   renumber(model.prescribed, number);
@@ -126,13 +124,9 @@ void remove_islands(Model& model, BakeMonitor& monitor)
   mark(model.prescribed);
   std::vector<bool> held(sizes.size(), false);
   for (std::size_t e = 0; e < component.size(); ++e)
-  {
     for (const std::int32_t n : model.voxel_nodes[e])
-    {
       if (restricted[n])
         held[component[e]] = true;
-    }
-  }
 
   const std::size_t largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
   std::vector<bool> stays(sizes.size());

@@ -17,7 +17,6 @@ int longest_rows(const Grid& grid, const Voxels& voxels)
   const VoxelIndex index(voxels.place, grid.size);
   std::array<std::size_t, 3> rows{ { 0, 0, 0 } };
   for (const auto& place : voxels.place)
-  {
     for (std::size_t a = 0; a < 3; ++a)
     {
       auto before = place;
@@ -25,7 +24,6 @@ int longest_rows(const Grid& grid, const Voxels& voxels)
       if (index.find(before) < 0)
         ++rows[a];
     }
-  }
   return static_cast<int>(std::min_element(rows.begin(), rows.end()) - rows.begin());
 }
 
@@ -40,13 +38,11 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
   // trim the grid to the voxels
   VoxelPlace lower = voxels.place.front(), upper = lower;
   for (const auto& place : voxels.place)
-  {
     for (std::size_t a = 0; a < 3; ++a)
     {
       lower[a] = std::min(lower[a], place[a]);
       upper[a] = std::max(upper[a], place[a]);
     }
-  }
   frame.origin = grid.corner(lower);
   model.spacing = to_array(frame.turn(grid.spacing));
   for (int a = 0; a < 3; ++a)

@@ -98,7 +98,6 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
   const double step = std::cbrt(size / points_per_muscle);
   std::vector<Interval> intervals;
   for (double y = box.min()[1] + 0.4971 * step; y < box.max()[1]; y += step)
-  {
     for (double z = box.min()[2] + 0.5013 * step; z < box.max()[2]; z += step)
     {
       intervals.clear();
@@ -121,7 +120,6 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
         }
       }
     }
-  }
 }
 
 }  // namespace
@@ -131,17 +129,13 @@ std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, co
   std::vector<BakeReport::MuscleVolume> muscles(model.muscles.size());
   const double voxel_volume = model.spacing[0] * model.spacing[1] * model.spacing[2];
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
     for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
       muscles[model.fibre_muscle[m]].voxels +=
           static_cast<double>(model.fill[e]) * static_cast<double>(model.fibre_weight[m]) * voxel_volume;
-  }
   std::vector<const Volumes::Entry*> made_of_surfaces(muscles.size(), nullptr);
   for (const Volumes::Entry& entry : volumes.entries())
-  {
     if (entry.muscle >= 0 && !entry.inside.empty())
       made_of_surfaces[entry.muscle] = &entry;
-  }
   parallel_for(monitor, muscles.size(), 1,
                [&](std::size_t m)
                {
@@ -151,10 +145,8 @@ std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, co
                });
   std::size_t kept = 0;
   for (std::size_t m = 0; m < muscles.size(); ++m)
-  {
     if (made_of_surfaces[m] != nullptr)
       muscles[kept++] = muscles[m];
-  }
   muscles.resize(kept);
   return muscles;
 }

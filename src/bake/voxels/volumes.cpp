@@ -15,10 +15,8 @@ template <class Named>
 int index_of(const std::vector<Named>& list, const std::string& name)
 {
   for (std::size_t i = 0; i < list.size(); ++i)
-  {
     if (list[i].name == name)
       return static_cast<int>(i);
-  }
   return -1;
 }
 
@@ -166,13 +164,11 @@ Box Volumes::bounds_of(const Entry& entry) const
   if (!bounds.min().allFinite() || !bounds.max().allFinite())
     throw Error(place(*entry.volume) + ": has no bounds; give 'inside', 'closed_by' or 'within'");
   for (int a = 0; a < 3; ++a)
-  {
     if (bounds.min()[a] >= bounds.max()[a])
       throw Error(
           fmt::format("{}: is empty: its surfaces, depths and crop have no place in common along {}; a surface is "
                       "flat there, or a crop or a length unit is wrong",
                       place(*entry.volume), "xyz"[a]));
-  }
   return bounds;
 }
 
@@ -180,10 +176,8 @@ Box Volumes::tissue_box() const
 {
   Box all;
   for (const Entry& entry : entries_)
-  {
     if (entry.volume->tissue)
       all.extend(bounds_of(entry));
-  }
   if (all.isEmpty())
     throw Error(scene_->file + ": no volume is tissue; say 'tissue: true' in one");
   return all;
