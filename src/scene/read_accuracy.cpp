@@ -38,8 +38,8 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   const Node time_step = mapping.optional("time_step");
   if (node.is_mapping() && uniform.given() == (selective.given() || time_step.given()))
     node.fault(
-        "found {} of uniform, selective, time_step; must be 'none', have uniform alone, or selective, "
-        "time_step or both",
+        "found {} of uniform, selective, time_step; must be 'none', have uniform alone, or selective, time_step or "
+        "both",
         uniform.given() ? "uniform and another" : "none");
   if (uniform.given())
   {

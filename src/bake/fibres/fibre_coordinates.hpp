@@ -3,8 +3,6 @@
 #include "bake/fibres/muscle_grid.hpp"
 
 #include <functional>
-#include <optional>
-#include <vector>
 
 namespace frontalis
 {

@@ -1,10 +1,6 @@
-#include "bake/fibres/fibre_families.hpp"
+#include "bake/voxels/model_stages.hpp"
 
 #include "frontalis/error.hpp"
-#include "bake/parallel.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {

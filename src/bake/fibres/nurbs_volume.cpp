@@ -1,11 +1,9 @@
 #include "bake/fibres/nurbs_volume.hpp"
 
-#include "frontalis/error.hpp"
+#include "bake/messages.hpp"
 
 #include <Eigen/LU>
 #include <fmt/format.h>
-
-#include <cmath>
 
 namespace frontalis
 {
@@ -32,9 +30,9 @@ void evaluate(double parameter, int degree, const Knots& knots, SplineAxis::Basi
 SplineAxis::SplineAxis(int degree, int points, bool closed) : degree_(degree), points_(points), closed_(closed)
 {
   if (degree < 1 || degree > 3 || points < degree + 1)
-    throw Error(fmt::format(
+    throw failure(
         "a spline of degree {} with {} control points; the degree must be 1 to 3, with at least one point more", degree,
-        points));
+        points);
   // on a closed axis the first control points are used again at the end
   const int spans = closed ? points : points - degree;
   knots_.resize(spans + 2 * degree + 1);

@@ -1,12 +1,9 @@
-#include "bake/mesh/mesh_repairs.hpp"
+#include "bake/mesh/mesh_faults.hpp"
 
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <utility>
 
 namespace frontalis

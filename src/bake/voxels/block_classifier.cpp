@@ -2,9 +2,6 @@
 
 #include "frontalis/error.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace frontalis
@@ -27,11 +24,9 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  // R3 sequence: steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
-  const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
+  // the middle of the voxel is the first
   for (int s = 0; s < samples * samples * samples; ++s)
-    offsets_.push_back(
-        { std::fmod(0.5 + s * step[0], 1.0), std::fmod(0.5 + s * step[1], 1.0), std::fmod(0.5 + s * step[2], 1.0) });
+    offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
   voxels_.volume_size.assign(volumes.entries().size(), 0);
   volume_share_.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
@@ -140,27 +135,23 @@ void BlockClassifier::decide_volume(std::size_t volume, const Box& box, BlockSta
     return;
   answer = volume_answer(volume, box, state);
   // the cheapest question first; each only while the answer is not known
-  if (answer == Answer::unknown && entry.within && !state.depth[*entry.within].known)
+  const auto ask = [&](bool known, const auto& decide)
   {
-    decide_depth(*entry.within, box, state);
-    answer = volume_answer(volume, box, state);
-  }
-  const auto ask_body = [&](std::size_t b)
-  {
-    if (answer != Answer::unknown || state.inside_body[b] != Answer::unknown)
+    if (known || answer != Answer::unknown)
       return;
-    decide_body(b, box, state);
+    decide();
     answer = volume_answer(volume, box, state);
   };
+  const auto ask_body = [&](std::size_t b)
+  { ask(state.inside_body[b] != Answer::unknown, [&] { decide_body(b, box, state); }); };
+  if (entry.within)
+    ask(state.depth[*entry.within].known, [&] { decide_depth(*entry.within, box, state); });
   if (entry.closed_by)
     ask_body(*entry.closed_by);
   std::for_each(entry.inside.begin(), entry.inside.end(), ask_body);
   std::for_each(entry.outside.begin(), entry.outside.end(), ask_body);
-  if (entry.needs_sight() && answer == Answer::unknown && state.in_sight[volume] == Answer::unknown)
-  {
-    decide_sight(volume, box, state);
-    answer = volume_answer(volume, box, state);
-  }
+  if (entry.needs_sight())
+    ask(state.in_sight[volume] != Answer::unknown, [&] { decide_sight(volume, box, state); });
 }
 
 bool BlockClassifier::decide(const Box& box, BlockState& state)

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "bake/voxels/volumes.hpp"
 #include "bake/voxels/voxelise.hpp"
-
-#include <vector>
 
 namespace frontalis
 {

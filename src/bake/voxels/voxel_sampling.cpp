@@ -1,9 +1,5 @@
 #include "bake/voxels/block_classifier.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace frontalis
 {
 
@@ -168,22 +164,8 @@ void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
-  for (std::size_t m = 0; m < material_share_.size(); ++m)
-  {
-    if (material_share_[m] <= 0)
-      continue;
-    voxels_.material.push_back(static_cast<std::int16_t>(m));
-    voxels_.proportion.push_back(static_cast<float>(material_share_[m] / fill));
-  }
-  voxels_.mixture_begin.push_back(static_cast<std::uint32_t>(voxels_.material.size()));
-  for (std::size_t m = 0; m < muscle_share_.size(); ++m)
-  {
-    if (muscle_share_[m] <= 0)
-      continue;
-    voxels_.muscle.push_back(static_cast<std::int16_t>(m));
-    voxels_.weight.push_back(static_cast<float>(std::min(1.0, muscle_share_[m] / fill)));
-  }
-  voxels_.muscle_begin.push_back(static_cast<std::uint32_t>(voxels_.muscle.size()));
+  voxels_.materials.add(material_share_, fill);
+  voxels_.muscles.add(muscle_share_, fill);
 }
 
 }  // namespace frontalis
