@@ -2,7 +2,6 @@
 
 #include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
-#include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
 
 namespace frontalis

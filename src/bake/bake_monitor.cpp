@@ -1,7 +1,5 @@
 #include "bake/bake_monitor.hpp"
 
-#include "frontalis/error.hpp"
-
 #include <sys/resource.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -6,8 +6,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <functional>
-#include <string>
 
 namespace frontalis
 {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bake/vector.hpp"
-#include "frontalis/error.hpp"
 #include "frontalis/scene/scene.hpp"
 
 #include <fmt/format.h>

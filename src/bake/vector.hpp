@@ -6,11 +6,8 @@
 
 // standard headers that nearly every file of the bake needs
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace frontalis
 {

@@ -1,6 +1,5 @@
 #include "scene/quantity.hpp"
 
-#include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/scene/read_scene.hpp"
 

@@ -1,7 +1,5 @@
 #include "scene/sections.hpp"
 
-#include <map>
-
 namespace frontalis
 {
 namespace

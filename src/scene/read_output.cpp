@@ -1,7 +1,5 @@
 #include "scene/sections.hpp"
 
-#include "frontalis/error.hpp"
-
 #include <algorithm>
 #include <cmath>
 

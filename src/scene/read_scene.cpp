@@ -2,8 +2,6 @@
 
 #include "scene/sections.hpp"
 
-#include "frontalis/error.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

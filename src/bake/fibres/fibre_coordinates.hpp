@@ -2,8 +2,6 @@
 
 #include "bake/fibres/muscle_grid.hpp"
 
-#include <functional>
-
 namespace frontalis
 {
 

@@ -1,7 +1,6 @@
 #include "bake/fibres/fibres.hpp"
 
 #include "bake/fibres/fit_nurbs.hpp"
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 
 namespace frontalis

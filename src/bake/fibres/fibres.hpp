@@ -3,8 +3,6 @@
 #include "bake/voxels/model_stages.hpp"
 #include "bake/fibres/nurbs_volume.hpp"
 
-#include <memory>
-
 namespace frontalis
 {
 

@@ -3,7 +3,6 @@
 #include "bake/messages.hpp"
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace frontalis
 {

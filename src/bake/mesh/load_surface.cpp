@@ -1,7 +1,6 @@
 #include "bake/mesh/surface.hpp"
 
 #include "frontalis/bake/forehead_shape.hpp"
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
 

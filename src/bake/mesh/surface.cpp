@@ -1,7 +1,6 @@
 #include "bake/mesh/surface.hpp"
 
 #include "bake/messages.hpp"
-#include "frontalis/error.hpp"
 
 namespace frontalis
 {

@@ -1,8 +1,6 @@
 #include "frontalis/error.hpp"
 #include "bake/mesh/surface.hpp"
 
-#include <functional>
-
 namespace frontalis
 {
 namespace

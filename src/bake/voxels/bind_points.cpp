@@ -1,7 +1,6 @@
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 
 namespace frontalis

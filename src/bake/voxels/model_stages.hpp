@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bake/voxels/voxelise.hpp"
-#include "frontalis/bake/bake.hpp"
 
 namespace frontalis
 {

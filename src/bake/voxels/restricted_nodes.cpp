@@ -1,6 +1,5 @@
 #include "bake/voxels/model_stages.hpp"
 
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 
 #include <tbb/blocked_range.h>

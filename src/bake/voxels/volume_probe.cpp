@@ -1,6 +1,5 @@
 #include "bake/voxels/volumes.hpp"
 
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
 
