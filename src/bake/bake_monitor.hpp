@@ -2,8 +2,10 @@
 
 #include "frontalis/bake/bake.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
-#include <string>
+#include <cstddef>
 
 namespace frontalis
 {
@@ -22,6 +24,11 @@ public:
   void finish();
   /// Adds a sentence to the report's findings.
   void found(const std::string& sentence);
+  template <class First, class... Rest>
+  void found(fmt::format_string<First, Rest...> sentence, First&& first, Rest&&... rest)
+  {
+    found(fmt::format(sentence, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
 
 private:
   BakeReport* report_;  ///< null: no report is wanted
@@ -29,5 +36,11 @@ private:
   std::string stage_;
   std::chrono::steady_clock::time_point begin_;
 };
+
+/// Calls body(0) .. body(count - 1) on all cores, about `grain` of them per task. Calls must not depend on each other:
+/// each writes only what belongs to its index. The calling thread reports progress meanwhile; where the monitor throws,
+/// no further task begins and its exception is rethrown. If calls throw, the exception of the lowest index is rethrown.
+void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t)>& body);
 
 }  // namespace frontalis

@@ -5,18 +5,32 @@
 
 #include <fmt/format.h>
 
-#include <string>
-
 namespace frontalis
 {
 
 // Texts of errors and findings.
+
+template <class... Values>
+Error failure(fmt::format_string<Values...> text, Values&&... values)
+{
+  return Error(fmt::format(text, std::forward<Values>(values)...));
+}
 
 /// How a message about a named part of the scene begins: "face.yaml:12: volume 'tissue'".
 template <class Part>
 std::string place_in_scene(const Scene& scene, const char* kind, const Part& part)
 {
   return fmt::format("{}:{}: {} '{}'", scene.file, part.line, kind, part.name);
+}
+
+/// Index of the entry called `name`. Throws Error if there is none, with a message that begins with `place`.
+template <class Named>
+int index_of(const std::vector<Named>& list, const std::string& name, const std::string& place, const char* kind)
+{
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Named& entry) { return entry.name == name; });
+  if (found == list.end())
+    throw failure("{}: there is no {} '{}'", place, kind, name);
+  return static_cast<int>(found - list.begin());
 }
 
 /// Name of a length unit given in metres.

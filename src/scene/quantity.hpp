@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// The quantity of a number in a scene, with the units that it may have; after the semicolon, the default unit.
+/// The quantity of a number in a scene: its units; the one that a number without a unit has.
 enum class Dimension
 {
   number,       ///< no unit
@@ -32,8 +32,9 @@ struct Bound
 
 constexpr Bound any_number{};
 constexpr Bound positive{ 0, std::numeric_limits<double>::infinity(), false, true };
-constexpr Bound not_negative{ 0, std::numeric_limits<double>::infinity(), true, true };
-constexpr Bound proportion{ 0, 1, true, true };
+constexpr Bound not_negative{ 0 };
+constexpr Bound at_least_one{ 1 };
+constexpr Bound proportion{ 0, 1 };
 
 /// Number with an optional unit, in SI units. Throws Error saying what was found and what is allowed; numbers that are
 /// not finite are refused.

@@ -104,30 +104,19 @@ void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& nam
 
 void read_materials(const Node& node, Scene& scene, SceneNames& names)
 {
-  names.materials.complete = node.is_mapping();
-  for (const auto& [name, entry] : node.named_pairs())
+  const auto read = [&](const Node& entry, Mapping& mapping, SceneMaterial& material)
   {
-    SceneMaterial material;
-    material.name = name;
-    material.line = entry.line();
-    names.materials.names.push_back(name);
-    {
-      Mapping mapping(entry);
-      const Node law = mapping.optional("law");
-      if (law.given())
-        material.law = law.choice(names_of_laws());
-      if (const auto known = physics::law_named(material.law); !known)
-        mapping.ignore_rest();
-      else
-      {
-        read_law(*known, entry, mapping, names, material);
-        read_viscosity(mapping.optional("viscosity"), material.viscosity);
-        material.density =
-            mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
-      }
-    }
-    scene.materials.push_back(material);
-  }
+    const Node law = mapping.optional("law");
+    if (law.given())
+      material.law = law.choice(names_of_laws());
+    const auto known = physics::law_named(material.law);
+    if (!known)
+      return mapping.ignore_rest();
+    read_law(*known, entry, mapping, names, material);
+    read_viscosity(mapping.optional("viscosity"), material.viscosity);
+    material.density = mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
+  };
+  read_named(node, scene.materials, names.materials, read);
 }
 
 }  // namespace frontalis

@@ -47,7 +47,48 @@ Region read_region(const Node& node);
 /// The mapping of a file that holds a `what`. Throws Error: no such file, not YAML, not what is expected.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
+/// Metres per length unit; `fallback` if the value is absent or wrong.
+double read_length_unit(const Node& node, double fallback);
+
+/// Exactly one of `keys` must be in the mapping: returns it. Else it records a fault, accepts all keys and returns an
+/// empty text.
+std::string one_of(const Node& entry, Mapping& mapping, const std::vector<std::string>& keys);
+
 /// The `name` of a list's entry, which must differ from the earlier ones; adds it to them.
 std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier);
+
+/// Reads the items of a section whose keys are their names, and adds these to `names`. read(entry, mapping, item) reads
+/// what one of them has beside its name and line.
+template <class Item, class Read>
+void read_named(const Node& node, std::vector<Item>& items, Names& names, const Read& read)
+{
+  names.complete = node.is_mapping();
+  for (const auto& [name, entry] : node.named_pairs())
+  {
+    Item item;
+    item.name = name;
+    item.line = entry.line();
+    names.names.push_back(name);
+    Mapping mapping(entry);
+    read(entry, mapping, item);
+    items.push_back(item);
+  }
+}
+
+/// The same for a section that is a list, whose items have a key `name`.
+template <class Item, class Read>
+void read_list(const Node& node, std::vector<Item>& items, const Read& read)
+{
+  std::vector<std::string> earlier;
+  for (const Node& entry : node.entries())
+  {
+    Item item;
+    item.line = entry.line();
+    Mapping mapping(entry);
+    item.name = read_unique_name(mapping, earlier);
+    read(entry, mapping, item);
+    items.push_back(item);
+  }
+}
 
 }  // namespace frontalis

@@ -14,6 +14,9 @@
 namespace frontalis
 {
 
+/// "a, b, c", followed by " (did you mean 'b'?)" if one of the words is close to `word`; "none" without words.
+std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words);
+
 /// Faults of one file, collected so that a user sees all of them at once.
 class Faults
 {
@@ -55,7 +58,7 @@ struct Names
 };
 
 /// A value of the file, or the absence of one, with its dotted path and line. Each reading function returns `fallback`
-/// if the value is absent or wrong; if it is wrong, it records a fault.
+/// (without one, an empty text) if the value is absent or wrong; if it is wrong, it records a fault.
 class Node
 {
 public:
@@ -90,9 +93,9 @@ public:
   /// Whether a fault was found in this value.
   bool faulty() const { return context_->faults.any_at(path_); }
 
-  std::string text(const std::string& fallback = {}) const;
+  std::string text() const;
   std::string name() const;  ///< text of [A-Za-z0-9_]+
-  /// One of `allowed`; empty if wrong or absent.
+  /// One of `allowed`.
   std::string choice(const std::vector<std::string>& allowed) const;
   bool boolean(bool fallback) const;
   int integer(int lower, int upper, int fallback) const;
@@ -105,6 +108,8 @@ public:
 
   /// The name of something defined elsewhere; one that is not known is a fault.
   std::string reference(const Names& names) const;
+  /// Records a fault for a name that is not among the known ones.
+  void check_known(const std::string& name, const Names& names) const;
   /// One name or a list of different ones.
   std::vector<std::string> references(const Names& names) const;
 
@@ -116,10 +121,12 @@ public:
   std::vector<std::pair<std::string, Node>> named_pairs() const;
 
   std::string found() const;  ///< for messages: "found a list", "found 'text'"
+  std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
 
 private:
-  bool is_triple(const std::string& expected) const;  ///< if not, records a fault
-  bool scalar(std::string& text, const std::string& expected) const;
+  std::vector<Node> triple(const std::string& expected) const;  ///< entries of a list of three; empty if it is none
+  std::optional<std::string> scalar(const std::string& expected) const;
+  void check_name(const std::string& name) const;
 
   YAML::Node yaml_;
   std::string path_;

@@ -1,13 +1,8 @@
-#include "bake/fibres/fibre_coordinates.hpp"
 
 #include "frontalis/error.hpp"
-#include "bake/fibres/coordinate_range.hpp"
 #include "bake/fibres/grid_field.hpp"
-#include "bake/fibres/surface_direction.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace frontalis
 {
@@ -89,10 +84,7 @@ Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, co
 
 double at(const std::array<double, 8>& corners, const std::array<double, 8>& weights)
 {
-  double value = 0;
-  for (std::size_t b = 0; b < 8; ++b)
-    value += weights[b] * corners[b];
-  return value;
+  return std::inner_product(weights.begin(), weights.end(), corners.begin(), 0.0);
 }
 
 /// Starting fields for subspace iteration, which together are orthogonal to none of the slow modes.
@@ -168,21 +160,13 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     result.samples.push_back(sample.cell < 0 ? std::array<double, 2>{ none, none }
                                              : coordinates(sample.cell, grid.weights(sample.cell, sample.point)));
   // stretched so that fibres end where the muscle ends and follow its sides
-  const auto stretch = [&](std::size_t stretched, double ends)
-  {
-    const Stretch table(grid, result.samples, stretched, stretched == 1 && guide.ring, ends);
-    for (auto* points : { &result.cells, &result.samples })
-      for (auto& point : *points)
-        if (!std::isnan(point[0]))
-          table.apply(point);
-  };
   if (!guide.ring)
   {
     // the part of the length that an obliquely cut end takes: about half a width
-    stretch(1, std::min(0.45, 1.5 * result.width / result.length));
-    stretch(0, 0);
+    stretch(grid, 1, false, std::min(0.45, 1.5 * result.width / result.length), result);
+    stretch(grid, 0, false, 0, result);
   }
-  stretch(1, 0);
+  stretch(grid, 1, guide.ring.has_value(), 0, result);
   return result;
 }
 

@@ -2,10 +2,6 @@
 
 #include "bake/fibres/muscle_grid.hpp"
 
-#include <functional>
-#include <optional>
-#include <vector>
-
 namespace frontalis
 {
 

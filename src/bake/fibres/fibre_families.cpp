@@ -1,10 +1,4 @@
-#include "bake/fibres/fibre_families.hpp"
-
-#include "frontalis/error.hpp"
-#include "bake/parallel.hpp"
-
-#include <algorithm>
-#include <cmath>
+#include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
 {
@@ -64,16 +58,11 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
   std::vector<Vector3d> across(scene.materials.size(), Vector3d::Zero());
   std::vector<double> agreement(across.size(), 0);
   for (std::size_t m = 0; m < across.size(); ++m)
-  {
-    const auto& families = scene.materials[m].families;
-    if (along[m] != nullptr)
-      across[m] = to_vector(families[0]).cross(to_vector(families[1])).normalized();
-  }
+    if (const auto& [first, second] = scene.materials[m].families; along[m] != nullptr)
+      across[m] = to_vector(first).cross(to_vector(second)).normalized();
   for (std::size_t e = 0; e < voxels; ++e)
-  {
     if (main[e] >= 0)
       agreement[main[e]] += across[main[e]].dot(normal[e]);
-  }
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});
@@ -88,9 +77,8 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
     for (std::size_t family = 0; family < 2; ++family)
     {
       const Vector3d turned = rotation * to_vector(scene.materials[m].families[family]);
-      const Vector3d direction = frame.turn(turned.normalized().eval());
-      for (int a = 0; a < 3; ++a)
-        model.material_directions[e][3 * family + a] = static_cast<float>(direction[a]);
+      Eigen::Map<Eigen::Vector3f>(&model.material_directions[e][3 * family]) =
+          frame.turn(turned.normalized().eval()).cast<float>();
     }
   }
 }

@@ -1,12 +1,7 @@
 #pragma once
 
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 #include "bake/fibres/nurbs_volume.hpp"
-#include "bake/mesh/surface.hpp"
-
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace frontalis
 {

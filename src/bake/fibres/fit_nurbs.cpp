@@ -1,11 +1,8 @@
 #include "bake/fibres/fit_nurbs.hpp"
 
 #include "frontalis/error.hpp"
-#include "bake/mesh/triangle_tree.hpp"
 
 #include <Eigen/Cholesky>
-
-#include <cmath>
 
 namespace frontalis
 {
@@ -26,14 +23,12 @@ public:
 
   void add(const std::array<double, 2>& parameter, const Vector3d& target, double weight)
   {
-    std::array<Eigen::Index, 16> index{};
-    std::array<double, 16> value{};
-    const std::size_t count = basis(parameter, index, value);
-    for (std::size_t i = 0; i < count; ++i)
+    const Terms terms = basis(parameter);
+    for (std::size_t i = 0; i < terms.count; ++i)
     {
-      for (std::size_t j = 0; j < count; ++j)
-        matrix_(index[i], index[j]) += weight * value[i] * value[j];
-      load_.row(index[i]) += weight * value[i] * target.transpose();
+      for (std::size_t j = 0; j < terms.count; ++j)
+        matrix_(terms.index[i], terms.index[j]) += weight * terms.value[i] * terms.value[j];
+      load_.row(terms.index[i]) += weight * terms.value[i] * target.transpose();
     }
   }
 
@@ -46,11 +41,10 @@ public:
       for (int j = 0; j < across; ++j)
         for (int i = axes_[a].closed() ? 0 : 1; i < (axes_[a].closed() ? n : n - 1); ++i)
         {
-          const std::array<Eigen::Index, 3> at{ { place(a, (i + n - 1) % n, j), place(a, i, j),
-                                                  place(a, (i + 1) % n, j) } };
-          const std::array<double, 3> second{ { 1, -2, 1 } };
-          for (std::size_t p = 0; p < 3; ++p)
-            for (std::size_t q = 0; q < 3; ++q)
+          const Eigen::Index at[3] = { place(a, (i + n - 1) % n, j), place(a, i, j), place(a, (i + 1) % n, j) };
+          const double second[3] = { 1, -2, 1 };
+          for (int p = 0; p < 3; ++p)
+            for (int q = 0; q < 3; ++q)
               matrix_(at[p], at[q]) += scale * second[p] * second[q];
         }
     }
@@ -68,12 +62,10 @@ public:
 
   Vector3d at(const std::array<double, 2>& parameter) const
   {
-    std::array<Eigen::Index, 16> index{};
-    std::array<double, 16> value{};
-    const std::size_t count = basis(parameter, index, value);
+    const Terms terms = basis(parameter);
     Vector3d sum{ 0, 0, 0 };
-    for (std::size_t i = 0; i < count; ++i)
-      sum += value[i] * points_[index[i]];
+    for (std::size_t i = 0; i < terms.count; ++i)
+      sum += terms.value[i] * points_[terms.index[i]];
     return sum;
   }
 
@@ -82,18 +74,24 @@ private:
   {
     return axis == 0 ? i * axes_[1].points() + j : j * axes_[1].points() + i;
   }
-  std::size_t basis(const std::array<double, 2>& parameter, std::array<Eigen::Index, 16>& index,
-                    std::array<double, 16>& value) const
+  /// The control points on which a point of the surface depends, and how much.
+  struct Terms
+  {
+    std::size_t count = 0;
+    std::array<Eigen::Index, 16> index;
+    std::array<double, 16> value;
+  };
+  Terms basis(const std::array<double, 2>& parameter) const
   {
     const SplineAxis::Basis a = axes_[0].at(parameter[0]), b = axes_[1].at(parameter[1]);
-    std::size_t count = 0;
+    Terms terms;
     for (int i = 0; i <= axes_[0].degree(); ++i)
-      for (int j = 0; j <= axes_[1].degree(); ++j, ++count)
+      for (int j = 0; j <= axes_[1].degree(); ++j, ++terms.count)
       {
-        index[count] = place(0, a.point[i], b.point[j]);
-        value[count] = a.value[i] * b.value[j];
+        terms.index[terms.count] = place(0, a.point[i], b.point[j]);
+        terms.value[terms.count] = a.value[i] * b.value[j];
       }
-    return count;
+    return terms;
   }
 
   std::array<SplineAxis, 2> axes_;
@@ -179,7 +177,6 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
-  {
     for (int j = 0; j < n; ++j)
     {
       const Vector3d& outer = surface.points()[i * n + j];
@@ -187,7 +184,6 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       points.push_back(0.5 * (outer + opposite));
       points.push_back(outer);
     }
-  }
   return NurbsVolume({ { along, around, SplineAxis(1, 2, false) } }, points);
 }
 
@@ -210,18 +206,14 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
     }
   // caps: strips between the two sides
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
-  {
     for (const std::int32_t i : { 0, along })
     {
       const std::int32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i, around - j - 1),
                          d = vertex(i, around - j);
       for (const Triangle& t : { Triangle{ a, b, c }, Triangle{ a, c, d } })
-      {
         if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
           mesh.triangles.push_back(i == 0 ? t : Triangle{ t[0], t[2], t[1] });
-      }
     }
-  }
   if (signed_volume(mesh) < 0)
     flip(mesh);
   return mesh;

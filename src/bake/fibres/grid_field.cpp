@@ -6,15 +6,22 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
-#include <cmath>
-
 namespace frontalis
 {
 namespace
 {
 
 using Stiffness = Eigen::Matrix<double, 8, 8>;
-using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
+{
+  /// Throws Error with the name of the field if the matrix is singular.
+  Cholesky(const Eigen::SparseMatrix<double>& matrix, const char* field) : SimplicialLDLT(matrix)
+  {
+    if (info() != Eigen::Success)
+      throw Error(std::string("the field ") + field + " cannot be solved for");
+  }
+};
 
 /// Integrals over the unit cube of the products of shape function derivatives a (rows) and b (columns).
 std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
@@ -110,9 +117,7 @@ Eigen::SparseMatrix<double> GridField::shifted() const
 
 GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
 {
-  const Cholesky solver(shifted());
-  if (solver.info() != Eigen::Success)
-    throw Error("the field of its fibres cannot be solved for");
+  const Cholesky solver(shifted(), "of its fibres");
   Modes modes;
   modes.fields = start;
   double before = 0;
@@ -148,10 +153,7 @@ Eigen::VectorXd GridField::between(const std::vector<std::pair<std::int32_t, dou
     matrix.coeffRef(node, node) += spring;
     load(node) = spring * value;
   }
-  const Cholesky solver(matrix);
-  if (solver.info() != Eigen::Success)
-    throw Error("the field between its origin and insertion cannot be solved for");
-  return solver.solve(load);
+  return Cholesky(matrix, "between its origin and insertion").solve(load);
 }
 
 Eigen::VectorXd GridField::balance(const CornerField& field) const
@@ -164,10 +166,7 @@ Eigen::VectorXd GridField::balance(const CornerField& field) const
     for (std::size_t b = 0; b < 8; ++b)
       load(grid_.cell_nodes[c][b]) -= force(b);
   }
-  const Cholesky solver(shifted());
-  if (solver.info() != Eigen::Success)
-    throw Error("the field around its hole cannot be solved for");
-  return solver.solve(load);
+  return Cholesky(shifted(), "around its hole").solve(load);
 }
 
 }  // namespace frontalis

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "bake/fibres/muscle_grid.hpp"
+#include "bake/fibres/fibre_coordinates.hpp"
 
 #include <Eigen/SparseCore>
 
-#include <array>
 #include <utility>
-#include <vector>
 
 namespace frontalis
 {
@@ -52,5 +50,44 @@ private:
   Eigen::SparseMatrix<double> matrix_;
   Eigen::VectorXd mass_;
 };
+
+/// Direction of the fibres that a muscle's surface shows around a cell, along striations or along a narrow muscle. Its
+/// sign means nothing.
+struct SurfaceDirection
+{
+  Vector3d direction;
+  double certainty = 0;  ///< 0 to 1
+};
+
+/// From the covariance of the surface's normals within about `reach` [m] of each cell.
+std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double reach);
+
+/// Conductivity of each cell: 1 across its direction, and the less along it the more certain the direction is.
+std::vector<Eigen::Matrix3d> conductivities(const std::vector<SurfaceDirection>& directions);
+
+/// The surface's direction where it is certain, the gradient elsewhere; the gradient too where both are at a large
+/// angle, as they are at ends that are cut straight. Smoothed over `reach` [m].
+std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
+                                    const std::vector<SurfaceDirection>& directions,
+                                    const std::vector<Vector3d>& gradients);
+
+/// Maps a value of a field to the mean distance [m] of the places that have it from those with the field's least value.
+class DistanceTable
+{
+public:
+  /// `periodic`: the field counts revolutions around a ring, of which the fraction is used.
+  DistanceTable(const MuscleGrid& grid, const CornerField& field, bool periodic);
+  double length() const { return distances_.back(); }
+  double operator()(double value) const;
+
+private:
+  std::vector<double> values_, distances_;
+};
+
+/// Stretches one of the two coordinates, that of index `stretched`, so that it runs from 0 to 1 at every value of the
+/// other. 0 and 1 are its smoothed limits on the muscle's surface. Lines along which the other coordinate is constant
+/// keep their shape. `closed`: the other coordinate runs around a ring. If the other coordinate is closer than `ends`
+/// to 0 or 1, the limits at that distance are used.
+void stretch(const MuscleGrid& grid, std::size_t stretched, bool closed, double ends, FibreCoordinates& coordinates);
 
 }  // namespace frontalis

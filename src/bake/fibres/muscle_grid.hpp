@@ -2,10 +2,6 @@
 
 #include "bake/mesh/surface_mesh.hpp"
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 namespace frontalis
 {
 
@@ -40,6 +36,18 @@ struct MuscleGrid
   /// Trilinear weights of a point in the nodes of a cell.
   std::array<double, 8> weights(std::size_t cell, const Vector3d& p) const;
 };
+
+/// All places connected with `seed` by `steps`: take(place) says whether a place belongs and was not reached before.
+template <class Place, class Take>
+std::vector<Place> flood(const Place& seed, const std::vector<Place>& steps, const Take& take)
+{
+  std::vector<Place> reached{ seed };
+  for (std::size_t front = 0; front < reached.size(); ++front)
+    for (const Place& step : steps)
+      if (const Place next = reached[front] + step; take(next))
+        reached.push_back(next);
+  return reached;
+}
 
 /// Chooses the edge of the cells such that about `wanted` of them fill the mesh, times `coarser`.
 MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coarser = 1);

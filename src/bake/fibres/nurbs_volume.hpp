@@ -5,9 +5,6 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/Splines>
 
-#include <array>
-#include <vector>
-
 namespace frontalis
 {
 

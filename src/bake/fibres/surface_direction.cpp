@@ -1,10 +1,6 @@
-#include "bake/fibres/surface_direction.hpp"
+#include "bake/fibres/grid_field.hpp"
 
 #include <Eigen/Eigenvalues>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace frontalis
 {

@@ -1,12 +1,9 @@
-#include "bake/mesh/mesh_repairs.hpp"
+#include "bake/mesh/mesh_faults.hpp"
 
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <utility>
 
 namespace frontalis
@@ -33,13 +30,11 @@ void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   {
     const std::size_t pairs = std::min(by_orientation[0].size(), by_orientation[1].size());
     for (const auto& triangles : by_orientation)
-    {
       for (std::size_t i = 0; i < triangles.size(); ++i)
       {
         keep[triangles[i]] = i == pairs;
         repairs.repeated += i > pairs ? 1 : 0;
       }
-    }
     repairs.back_to_back += pairs;
   }
   if (repairs.repeated + repairs.back_to_back > 0)
@@ -58,10 +53,8 @@ std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
   if (!CGAL::collinear(p[0], p[1], p[2]))
     return 3;
   for (std::size_t c = 0; c < 2; ++c)
-  {
     if (CGAL::collinear_are_ordered_along_line(p[(c + 1) % 3], p[c], p[(c + 2) % 3]))
       return c;
-  }
   return 2;
 }
 
@@ -71,10 +64,8 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
   std::vector<std::size_t> flat;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     if (middle_corner(mesh, mesh.triangles[t]) < 3)
       flat.push_back(t);
-  }
   if (flat.empty())
     return;
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::size_t>> at_edge;
@@ -169,10 +160,8 @@ std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::in
     nested += outside > 0.5 ? 1 : 0;
   }
   for (std::size_t t = 0; t < piece.size(); ++t)
-  {
     if (turn[piece[t]])
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-  }
   return std::count(turn.begin(), turn.end(), true);
 }
 

@@ -4,8 +4,6 @@
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace frontalis
 {
@@ -15,13 +13,12 @@ namespace frontalis
 class PreparedSurface
 {
 public:
-  PreparedSurface(std::string name, TriangleMesh mesh, int line);
+  PreparedSurface(std::string name, TriangleMesh mesh);
 
   const std::string& name() const { return name_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleTree& tree() const { return tree_; }
   const Box& box() const { return box_; }
-  int line() const { return line_; }
   bool closed() const { return rim_.empty(); }
 
   /// Upper bound on how much the winding number changes within `radius` of p if the surface is not crossed: the
@@ -40,7 +37,6 @@ public:
 private:
   std::string name_;
   TriangleMesh mesh_;
-  int line_;
   TriangleTree tree_;
   Box box_;
   Edges rim_;  ///< empty: the surface is closed
@@ -68,5 +64,17 @@ TriangleMesh import_mesh(const std::string& file, double unit);
 
 /// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
+
+struct LoadedSurface
+{
+  TriangleMesh mesh;                  ///< vertices joined, triangles oriented, scene coordinates [m]
+  std::vector<std::string> findings;  ///< repairs and harmless faults, one sentence each
+};
+
+/// Makes or reads a surface and repairs what can be repaired without changing its shape. `unit` [m] is the length unit
+/// of the places in messages. Throws Error, with the place and the remedy, for a surface without a triangle that has an
+/// area, an edge at which an odd number of triangles meet, a closed surface that encloses nothing, and a surface that
+/// passes through itself. Holes are no error here: check_openings decides whether they do harm.
+LoadedSurface load_surface(const Surface& surface, double unit);
 
 }  // namespace frontalis

@@ -3,9 +3,7 @@
 #include "bake/vector.hpp"
 #include "frontalis/model/surface.hpp"
 
-#include <array>
-#include <cstdint>
-#include <vector>
+#include <functional>
 
 namespace frontalis
 {
@@ -49,5 +47,14 @@ void flip(TriangleMesh& mesh);
 /// the old number of each vertex.
 TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& keep,
                             std::vector<std::int32_t>* vertex_of = nullptr);
+
+/// The part of a mesh inside a region. Triangles that reach across a side of it are cut there, and neighbours share the
+/// new vertices, which follow the kept ones.
+TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region);
+
+/// Adds a rectangular sheet of points at(i, j), i in 0..n, j in 0..m, as triangles whose normal is d/di x d/dj.
+/// Diagonals are mirrored about the middle column where n is even, so that a symmetric sheet has symmetric triangles.
+void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
+               const std::function<Vector3d(std::int32_t, std::int32_t)>& at);
 
 }  // namespace frontalis

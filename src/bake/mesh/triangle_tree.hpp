@@ -2,9 +2,6 @@
 
 #include "bake/mesh/surface_mesh.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace frontalis
 {
 
@@ -92,7 +89,6 @@ private:
   std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3d>& centroids);
   Expansion expand(const Node& node) const;
   static double far_field(const Expansion& node, const Vector3d& p);
-  static bool overlaps_triangle(const std::array<Vector3d, 3>& corners, const Box& box);
   const TriangleMesh* mesh_;
   std::vector<std::int32_t> order_;               ///< triangle indices, contiguous for each node
   std::vector<std::array<Vector3d, 3>> corners_;  ///< corners of the triangles, in the same order

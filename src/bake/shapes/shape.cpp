@@ -1,9 +1,5 @@
 #include "frontalis/error.hpp"
-#include "bake/shapes/sheet_mesh.hpp"
 #include "bake/mesh/surface.hpp"
-
-#include <cmath>
-#include <functional>
 
 namespace frontalis
 {

@@ -1,11 +1,7 @@
-#include "bake/voxels/bind_points.hpp"
+#include "bake/voxels/model_stages.hpp"
+#include "bake/voxels/voxel_index.hpp"
 
-#include "bake/mesh/cut_mesh.hpp"
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
-#include "bake/parallel.hpp"
-
-#include <cmath>
 
 namespace frontalis
 {
@@ -14,6 +10,67 @@ namespace
 
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // from the skin [m]
+
+/// Finds the voxel that a point follows: the one that contains it, or the nearest within the extrapolation distance.
+class PointBinder
+{
+public:
+  PointBinder(const Model& model, double extrapolation)
+      : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
+  {
+  }
+
+  /// False where no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
+  bool bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
+  {
+    VoxelPlace cell{};
+    for (int a = 0; a < 3; ++a)
+      cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
+    voxel = index_.find(cell);
+    if (voxel < 0)
+      voxel = nearest(local, cell);
+    for (int a = 0; a < 3 && voxel >= 0; ++a)
+      coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
+    return voxel >= 0;
+  }
+
+private:
+  /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel.
+  std::int32_t nearest(const Vector3d& local, const VoxelPlace& cell) const
+  {
+    const Vector3d spacing = to_vector(model_.spacing);
+    const double edge = spacing.minCoeff();
+    const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
+    std::int32_t voxel = -1;
+    double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
+    for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
+      for (std::int32_t k = -shell; k <= shell; ++k)
+        for (std::int32_t j = -shell; j <= shell; ++j)
+        {
+          const bool face = std::abs(k) == shell || std::abs(j) == shell;
+          for (std::int32_t i = -shell; i <= shell; i += face ? 1 : 2 * shell)
+          {
+            const VoxelPlace place{ { cell[0] + i, cell[1] + j, cell[2] + k } };
+            const std::int32_t candidate = index_.find(place);
+            if (candidate < 0)
+              continue;
+            const Vector3d lower(place[0], place[1], place[2]), upper = lower + Vector3d::Ones();
+            const double squared =
+                Box(lower.cwiseProduct(spacing), upper.cwiseProduct(spacing)).squaredExteriorDistance(local);
+            if (squared < best || (squared == best && (voxel < 0 || candidate < voxel)))
+            {
+              best = squared;
+              voxel = candidate;
+            }
+          }
+        }
+    return voxel;
+  }
+
+  const Model& model_;
+  VoxelIndex index_;
+  double extrapolation_;
+};
 
 struct BoundMesh
 {
@@ -33,25 +90,20 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   std::vector<std::array<float, 3>> coordinates(count);
   parallel_for(monitor, count, grain,
                [&](std::size_t v)
-               {
-                 if (!binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]))
-                   voxel[v] = -1;
-               });
+               { binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]); });
 
   BoundMesh bound;
-  std::vector<bool> keep(surface.triangles.size());
+  std::vector<bool> keep(surface.triangles.size(), true);
   for (std::size_t t = 0; t < keep.size(); ++t)
   {
-    bool near = true;
     for (const std::int32_t v : surface.triangles[t])
     {
       if (voxel[v] >= 0)
         continue;
       bound.unbound = vertex(surface, v);
-      near = false;
+      keep[t] = false;
     }
-    keep[t] = near;
-    bound.too_far += near ? 0 : 1;
+    bound.too_far += keep[t] ? 0 : 1;
   }
   bound.triangles = surface.triangles.size();
   std::vector<std::int32_t> vertex_of;
@@ -74,10 +126,9 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
     if (closest.triangle < 0)
       throw Error(place + ": there is no published skin that it could lie on");
     if (closest.distance > farthest_landmark)
-      throw Error(
-          fmt::format("{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the "
-                      "skin's crop",
-                      place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit)));
+      throw failure(
+          "{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the skin's crop",
+          place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit));
     std::int32_t voxel = -1;
     std::array<float, 3> coordinates{};
     if (!binder.bind(closest.point, voxel, coordinates))
@@ -91,57 +142,6 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
 
 }  // namespace
 
-PointBinder::PointBinder(const Model& model, double extrapolation)
-    : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
-{
-}
-
-bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
-{
-  VoxelPlace cell{};
-  for (int a = 0; a < 3; ++a)
-    cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
-  voxel = index_.find(cell);
-  if (voxel < 0)
-  {
-    // cubic shells of cells around it, until no further shell can hold a nearer voxel
-    const Vector3d spacing = to_vector(model_.spacing);
-    const double edge = spacing.minCoeff();
-    const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
-    double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
-    for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
-    {
-      for (std::int32_t k = -shell; k <= shell; ++k)
-      {
-        for (std::int32_t j = -shell; j <= shell; ++j)
-        {
-          const bool face = std::abs(k) == shell || std::abs(j) == shell;
-          for (std::int32_t i = -shell; i <= shell; i += face ? 1 : 2 * shell)
-          {
-            const VoxelPlace place{ { cell[0] + i, cell[1] + j, cell[2] + k } };
-            const std::int32_t candidate = index_.find(place);
-            if (candidate < 0)
-              continue;
-            const Vector3d lower(place[0], place[1], place[2]), upper = lower + Vector3d::Ones();
-            const double squared =
-                Box(lower.cwiseProduct(spacing), upper.cwiseProduct(spacing)).squaredExteriorDistance(local);
-            if (squared < best || (squared == best && (voxel < 0 || candidate < voxel)))
-            {
-              best = squared;
-              voxel = candidate;
-            }
-          }
-        }
-      }
-    }
-  }
-  if (voxel < 0)
-    return false;
-  for (int a = 0; a < 3; ++a)
-    coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
-  return true;
-}
-
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)
 {
@@ -154,17 +154,16 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
     BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, monitor);
     if (bound.mesh.triangles.empty())
-      throw Error(
-          fmt::format("{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check "
-                      "its crop and the tissue volumes",
-                      scene.file, scene.skin.surface, length_text(extrapolation, scene.unit)));
+      throw failure(
+          "{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check its crop and the "
+          "tissue volumes",
+          scene.file, scene.skin.surface, length_text(extrapolation, scene.unit));
     if (bound.too_far > 0)
-      throw Error(
-          fmt::format("{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can "
-                      "carry, for example at {}: it is farther than {} from the tissue; crop the skin to the "
-                      "tissue, or raise its 'extrapolation'",
-                      scene.file, bound.too_far, bound.triangles, scene.skin.surface,
-                      place_text(bound.unbound, scene.unit), length_text(extrapolation, scene.unit)));
+      throw failure(
+          "{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can carry, for example "
+          "at {}: it is farther than {} from the tissue; crop the skin to the tissue, or raise its 'extrapolation'",
+          scene.file, bound.too_far, bound.triangles, scene.skin.surface, place_text(bound.unbound, scene.unit),
+          length_text(extrapolation, scene.unit));
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }
@@ -187,11 +186,10 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
       BoundMesh bound =
           bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, monitor);
       if (bound.mesh.triangles.empty())
-        throw Error(fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
-                                load.surface, length_text(extrapolation, scene.unit)));
+        throw failure("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
+                      load.surface, length_text(extrapolation, scene.unit));
       if (bound.too_far > 0)
-        monitor.found(
-            fmt::format("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far));
+        monitor.found("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far);
       out.kind = load.kind == SceneLoad::Kind::pressure ? Load::Kind::pressure : Load::Kind::traction;
       if (out.kind == Load::Kind::pressure)
         out.value = load.value;

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "bake/voxels/volumes.hpp"
 #include "bake/voxels/voxelise.hpp"
-
-#include <vector>
 
 namespace frontalis
 {
@@ -59,8 +56,6 @@ private:
   double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
   bool in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const;
 
-  // proportions in a voxel, or in each voxel of a uniform block
-  void clear_shares();
   void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
   void add_voxel(const VoxelPlace& place, double fill);
@@ -73,10 +68,13 @@ private:
   std::vector<Vector3d> offsets_;  ///< from the voxel's corner to the samples, in voxels
   Voxels voxels_;
 
-  std::vector<double> material_share_;
-  std::vector<double> muscle_share_;
-  std::vector<double> volume_share_;
-  std::vector<std::vector<double>> band_share_;
+  /// Proportions in a voxel, or in each voxel of a uniform block.
+  struct Proportions
+  {
+    std::vector<double> material, muscle, volume;
+    std::vector<std::vector<double>> band;
+  };
+  Proportions nothing_, share_;
 
   // What is found once at the middle of the sampled voxel and holds near it.
   struct NearbyBody

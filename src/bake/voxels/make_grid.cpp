@@ -1,11 +1,8 @@
-#include "bake/available_memory.hpp"
 #include "frontalis/error.hpp"
 #include "bake/messages.hpp"
-#include "bake/mesh/spread_points.hpp"
-#include "bake/voxels/volume_probe.hpp"
 #include "bake/voxels/voxelise.hpp"
 
-#include <algorithm>
+#include <fstream>
 
 namespace frontalis
 {
@@ -18,6 +15,7 @@ constexpr double most_voxels = 2.5e8;  // eight node numbers per voxel must have
 constexpr double bytes_per_voxel = 400;
 constexpr double bytes_per_cell = 0.15;
 constexpr int samples = 2000;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Estimated number of voxels with tissue, by the proportion of points in the box that lie in the tissue.
 double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
@@ -31,6 +29,36 @@ double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
     inside += std::any_of(volumes.entries().begin(), volumes.entries().end(), holds) ? 1 : 0;
   }
   return std::max(1.0, static_cast<double>(inside)) / samples * cells;
+}
+
+/// The number that follows a word in a file; for an empty word, the first number. Infinite if there is none.
+double number_in(const std::string& path, const std::string& after)
+{
+  std::ifstream file(path);
+  std::string word;
+  double value = 0;
+  while (!after.empty() && file >> word && word != after)
+  {
+  }
+  return file >> value ? value : infinite;
+}
+
+/// Memory that this process can still take [bytes]: what the system reports as available, or the rest of the control
+/// group's limit if that is less. Infinite where neither is known.
+double available_memory()
+{
+  const double system = 1024 * number_in("/proc/meminfo", "MemAvailable:");
+  double group = infinite;
+  for (const std::string folder : { "/sys/fs/cgroup/", "/sys/fs/cgroup/memory/" })
+  {
+    const double limit =
+        std::min(number_in(folder + "memory.max", ""), number_in(folder + "memory.limit_in_bytes", ""));
+    const double used =
+        std::min(number_in(folder + "memory.current", ""), number_in(folder + "memory.usage_in_bytes", ""));
+    if (limit < infinite && used < infinite)
+      group = std::min(group, std::max(0.0, limit - used));
+  }
+  return std::min(system, group);
 }
 
 /// Names the length unit by which the tissue would have the size of a face or a part of one, if there is one.
@@ -58,7 +86,7 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
 {
   const Vector3d spacing = to_vector(scene.accuracy.voxel);
   if (!(spacing.minCoeff() > 0))
-    throw Error(fmt::format("{}: voxel edge {:g} m; it must be above 0", scene.file, spacing.minCoeff()));
+    throw failure("{}: voxel edge {:g} m; it must be above 0", scene.file, spacing.minCoeff());
   const Box box = volumes.tissue_box();
   const Vector3d extent = box.sizes();
   const Vector3d cells = (extent.cwiseQuotient(spacing).array() - 1e-6).ceil().max(1);
@@ -71,8 +99,8 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
   const std::string spans = scene.file + ": the tissue spans " + edges_text(extent) + ", which is ";
   const std::string advice = unit_advice(extent.maxCoeff(), scene.unit);
   if (count < least_voxels)
-    throw Error(fmt::format("{}{} {} of {}; at least {} are needed{}", spans, number_text(count),
-                            count == 1 ? "voxel" : "voxels", edges_text(spacing), least_voxels, advice));
+    throw failure("{}{} {} of {}; at least {} are needed{}", spans, number_text(count), count == 1 ? "voxel" : "voxels",
+                  edges_text(spacing), least_voxels, advice);
 
   // more cells along an axis than 32 bits can count cannot be baked, however few of them are tissue
   const bool absurd = cells.maxCoeff() > 1e9 || count > 1e15;
@@ -80,10 +108,9 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
   const double bytes = bytes_per_voxel * voxels + bytes_per_cell * count;
   const double available = available_memory();
   if (voxels > most_voxels || bytes > available)
-    throw Error(
-        fmt::format("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels can be had{}",
-                    spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
-                    number_text(std::min(most_voxels, available / bytes_per_voxel)), advice));
+    throw failure("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels can be had{}",
+                  spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
+                  number_text(std::min(most_voxels, available / bytes_per_voxel)), advice);
   Grid grid;
   grid.lower = box.min();
   grid.spacing = spacing;

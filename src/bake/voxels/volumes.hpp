@@ -2,11 +2,6 @@
 
 #include "bake/mesh/surface.hpp"
 
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace frontalis
 {
 
@@ -82,7 +77,8 @@ private:
   Box bounds_of(const Entry& entry) const;
   /// Index of the body that these surfaces form. Bodies and depth fields are made on first use.
   std::size_t body_of(const std::vector<std::string>& names);
-  std::size_t depth_field_below(const std::string& name);
+  /// Index of the depth field of a surface, to which the thresholds are added.
+  std::size_t depth_field_below(const std::string& name, const std::array<double, 2>& thresholds);
   void add_layers(const Scene& scene, double sample_spacing);
 
   const Scene* scene_;
@@ -94,5 +90,24 @@ private:
   std::vector<Entry> entries_;
   std::vector<ThinLayer> thin_layers_;
 };
+
+/// Whether a point lies in a volume, or which is the first of its conditions that fails.
+enum class Membership
+{
+  inside,
+  cropped,   ///< outside its crop
+  beyond,    ///< outside the surfaces that bound it
+  excluded,  ///< inside one of its `outside` or `without` surfaces
+  wrong_depth,
+  hidden  ///< an `outside` surface lies between the point and the surface from which its depth is measured
+};
+
+/// Finds it for a single point, without what speeds the sampling of voxels up: slow, and an independent check of it.
+Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p);
+
+/// Throws Error, with the length and place of the largest hole, for a volume whose surfaces are open in a way that does
+/// harm: more than a tenth of what lies inside is so near to a hole that the winding number is below 3/4. Pinholes,
+/// gaps and holes far from the volume (the neck of a head whose forehead is baked) are harmless.
+void check_openings(const Scene& scene, const Volumes& volumes);
 
 }  // namespace frontalis

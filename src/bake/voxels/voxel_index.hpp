@@ -33,10 +33,8 @@ public:
   std::int32_t find(const std::array<std::int32_t, 3>& place) const
   {
     for (int a = 0; a < 3; ++a)
-    {
       if (place[a] < 0 || place[a] >= size_[a])
         return -1;
-    }
     const std::int32_t first = first_[block(place)];
     return first < 0 ? -1 : number_[std::size_t{ 512 } * first + within(place)];
   }

@@ -1,15 +1,11 @@
 #include "bake/voxels/block_classifier.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace frontalis
 {
 
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
-  clear_shares();
+  share_ = nothing_;
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
@@ -45,7 +41,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       }
       if (inside[v] != Answer::yes)
         continue;
-      volume_share_[v] += share;
+      share_.volume[v] += share;
       for (const Volumes::Band& band : entry.bands)
         sample_depth(band.depth_field, p, state);
     }
@@ -143,7 +139,7 @@ void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::ve
     if (inside[v] != Answer::yes)
       continue;
     if (entry.muscle >= 0)
-      muscle_share_[entry.muscle] += share;
+      share_.muscle[entry.muscle] += share;
     if (entry.material < 0 || entry.volume->priority < highest)
       continue;
     sharers = entry.volume->priority > highest ? 1 : sharers + 1;
@@ -158,9 +154,9 @@ void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::ve
                                    [&depth](const Volumes::Band& b)
                                    { return depth[b.depth_field] >= b.from && depth[b.depth_field] < b.to; });
     if (!entry.bands.empty())
-      band_share_[v][band - entry.bands.begin()] += share;
+      share_.band[v][band - entry.bands.begin()] += share;
     if (entry.material >= 0 && entry.volume->priority == highest)
-      material_share_[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
+      share_.material[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
   }
 }
 
@@ -168,22 +164,8 @@ void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
-  for (std::size_t m = 0; m < material_share_.size(); ++m)
-  {
-    if (material_share_[m] <= 0)
-      continue;
-    voxels_.material.push_back(static_cast<std::int16_t>(m));
-    voxels_.proportion.push_back(static_cast<float>(material_share_[m] / fill));
-  }
-  voxels_.mixture_begin.push_back(static_cast<std::uint32_t>(voxels_.material.size()));
-  for (std::size_t m = 0; m < muscle_share_.size(); ++m)
-  {
-    if (muscle_share_[m] <= 0)
-      continue;
-    voxels_.muscle.push_back(static_cast<std::int16_t>(m));
-    voxels_.weight.push_back(static_cast<float>(std::min(1.0, muscle_share_[m] / fill)));
-  }
-  voxels_.muscle_begin.push_back(static_cast<std::uint32_t>(voxels_.muscle.size()));
+  voxels_.materials.add(share_.material, fill);
+  voxels_.muscles.add(share_.muscle, fill);
 }
 
 }  // namespace frontalis

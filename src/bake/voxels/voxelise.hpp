@@ -1,10 +1,6 @@
 #pragma once
 
-#include "bake/bake_monitor.hpp"
 #include "bake/voxels/volumes.hpp"
-
-#include <cstdint>
-#include <vector>
 
 namespace frontalis
 {
@@ -28,23 +24,30 @@ struct Grid
 /// 2000 points. The text has the numbers, and the length unit that was probably meant.
 Grid make_grid(const Scene& scene, const Volumes& volumes);
 
+/// A list of numbers and their shares per voxel; that of voxel e is begin[e] .. begin[e + 1].
+struct Shares
+{
+  std::vector<std::int32_t> begin{ 0 };
+  std::vector<std::int16_t> number;
+  std::vector<float> share;
+
+  /// Adds the list of the next voxel: those shares of `whole` that are above 0, by their numbers.
+  void add(const std::vector<double>& shares, double whole);
+  void append(const Shares& other);
+};
+
 /// Voxels with tissue, along the axes of the scene, in an order that depends on nothing but the scene.
 struct Voxels
 {
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
-  // entries of voxel e: begin[e] .. begin[e + 1]
-  std::vector<std::uint32_t> mixture_begin{ 0 };
-  std::vector<std::int16_t> material;
-  std::vector<float> proportion;
-  std::vector<std::uint32_t> muscle_begin{ 0 };
-  std::vector<std::int16_t> muscle;
-  std::vector<float> weight;
+  Shares materials, muscles;
   /// Size of each volume of the scene in the tissue, before voxels with too little tissue are left out [m3].
   std::vector<double> volume_size;
   /// Of each volume with layers: the size of each band and, last, of what lies in none [m3].
   std::vector<std::vector<double>> band_size;
 
+  /// Adds the voxels of another part of the same grid.
   void append(const Voxels& other);
 };
 
