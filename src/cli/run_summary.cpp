@@ -102,53 +102,47 @@ void print_result(const Model& model, const RunSummary& summary)
 
 std::string json_of(const Model& model, const RunSummary& summary)
 {
+  const Monitor& monitor = summary.monitor;
   nlohmann::ordered_json json{ { "complete", summary.complete } };
+  const auto add = [&json](const nlohmann::ordered_json& more) { json.update(more); };
   if (!summary.failure.empty())
-    json["failure"] = summary.failure;
-  json["backend"] = summary.backend;
-  json["voxels"] = model.voxels.size();
-  json["nodes"] = model.nodes.size();
-  json["rigid_nodes"] = model.rigid.size();
-  json["sliding_nodes"] = model.sliding.size();
-  json["scene_hash"] = model.scene_hash;
-  json["time_scaling"] = model.time_scaling;
-  json["time_step_s"] = summary.time_step;
-  json["steps"] = summary.profile.steps;
-  json["frames"] = summary.frames;
-  json["simulated_s"] = summary.seconds;
-  json["landmarks"] = nlohmann::ordered_json::object();
+    add({ { "failure", summary.failure } });
+  auto landmarks = nlohmann::ordered_json::object();
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
   {
-    const std::array<double, 3> motion = motion_of(summary, l);
-    json["landmarks"][model.landmarks[l]] = { { "forward_mm", motion[0] },
-                                              { "left_mm", motion[1] },
-                                              { "up_mm", motion[2] } };
+    const auto [forward, left, up] = motion_of(summary, l);
+    landmarks[model.landmarks[l]] = { { "forward_mm", forward }, { "left_mm", left }, { "up_mm", up } };
   }
-  json["kinetic_J"] = summary.monitor.kinetic;
-  json["internal_J"] = summary.monitor.internal;
-  json["hourglass_J"] = summary.monitor.hourglass;
-  json["kinetic_over_internal"] = ratio(summary.monitor.kinetic, summary.monitor.internal);
-  json["peak_kinetic_over_peak_internal"] = ratio(summary.peak_kinetic, summary.peak_internal);
-  json["hourglass_share"] = hourglass_share(summary.monitor);
+  add({ { "backend", summary.backend },
+        { "voxels", model.voxels.size() },
+        { "nodes", model.nodes.size() },
+        { "rigid_nodes", model.rigid.size() },
+        { "sliding_nodes", model.sliding.size() },
+        { "scene_hash", model.scene_hash },
+        { "time_scaling", model.time_scaling },
+        { "time_step_s", summary.time_step },
+        { "steps", summary.profile.steps },
+        { "frames", summary.frames },
+        { "simulated_s", summary.seconds },
+        { "landmarks", landmarks },
+        { "kinetic_J", monitor.kinetic },
+        { "internal_J", monitor.internal },
+        { "hourglass_J", monitor.hourglass },
+        { "kinetic_over_internal", ratio(monitor.kinetic, monitor.internal) },
+        { "peak_kinetic_over_peak_internal", ratio(summary.peak_kinetic, summary.peak_internal) },
+        { "hourglass_share", hourglass_share(monitor) } });
   if (summary.ledger)
     for (const auto& [name, joules] : terms_of(*summary.ledger))
-      json[fmt::format("ledger_{}_J", name)] = joules;
-  if (summary.guard)
-  {
-    json["guard_checks"] = summary.guard->checks;
-    json["guard_rollbacks"] = summary.guard->rollbacks;
-    json["guard_s"] = summary.guard->seconds;
-  }
-  if (summary.equilibrium)
-  {
-    json["equilibrium_reached"] = summary.equilibrium->reached;
-    json["equilibrium_residual"] = summary.equilibrium->residual;
-  }
-  json["worst_jacobian"] = summary.worst_jacobian;
-  json["wall_s"] = summary.wall;
-  json["stepping_s"] = summary.profile.stepping;
-  json["real_time_factor"] = ratio(summary.seconds, summary.wall);
-  json["element_updates_per_s"] = updates_per_second(model, summary.profile);
+      add({ { fmt::format("ledger_{}_J", name), joules } });
+  if (const auto& guard = summary.guard)
+    add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
+  if (const auto& found = summary.equilibrium)
+    add({ { "equilibrium_reached", found->reached }, { "equilibrium_residual", found->residual } });
+  add({ { "worst_jacobian", summary.worst_jacobian },
+        { "wall_s", summary.wall },
+        { "stepping_s", summary.profile.stepping },
+        { "real_time_factor", ratio(summary.seconds, summary.wall) },
+        { "element_updates_per_s", updates_per_second(model, summary.profile) } });
   return json_text(json);
 }
 

@@ -22,4 +22,20 @@ std::vector<float> target_activation(const Model& model, const std::string& expr
 /// on any other form, and Error on unknown bones and motions that are not finite.
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
 
+/// Activations over time, linear between knots and constant after the last one.
+struct ActivationCurve
+{
+  std::vector<double> time;  ///< ascending from 0 [s], on the clock of the activations
+  std::vector<std::vector<float>> activation;
+
+  std::vector<float> at(double seconds) const;
+};
+
+/// From rest to a target over a ramp.
+ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
+
+/// Reads a table with a header `time,MUSCLE,MUSCLE,...` and one row per knot, times ascending. Up to the first row
+/// activations grow linearly from 0. Throws Error with the file's line.
+ActivationCurve read_activation_curve(const std::string& path, const Model& model);
+
 }  // namespace frontalis
