@@ -1,9 +1,8 @@
 #include "cli/command_options.hpp"
-#include "cli/frame_folder.hpp"
 #include "cli/given_controls.hpp"
 #include "cli/model_source.hpp"
 #include "cli/progress.hpp"
-#include "cli/run_summary.hpp"
+#include "cli/run_output.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"

@@ -2,7 +2,6 @@
 
 #include "frontalis/error.hpp"
 #include "model/model_layout.hpp"
-#include "model/vtk_arrays.hpp"
 
 #include <fmt/format.h>
 

@@ -24,6 +24,11 @@ void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
   archive(path + "/coordinates", binding.coordinates);
 }
 
+/// Writes the group VTKHDF, version 1.0, an unstructured grid of VTK_VOXEL cells (whose corner order is ours), with
+/// material, fill, muscle and fibre of each voxel and the constraint of each node, so that ParaView opens the model
+/// file. Points are in local coordinates [m].
+void write_vtk_arrays(Hdf5File& file, const Model& model);
+
 /// The one description of our part of the file, for both directions. Derived arrays (nodes) are not in it.
 template <class Archive, class AnyModel>
 void exchange_model(Archive& archive, AnyModel& model)

@@ -1,4 +1,4 @@
-#include "model/vtk_arrays.hpp"
+#include "model/model_layout.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +21,10 @@ void write_geometry(Hdf5File& file, const Model& model)
 
   std::vector<std::array<float, 3>> points(model.nodes.size());
   for (std::size_t n = 0; n < points.size(); ++n)
-    for (std::size_t a = 0; a < 3; ++a)
-      points[n][a] = static_cast<float>(model.nodes[n][a] * model.spacing[a]);
+  {
+    const auto rest = rest_position(model, n);
+    std::copy(rest.begin(), rest.end(), points[n].begin());
+  }
   file.write("/VTKHDF/Points", points);
 
   std::vector<std::int64_t> connectivity, offsets{ 0 };

@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
 #include "frontalis/ros/conversions.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <fmt/format.h>
 
@@ -87,6 +88,16 @@ void FaceNode::set_activation(const char* topic, const std::vector<std::string>&
                });
 }
 
+void FaceNode::on_muscle_activation(const MuscleActivation& message)
+{
+  set_activation("muscle_activation", message.name, message.activation);
+}
+
+void FaceNode::on_joint_states(const sensor_msgs::JointState& message)
+{
+  set_activation("joint_states", message.name, message.position);
+}
+
 void FaceNode::on_expression(const std_msgs::String& message)
 {
   take_message("expression",
@@ -95,12 +106,9 @@ void FaceNode::on_expression(const std_msgs::String& message)
                  const std::lock_guard<std::mutex> lock(target_mutex_);
                  running.set_expression(message.data);
                  end_demo("expression");
-                 for (auto& [name, value] : target_)
-                   value = 0;
-                 for (const auto& expression : running.model().expressions)
-                   if (expression.name == message.data)
-                     for (const auto& [muscle, value] : expression.activation)
-                       target_[running.model().muscles.at(muscle).name] = value;
+                 const auto activation = expression_activation(running.model(), message.data);
+                 for (std::size_t muscle = 0; muscle < activation.size(); ++muscle)
+                   target_[running.model().muscles[muscle].name] = activation[muscle];
                });
 }
 
