@@ -46,53 +46,40 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-/// A folder that keeps models by the hash of their scenes' content. A scene is baked even where the folder fails.
-class Cache
+// The model of a scene's content in the cache, if it is usable. `told`: a sentence on what was found.
+std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
 {
-public:
-  Cache(const std::string& folder, const Scene& scene) : hash_(content_hash(scene.content))
+  if (path.empty() || !std::filesystem::exists(path))
+    return std::nullopt;
+  try
   {
-    if (!folder.empty())
-      path_ = (std::filesystem::path(folder) / (hash_ + ".vtkhdf")).string();
+    Model model = read_model_of(path, hash);
+    told = "taken from " + path;
+    return model;
   }
-
-  std::optional<Model> find(std::string& told) const
+  catch (const Error& error)
   {
-    if (path_.empty() || !std::filesystem::exists(path_))
-      return std::nullopt;
-    try
-    {
-      Model model = read_model_of(path_, hash_);
-      told = "taken from " + path_;
-      return model;
-    }
-    catch (const Error& error)
-    {
-      told = std::string("not usable: ") + error.what() + "; ";
-      return std::nullopt;
-    }
+    told = std::string("not usable: ") + error.what() + "; ";
+    return std::nullopt;
   }
+}
 
-  void keep(const Model& model, std::string& told) const
+// a model that cannot be kept is no error, for the bake has succeeded
+void keep_in_cache(const Model& model, const std::string& path, std::string& told)
+{
+  if (path.empty())
+    return;
+  try
   {
-    if (path_.empty())
-      return;
-    try
-    {
-      std::filesystem::create_directories(std::filesystem::path(path_).parent_path());
-      write_model(model, path_);
-      told += "kept as " + path_;
-    }
-    catch (const std::exception& error)
-    {
-      told += std::string("not kept: ") + error.what();
-    }
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+    write_model(model, path);
+    told += "kept as " + path;
   }
-
-private:
-  std::string hash_;
-  std::string path_;
-};
+  catch (const std::exception& error)
+  {
+    told += std::string("not kept: ") + error.what();
+  }
+}
 
 BakeSummary summary_of(const BakeReport& report)
 {
@@ -141,17 +128,19 @@ Model bake_interruptibly(const Scene& scene, BakeReport* report,
 Model bake_scene(const ModelSource& source, BakeSummary* summary)
 {
   const Scene scene = read_scene(source.path, source.scene);
-  const Cache cache(source.cache, scene);
+  const std::string hash = content_hash(scene.content);
+  const std::string cached =
+      source.cache.empty() ? "" : (std::filesystem::path(source.cache) / (hash + ".vtkhdf")).string();
   std::string of_cache;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
-  std::optional<Model> model = cache.find(of_cache);
+  std::optional<Model> model = cached_model(cached, hash, of_cache);
   if (!model)
   {
     Progress progress(source.progress);
     model = bake_interruptibly(scene, &report,
                                [&](const std::string& stage, double done) { progress.update(stage, done); });
-    cache.keep(*model, of_cache);
+    keep_in_cache(*model, cached, of_cache);
   }
   if (summary != nullptr)
   {

@@ -79,8 +79,6 @@ Hdf5File Hdf5File::open(const std::string& path)
   return Hdf5File(file);
 }
 
-Hdf5File::Hdf5File(Hdf5File&& other) noexcept : file_(std::exchange(other.file_, H5I_INVALID_HID)) {}
-
 Hdf5File::~Hdf5File()
 {
   if (file_ >= 0)

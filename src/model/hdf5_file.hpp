@@ -52,8 +52,8 @@ public:
   static Hdf5File create(const std::string& path);
   /// Throws Error: missing, not HDF5, truncated or damaged.
   static Hdf5File open(const std::string& path);
-  Hdf5File(Hdf5File&& other) noexcept;
-  Hdf5File& operator=(Hdf5File&&) = delete;
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
   ~Hdf5File();
 
   /// Writes everything out; throws Error if that fails (a full disk, say).

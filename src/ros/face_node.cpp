@@ -39,8 +39,8 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   subscribe("joint_states", &FaceNode::on_joint_states);
   subscribe("expression", &FaceNode::on_expression);
   subscribe("bone_pose", &FaceNode::on_bone_pose);
-  const auto serve = [this](const char* name, auto handler)
-  { services_.push_back(private_handle_.advertiseService(name, handler, this)); };
+  const auto serve = [this](const char* service, auto handler)
+  { services_.push_back(private_handle_.advertiseService(service, handler, this)); };
   serve("reset", &FaceNode::on_reset);
   serve("pause", &FaceNode::on_pause);
   serve("step", &FaceNode::on_step);
