@@ -3,7 +3,6 @@
 #include "cli/command.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
 #include <boost/algorithm/string.hpp>
@@ -108,18 +107,6 @@ std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::ve
                     bones);
   }
   return bones;
-}
-
-std::vector<float> ActivationCurve::at(double seconds) const
-{
-  const auto after = std::upper_bound(time.begin(), time.end(), seconds) - time.begin();
-  if (after == static_cast<std::ptrdiff_t>(time.size()))
-    return activation.back();
-  std::vector<float> value = activation[after - 1];
-  const auto part = static_cast<float>((seconds - time[after - 1]) / (time[after] - time[after - 1]));
-  for (std::size_t m = 0; m < value.size(); ++m)
-    value[m] += part * (activation[after][m] - value[m]);
-  return value;
 }
 
 ActivationCurve ramp_to(const std::vector<float>& target, double ramp)

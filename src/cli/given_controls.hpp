@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <map>
 #include <string>
@@ -21,15 +21,6 @@ std::vector<float> target_activation(const Model& model, const std::string& expr
 /// [degrees], both in the face frame. Returns one motion per bone of the model, in the local frame. Throws WrongUsage
 /// on any other form, and Error on unknown bones and motions that are not finite.
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
-
-/// Activations over time, linear between knots and constant after the last one.
-struct ActivationCurve
-{
-  std::vector<double> time;  ///< ascending from 0 [s], on the clock of the activations
-  std::vector<std::vector<float>> activation;
-
-  std::vector<float> at(double seconds) const;
-};
 
 /// From rest to a target over a ramp.
 ActivationCurve ramp_to(const std::vector<float>& target, double ramp);

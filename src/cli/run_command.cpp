@@ -21,7 +21,7 @@ namespace frontalis
 namespace
 {
 
-// simulated steps between two looks for Ctrl-C: about a second of a large model
+// time steps between two checks whether Ctrl-C was pressed: about a second of wall time with a large model
 constexpr double steps_per_slice = 4096;
 
 struct RunOptions
@@ -42,18 +42,19 @@ struct RunOptions
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
 };
 
+/// A solver with what moves it, and what has been found of its motion.
 struct Run
 {
   const RunOptions& options;
   const Model& model;
   ActivationCurve curve;
-  std::vector<RigidTransform> bones;  ///< where they move
-  double ramp;                        ///< seconds over which they move there
+  std::vector<RigidTransform> bones;  ///< motion of each bone from its rest pose, at the end of the ramp
+  double ramp;                        ///< [s]
   Solver& solver;
   std::optional<FrameFolder> folder;
   std::optional<Guard> guard{};
   RunSummary summary{};
-  double time = 0;  ///< that is reached [s], on the clock of the activations
+  double time = 0;  ///< simulated so far [s], on the clock of the activations
 
   void play();
   void settle();

@@ -24,23 +24,6 @@ void FaceNode::refuse(const char* topic, const std::string& reason)
   ROS_WARN_STREAM_THROTTLE(warning_period, name_ << ": message on ~" << topic << " refused: " << reason);
 }
 
-template <typename Act>
-void FaceNode::take_message(const char* topic, const Act& act)
-{
-  std::string reason;
-  const auto running = runner(&reason);
-  if (!running)
-    return refuse(topic, reason);
-  try
-  {
-    act(*running);
-  }
-  catch (const Error& error)
-  {
-    refuse(topic, error.what());
-  }
-}
-
 template <typename Response, typename Act>
 bool FaceNode::answer(Response& response, const Act& act)
 {
@@ -58,6 +41,15 @@ bool FaceNode::answer(Response& response, const Act& act)
     response.message = error.what();
   }
   return true;
+}
+
+template <typename Act>
+void FaceNode::take_message(const char* topic, const Act& act)
+{
+  std_srvs::Trigger::Response outcome;
+  answer(outcome, act);
+  if (!outcome.success)
+    refuse(topic, outcome.message);
 }
 
 void FaceNode::end_demo(const char* topic)

@@ -81,4 +81,16 @@ void set_bone_motion(const Model& model, const std::string& name, const RigidTra
   bones[bone] = composed(inverse(model.to_face), composed(motion, model.to_face));
 }
 
+std::vector<float> ActivationCurve::at(double seconds) const
+{
+  const auto after = std::upper_bound(time.begin(), time.end(), seconds) - time.begin();
+  if (after == static_cast<std::ptrdiff_t>(time.size()))
+    return activation.back();
+  std::vector<float> value = activation[after - 1];
+  const auto part = static_cast<float>((seconds - time[after - 1]) / (time[after] - time[after - 1]));
+  for (std::size_t m = 0; m < value.size(); ++m)
+    value[m] += part * (activation[after][m] - value[m]);
+  return value;
+}
+
 }  // namespace frontalis
