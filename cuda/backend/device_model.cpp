@@ -34,12 +34,6 @@ struct HashEntry
   }
 };
 
-std::array<double, 3> rest_position(const Model& model, std::int32_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 // Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
 void expect_room(const Model& model, const VoxelCut& cut)
 {

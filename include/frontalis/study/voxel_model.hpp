@@ -61,7 +61,6 @@ void add_muscles(Model& model, const std::vector<Muscle>& muscles,
 void add_muscle(Model& model, const Muscle& muscle, const std::function<std::array<float, 3>(std::size_t)>& direction);
 std::array<float, 3> along_x(std::size_t voxel);  ///< a direction for add_muscle()
 
-Point rest_position(const Model& model, std::size_t node);
 /// Displacements [m] that deform the whole model by one gradient (row by row) and move it by `shift` [m].
 Vectors affine_displacements(const Model& model, const std::array<double, 9>& gradient, const Point& shift = {});
 

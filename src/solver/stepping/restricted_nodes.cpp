@@ -29,12 +29,6 @@ void sort_by_node(std::vector<Entry>& entries)
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.node < b.node; });
 }
 
-std::array<double, 3> rest_position(const Model& model, std::int32_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 }  // namespace
 
 template <class Real>

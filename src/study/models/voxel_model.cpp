@@ -121,12 +121,6 @@ void add_muscle(Model& model, const Muscle& muscle, const std::function<std::arr
 
 std::array<float, 3> along_x(std::size_t) { return { { 1, 0, 0 } }; }
 
-Point rest_position(const Model& model, std::size_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 Vectors affine_displacements(const Model& model, const std::array<double, 9>& gradient, const Point& shift)
 {
   Vectors u(model.nodes.size(), shift);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <map>
 #include <string>
@@ -21,5 +21,12 @@ std::vector<float> target_activation(const Model& model, const std::string& expr
 /// [degrees], both in the face frame. Returns one motion per bone of the model, in the local frame. Throws WrongUsage
 /// on any other form, and Error on unknown bones and motions that are not finite.
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
+
+/// From rest to a target over a ramp.
+ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
+
+/// Reads a table with a header `time,MUSCLE,MUSCLE,...` and one row per knot, times ascending. Up to the first row
+/// activations grow linearly from 0. Throws Error with the file's line.
+ActivationCurve read_activation_curve(const std::string& path, const Model& model);
 
 }  // namespace frontalis

@@ -1,4 +1,4 @@
-#include "cli/run_summary.hpp"
+#include "cli/run_output.hpp"
 
 #include "frontalis/study/table.hpp"
 
@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <regex>
 #include <utility>
 #include <vector>
 
@@ -44,6 +47,35 @@ std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
            { "hourglass", l.hourglass }, { "viscous", l.viscous },       { "damping", l.damping },
            { "friction", l.friction },   { "muscle", l.muscle },         { "load", l.load },
            { "gravity", l.gravity },     { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+}
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
+
+template <class T>
+void append(std::string& bytes, const T& numbers)
+{
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof numbers[0]);
+}
+
+std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int32_t, 3>>& triangles, double time)
+{
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment face frame, metres, time {:.6f} s\nelement vertex {}\n"
+      "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      time, skin.vertices.size(), triangles.size());
+  bytes.reserve(bytes.size() + 24 * skin.vertices.size() + 13 * triangles.size());
+  for (std::size_t v = 0; v < skin.vertices.size(); ++v)
+  {
+    append(bytes, skin.vertices[v]);
+    append(bytes, skin.normals[v]);
+  }
+  for (const std::array<std::int32_t, 3>& triangle : triangles)
+  {
+    bytes += '\3';
+    append(bytes, triangle);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -102,54 +134,83 @@ void print_result(const Model& model, const RunSummary& summary)
 
 std::string json_of(const Model& model, const RunSummary& summary)
 {
+  const Monitor& monitor = summary.monitor;
   nlohmann::ordered_json json{ { "complete", summary.complete } };
+  const auto add = [&json](const nlohmann::ordered_json& more) { json.update(more); };
   if (!summary.failure.empty())
-    json["failure"] = summary.failure;
-  json["backend"] = summary.backend;
-  json["voxels"] = model.voxels.size();
-  json["nodes"] = model.nodes.size();
-  json["rigid_nodes"] = model.rigid.size();
-  json["sliding_nodes"] = model.sliding.size();
-  json["scene_hash"] = model.scene_hash;
-  json["time_scaling"] = model.time_scaling;
-  json["time_step_s"] = summary.time_step;
-  json["steps"] = summary.profile.steps;
-  json["frames"] = summary.frames;
-  json["simulated_s"] = summary.seconds;
-  json["landmarks"] = nlohmann::ordered_json::object();
+    add({ { "failure", summary.failure } });
+  auto landmarks = nlohmann::ordered_json::object();
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
   {
-    const std::array<double, 3> motion = motion_of(summary, l);
-    json["landmarks"][model.landmarks[l]] = { { "forward_mm", motion[0] },
-                                              { "left_mm", motion[1] },
-                                              { "up_mm", motion[2] } };
+    const auto [forward, left, up] = motion_of(summary, l);
+    landmarks[model.landmarks[l]] = { { "forward_mm", forward }, { "left_mm", left }, { "up_mm", up } };
   }
-  json["kinetic_J"] = summary.monitor.kinetic;
-  json["internal_J"] = summary.monitor.internal;
-  json["hourglass_J"] = summary.monitor.hourglass;
-  json["kinetic_over_internal"] = ratio(summary.monitor.kinetic, summary.monitor.internal);
-  json["peak_kinetic_over_peak_internal"] = ratio(summary.peak_kinetic, summary.peak_internal);
-  json["hourglass_share"] = hourglass_share(summary.monitor);
+  add({ { "backend", summary.backend },
+        { "voxels", model.voxels.size() },
+        { "nodes", model.nodes.size() },
+        { "rigid_nodes", model.rigid.size() },
+        { "sliding_nodes", model.sliding.size() },
+        { "scene_hash", model.scene_hash },
+        { "time_scaling", model.time_scaling },
+        { "time_step_s", summary.time_step },
+        { "steps", summary.profile.steps },
+        { "frames", summary.frames },
+        { "simulated_s", summary.seconds },
+        { "landmarks", landmarks },
+        { "kinetic_J", monitor.kinetic },
+        { "internal_J", monitor.internal },
+        { "hourglass_J", monitor.hourglass },
+        { "kinetic_over_internal", ratio(monitor.kinetic, monitor.internal) },
+        { "peak_kinetic_over_peak_internal", ratio(summary.peak_kinetic, summary.peak_internal) },
+        { "hourglass_share", hourglass_share(monitor) } });
   if (summary.ledger)
     for (const auto& [name, joules] : terms_of(*summary.ledger))
-      json[fmt::format("ledger_{}_J", name)] = joules;
-  if (summary.guard)
-  {
-    json["guard_checks"] = summary.guard->checks;
-    json["guard_rollbacks"] = summary.guard->rollbacks;
-    json["guard_s"] = summary.guard->seconds;
-  }
-  if (summary.equilibrium)
-  {
-    json["equilibrium_reached"] = summary.equilibrium->reached;
-    json["equilibrium_residual"] = summary.equilibrium->residual;
-  }
-  json["worst_jacobian"] = summary.worst_jacobian;
-  json["wall_s"] = summary.wall;
-  json["stepping_s"] = summary.profile.stepping;
-  json["real_time_factor"] = ratio(summary.seconds, summary.wall);
-  json["element_updates_per_s"] = updates_per_second(model, summary.profile);
+      add({ { fmt::format("ledger_{}_J", name), joules } });
+  if (const auto& guard = summary.guard)
+    add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
+  if (const auto& found = summary.equilibrium)
+    add({ { "equilibrium_reached", found->reached }, { "equilibrium_residual", found->residual } });
+  add({ { "worst_jacobian", summary.worst_jacobian },
+        { "wall_s", summary.wall },
+        { "stepping_s", summary.profile.stepping },
+        { "real_time_factor", ratio(summary.seconds, summary.wall) },
+        { "element_updates_per_s", updates_per_second(model, summary.profile) } });
   return json_text(json);
+}
+
+FrameFolder::FrameFolder(std::string path, const Model& model)
+    : path_(std::move(path)), model_(model), table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
+{
+  make_folder(path_);
+  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|run\.json)(\.partial)?)");
+  std::vector<std::filesystem::path> earlier;
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
+      earlier.push_back(entry.path());
+  for (const std::filesystem::path& file : earlier)
+    std::filesystem::remove(file);
+}
+
+void FrameFolder::add(double time, const SkinState& skin)
+{
+  if (frames_ == 0)
+    first_ = skin;
+  write_text(fmt::format("{}/skin_{:04}.ply", path_, frames_), ply_of(skin, model_.skin.triangles, time));
+  for (std::size_t l = 0; l < skin.landmarks.size(); ++l)
+  {
+    const std::array<float, 3>& now = skin.landmarks[l];
+    const std::array<float, 3>& then = first_.landmarks[l];
+    table_ += fmt::format("{},{:.6f},{},{:.9g},{:.9g},{:.9g},{:.6f},{:.6f},{:.6f}\n", frames_, time,
+                          model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
+                          1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
+  }
+  ++frames_;
+}
+
+void FrameFolder::finish(const std::string& summary)
+{
+  write_text(path_ + "/landmarks.csv", table_);
+  write_text(path_ + "/run.json", summary);
 }
 
 }  // namespace frontalis

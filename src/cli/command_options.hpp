@@ -2,12 +2,38 @@
 
 #include "cli/command.hpp"
 
+#include "frontalis/solver/solver.hpp"
+
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
+
+// What the options of several subcommands share.
+
+/// Declares an option whose value must be above 0.
+template <class Value>
+CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& value, const std::string& text)
+{
+  return command.add_option(name, value, text)->check(CLI::PositiveNumber);
+}
+
+/// Declares --backend; its default is what `backend` holds. `automatic`: "auto" is allowed too.
+void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
+
+/// Declares --backend and --threads.
+void add_solver_options(CLI::App& command, SolverSettings& settings);
+
+/// Throws WrongUsage if --seconds is not a number greater than 0.
+void check_seconds(double seconds);
+
+/// The path of --plot FILE.png without its extension, for write_plot(); empty without the option. Throws WrongUsage on
+/// another extension.
+std::string plot_path(const std::string& option);
 
 /// The cases that `only` names, in the order of `cases`; if it is empty, the short cases, or all cases with `all`.
 /// Throws WrongUsage on a name that no case has.
