@@ -116,9 +116,9 @@ void CudaSolver::effect_switched(Effect effect)
   plans_ = 0;
 }
 
-void CudaSolver::list_allocations(AllocationList& list) const
+void CudaSolver::list_arrays(ArrayList& list) const
 {
-  device_.list_allocations(effect_of_fibres(*model_), list);
+  device_.list_arrays(effect_of_fibres(*model_), list);
   for (const auto& u : u_)
     list.add(Effect::elasticity, "motion", u.bytes());
   for (const auto& v : v_)
@@ -128,7 +128,7 @@ void CudaSolver::list_allocations(AllocationList& list) const
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
   if (account_)
-    account_->list_allocations(effect_of_fibres(*model_), list);
+    account_->list_arrays(effect_of_fibres(*model_), list);
   if (monitor_)
     list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
   if (mode_)

@@ -32,7 +32,7 @@ public:
   ~CudaSolver() override;
 
   BackendTraits traits() const override;
-  void list_allocations(AllocationList& list) const override;
+  void list_arrays(ArrayList& list) const override;
   double run(const StepPlan& plan) override;
   void effect_switched(Effect effect) override;
   void get(NodalField field, NodalVectors& out) const override;

@@ -123,7 +123,7 @@ void DeviceAccount::after_step(const StepArguments& g, double damping, int step,
   require(launch_node_account(g, account, damping, step, stream), "work on nodes");
 }
 
-void DeviceAccount::list_allocations(Effect of_fibres, AllocationList& list) const
+void DeviceAccount::list_arrays(Effect of_fibres, ArrayList& list) const
 {
   for (const auto* const values : { &book_.damping, &book_.constraint, &book_.beside, &book_.friction, &book_.load })
     list.add(Effect::elasticity, "account of energies", values->bytes());

@@ -38,7 +38,7 @@ public:
   void restore(const DeviceBook& book, cudaStream_t stream) { book_.assign(book, stream); }
   /// Returns all work except that of viscous stresses. The stream must be idle.
   Work work() const;
-  void list_allocations(Effect of_fibres, AllocationList& list) const;
+  void list_arrays(Effect of_fibres, ArrayList& list) const;
 
 private:
   FibreVoxels fibres() const;

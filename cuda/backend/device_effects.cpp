@@ -122,7 +122,7 @@ void DeviceModel::choose_effects(EffectSet running)
   launch_.effects = effects_;
 }
 
-void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
+void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list) const
 {
   const auto add = [&list](Effect effect, const char* what, const auto&... arrays)
   { (list.add(effect, what, arrays.bytes()), ...); };
@@ -142,8 +142,8 @@ void DeviceModel::list_allocations(Effect of_fibres, AllocationList& list) const
   for (const auto& triangles : triangles_)
     add(Effect::sliding, "surfaces", triangles);
   add(Effect::elasticity, "what nodes do", tasks_, patch_tasks_);
-  loads_.list_allocations(list);
-  viscosity_.list_allocations(list);
+  loads_.list_arrays(list);
+  viscosity_.list_arrays(list);
 }
 
 }  // namespace cuda

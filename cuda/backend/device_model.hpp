@@ -55,7 +55,7 @@ public:
   StepArguments arguments() const;
   /// Switches to these effects. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
-  void list_allocations(Effect of_fibres, AllocationList& list) const;
+  void list_arrays(Effect of_fibres, ArrayList& list) const;
   /// Returns all contacts to their state at rest.
   void reset_contacts();
   /// The state of the contacts of sliding nodes.

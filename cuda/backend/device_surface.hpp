@@ -55,7 +55,7 @@ public:
   /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running);
   bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
-  void list_allocations(AllocationList& list) const;
+  void list_arrays(ArrayList& list) const;
   void update(const float4* u, cudaStream_t stream);
 
 private:

@@ -72,7 +72,7 @@ void DeviceViscosity::describe(StepArguments& g) const
 
 void DeviceViscosity::run(EffectSet running) { runs_ = running.has(Effect::viscosity); }
 
-void DeviceViscosity::list_allocations(AllocationList& list) const
+void DeviceViscosity::list_arrays(ArrayList& list) const
 {
   list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + makes_.bytes() + words_.bytes());
   list.add(Effect::viscosity, "relaxed stresses", relaxed_.bytes());

@@ -26,7 +26,7 @@ public:
   /// While viscosity is switched off, nothing is read or updated.
   void run(EffectSet running);
   bool idle() const { return empty() || !runs_; }
-  void list_allocations(AllocationList& list) const;
+  void list_arrays(ArrayList& list) const;
   /// Fills in what a step needs.
   void describe(StepArguments& g) const;
   /// To be called once the palette entries of voxels are known.

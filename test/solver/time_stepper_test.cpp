@@ -16,7 +16,7 @@ namespace
 struct Script
 {
   std::vector<StepPlan> plans;
-  std::vector<Effect> switched;
+  std::vector<EffectSet> running;
   std::vector<double> damping;  // of each plan
   double bound = 0;             // frequency squared [1/s2]
   double velocity = 0;          // of all nodes, along z [m/s]
@@ -43,20 +43,20 @@ public:
     traits.description = "scripted";
     return traits;
   }
-  void list_allocations(AllocationList& list) const override { list.add(Effect::elasticity, "script", 3); }
+  void list_arrays(ArrayList& list) override { list.add(Effect::elasticity, "script", 3); }
   double run(const StepPlan& plan) override
   {
     script_.plans.push_back(plan);
     script_.damping.push_back(conditions_.damping);
     return script_.bound;
   }
-  void effect_switched(Effect effect) override { script_.switched.push_back(effect); }
+  void effects_switched() override { script_.running.push_back(conditions_.running); }
   void get(NodalField field, NodalVectors& out) const override
   {
     out.assign(model_->nodes.size(), { { 0, 0, field == NodalField::velocities ? script_.velocity : 0 } });
   }
   void set(NodalField, const NodalVectors& in) override { script_.velocity = in.empty() ? 0 : in[0][2]; }
-  void save(std::unique_ptr<BackendState>& to) const override
+  void save(std::unique_ptr<BackendState>& to) override
   {
     auto state = std::make_unique<ScriptState>();
     state->plans = script_.plans.size();
@@ -175,7 +175,10 @@ TEST(TimeStepper, tells_the_backend_what_runs)
   s.solver.switch_effect(Effect::contraction, false);
   s.solver.switch_effect(Effect::contraction, false);
   s.solver.switch_effect(Effect::viscosity, false);
-  EXPECT_EQ(s.script.switched, (std::vector<Effect>{ Effect::contraction, Effect::viscosity }));
+  const EffectSet without = effects_of(model_of()).with(Effect::contraction, false);
+  EXPECT_EQ(s.script.running.size(), 2u);
+  EXPECT_TRUE(s.script.running.front() == without);
+  EXPECT_TRUE(s.script.running.back() == without.with(Effect::viscosity, false));
   s.solver.advance(0.01, contracted);
   for (const StepPlan& plan : s.script.plans)
   {

@@ -4,7 +4,7 @@
 #include "frontalis/physics/pose.hpp"
 #include "solver/contact/archive_contacts.hpp"
 #include "solver/stepping/constraint_step.hpp"
-#include "frontalis/solver/allocation.hpp"
+#include "solver/stepping/array_list.hpp"
 #include "solver/contact/surface_contact.hpp"
 
 #include <algorithm>
@@ -46,8 +46,13 @@ public:
   void add(Node node) { nodes_.push_back(std::move(node)); }
   void reset();
   /// Switches friction on or off.
-  void rub(bool on) { rubs_ = on; }
-  void list_allocations(AllocationList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
+  void rub(bool on)
+  {
+    rubs_ = on;
+    for (auto& node : nodes_)
+      node.pressing = on ? node.pressing : 0;
+  }
+  void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   bool empty() const { return nodes_.empty(); }
   void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }
   /// Nodes whose index lies in [first, last). They are stored in the order of their nodes.

@@ -2,7 +2,6 @@
 
 #include "frontalis/physics/viscosity.hpp"
 #include "frontalis/solver/backend.hpp"
-#include "solver/skin/bound_points.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/stepping/time_stepper.hpp"
@@ -26,13 +25,11 @@ SlideKernel<double> slide(const CpuKernelChoice&, double) { return slide_plainly
 
 template <class Real>
 CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
-    : StepBackend(input),
+    : Base(input, 2 * Tile::width, slide(choose_cpu_kernel(), Real(0))),
       rows_(*model_, discretisation_),
       mobility_(mobility(discretisation_)),
       choice_(choose_cpu_kernel()),
       kernel_(pick(choice_, Real(0))),
-      restricted_(*model_, slide(choice_, Real(0))),
-      loads_(*model_, discretisation_),
       team_(input.settings.threads),
       remark_(remark.empty() ? "" : "; " + remark)
 {
@@ -48,12 +45,13 @@ CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
   buffer_stride_ = largest + 2 * Tile::width;
   buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
   share_planes(rows_.plane_tiles);
-  if (input.settings.ledger)
-  {
-    account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
-    fibre_memory_.resize(rows_.fibres.size());
-  }
-  rest();
+  fibre_memory_.resize(account_ ? rows_.fibres.size() : 0);
+  relaxed_.values.resize(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 *
+                         Tile::width);
+  next_ = u_;
+  if (std::is_same<Real, float>::value && model_->precision == Precision::compensated)
+    for (auto& component : rounding_)
+      component.assign(model_->nodes.size(), 0);
 }
 
 template <class Real>
@@ -65,42 +63,30 @@ void CpuSolver<Real>::choose_passive()
 }
 
 template <class Real>
-void CpuSolver<Real>::effect_switched(Effect effect)
+void CpuSolver<Real>::effects_switched()
 {
-  if (is_of_fibres(effect))
-  {
-    choose_passive();
-    rows_.renew_bounds(discretisation_);
-  }
-  if (effect == Effect::viscosity)
-    std::fill(relaxed_.begin(), relaxed_.end(), 0.0f);
-  if (effect == Effect::sliding || effect == Effect::friction)
-    restricted_.run(conditions_.running);
-  loads_.run(conditions_.running);
+  choose_passive();
+  rows_.renew_bounds(discretisation_);
+  Base::effects_switched();
 }
 
 template <class Real>
-void CpuSolver<Real>::list_allocations(AllocationList& list) const
+void CpuSolver<Real>::list_arrays(ArrayList& list)
 {
-  rows_.list_allocations(effect_of_fibres(*model_), list);
-  list.add(Effect::elasticity, "inverse masses", inverse_mass_);
-  list.add(Effect::elasticity, "inverse masses", mobility_);
+  Base::list_arrays(list);
+  rows_.list_arrays(effect_of_fibres(*model_), list);
+  list.add("inverse masses", inverse_mass_);
+  list.add("inverse masses", mobility_);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    for (const auto* field : { &u_, &next_, &v_ })
-      list.add(Effect::elasticity, "motion", (*field)[axis]);
-    list.add(Effect::elasticity, "rounding errors", rounding_[axis]);
-    list.add(Effect::elasticity, "what the monitor looks at", wide_[axis]);
-    list.add(Effect::elasticity, "displaced nodes", moved_[axis]);
+    list.add("motion", next_[axis]);
+    list.add_state("rounding errors", rounding_[axis]);
+    list.add("what the monitor looks at", wide_[axis]);
+    list.add("displaced nodes", moved_[axis]);
   }
   for (const auto& buffer : buffers_)
-    list.add(Effect::elasticity, "forces and stiffness of two planes", buffer);
-  list.add(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
-  list.add(Effect::viscosity, "relaxed stresses", relaxed_);
-  restricted_.list_allocations(list);
-  loads_.list_allocations(list);
-  if (account_)
-    account_->list_allocations(list);
+    list.add("forces and stiffness of two planes", buffer);
+  list.add_state(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
 }
 
 // Divides the planes into slabs with about equal numbers of tiles.
@@ -123,50 +109,10 @@ void CpuSolver<Real>::share_planes(const std::vector<std::int32_t>& plane_tiles)
 template <class Real>
 void CpuSolver<Real>::rest()
 {
-  for (auto* field : { &u_, &next_, &v_ })
+  Base::rest();
+  for (auto* field : { &next_, &rounding_ })
     for (auto& component : *field)
-      component.assign(model_->nodes.size() + 2 * Tile::width, 0);
-  if (std::is_same<Real, float>::value && model_->precision == Precision::compensated)
-    for (auto& component : rounding_)
-      component.assign(model_->nodes.size(), 0);
-  relaxed_.assign(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 * Tile::width, 0);
-  restricted_.reset();
-}
-
-template <class Real>
-void CpuSolver<Real>::save(std::unique_ptr<BackendState>& to) const
-{
-  if (!to)
-    to = std::make_unique<State>();
-  State& state = static_cast<State&>(*to);
-  state.arrays = std::tie(u_, v_, rounding_, relaxed_, fibre_memory_);
-  state.contacts = restricted_.contacts();
-  if (account_)
-    state.book = account_->book();
-}
-
-template <class Real>
-void CpuSolver<Real>::restore(const BackendState& from)
-{
-  const State& state = static_cast<const State&>(from);
-  std::tie(u_, v_, rounding_, relaxed_, fibre_memory_) = state.arrays;
-  restricted_.restore(state.contacts);
-  if (account_)
-    account_->restore(state.book);
-}
-
-template <class Real>
-void CpuSolver<Real>::get(NodalField field, NodalVectors& out) const
-{
-  interleave(field == NodalField::displacements ? u_ : v_, model_->nodes.size(), out);
-}
-
-template <class Real>
-void CpuSolver<Real>::set(NodalField field, const NodalVectors& in)
-{
-  if (field == NodalField::displacements)
-    rest();
-  separate(in, field == NodalField::displacements ? u_ : v_);
+      std::fill(component.begin(), component.end(), Real(0));
 }
 
 template <class Real>
@@ -179,12 +125,6 @@ BackendTraits CpuSolver<Real>::traits() const
   traits.description = fmt::format("cpu ({}, {}, {} thread{}{})", numbers, choice_.name, team_.size(),
                                    team_.size() == 1 ? "" : "s", remark_);
   return traits;
-}
-
-template <class Real>
-void CpuSolver<Real>::skin(SkinState& out)
-{
-  skin_state(*model_, constant(u_).data(), out);
 }
 
 template class CpuSolver<float>;

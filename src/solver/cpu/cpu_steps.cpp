@@ -42,7 +42,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.fibres = runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? rows_.fibres.data() : nullptr;
   g.laws = rows_.laws.data();
   g.viscous = rows_.viscous.data();
-  g.relaxed = relaxed_.data();
+  g.relaxed = relaxed_.values.data();
   g.viscous_terms = runs(Effect::viscosity) ? discretisation_.viscous_terms : 0;
   g.activation = activation;
   g.with_length = with_length_.data();
@@ -74,12 +74,12 @@ void CpuSolver<Real>::internal_forces(const NodalVectors* displacements, NodalVe
   {
     for (auto& component : moved_)
       component.resize(u_[0].size());
-    separate(*displacements, moved_);
+    this->separate(*displacements, moved_);
     for (int axis = 0; axis < 3; ++axis)
       g.u[axis] = moved_[axis].data();
   }
   run_on_all(g, KernelTask::forces);
-  interleave(next_, model_->nodes.size(), out);
+  this->interleave(next_, out);
 }
 
 template <class Real>
@@ -92,7 +92,7 @@ Work CpuSolver<Real>::work(bool open)
   if (open)
     g.muscle_work = nullptr;
   run_on_all(g, KernelTask::forces);
-  if (!open && relaxes())
+  if (!open && relaxed_.relax())
     run_on_all(arguments(0, nullptr), KernelTask::relax);
   return account_->work();
 }
@@ -181,7 +181,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             g.u[axis] = g.next[axis];
             g.next[axis] = old;
           }
-          if (relaxes() && plan.relaxation[step] > 0)
+          if (relaxed_.relax() && plan.relaxation[step] > 0)
           {
             g.viscous_elapsed = static_cast<Real>(plan.relaxation[step]);
             kernel_(g, slab_[t], slab_[t + 1], buffer, KernelTask::relax);

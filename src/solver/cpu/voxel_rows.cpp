@@ -192,14 +192,14 @@ void VoxelRows::renew_bounds(const Discretisation& discretisation)
       }
 }
 
-void VoxelRows::list_allocations(Effect of_fibres, AllocationList& list) const
+void VoxelRows::list_arrays(Effect of_fibres, ArrayList& list) const
 {
-  list.add(Effect::elasticity, "tiles", tiles);
-  list.add(Effect::elasticity, "planes", plane_tiles);
-  list.add(Effect::elasticity, "planes", plane_nodes);
-  list.add(Effect::elasticity, "stiffness", stiffness);
-  list.add(Effect::elasticity, "hourglass stiffness", stabilisation);
-  list.add(Effect::elasticity, "laws", laws);
+  list.add("tiles", tiles);
+  list.add("planes", plane_tiles);
+  list.add("planes", plane_nodes);
+  list.add("stiffness", stiffness);
+  list.add("hourglass stiffness", stabilisation);
+  list.add("laws", laws);
   list.add(of_fibres, "fibres", fibres);
   list.add(Effect::viscosity, "Prony terms", viscous);
 }

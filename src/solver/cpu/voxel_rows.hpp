@@ -80,7 +80,7 @@ struct VoxelRows
   /// Computes the stiffness bounds again after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
   /// `of_fibres`: the effect to which fibres are attributed.
-  void list_allocations(Effect of_fibres, AllocationList& list) const;
+  void list_arrays(Effect of_fibres, ArrayList& list) const;
 
   std::int32_t planes = 0;  ///< number of node planes
   std::vector<Tile> tiles;

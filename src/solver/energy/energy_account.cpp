@@ -25,8 +25,8 @@ template <class Real>
 void EnergyAccount<Real>::open()
 {
   const std::size_t count = plane_nodes_.size() - 1;
-  planes.assign(count, {});
-  for (auto& component : beside)
+  planes_.assign(count, {});
+  for (auto& component : beside_)
     component.assign(mass_.size(), 0);
   muscle.assign(count, 0);
   viscous.assign(2 * count, 0);
@@ -52,13 +52,13 @@ void EnergyAccount<Real>::after(std::int32_t first, std::int32_t last, const Rea
       for (auto n = plane_nodes_[k]; n < plane_nodes_[k + 1]; ++n)
       {
         const double apart = double(u[axis][n]) - double(u_before[axis][n]) - dt * double(v[axis][n]);
-        const auto work = physics::node_work(old[n], free[n], v[axis][n], apart, beside[axis][n], damping, kick);
+        const auto work = physics::node_work(old[n], free[n], v[axis][n], apart, beside_[axis][n], damping, kick);
         sum.damping += mass_[n] * work.damping;
         sum.constraint += mass_[n] * work.constraint;
-        beside[axis][n] = apart;
+        beside_[axis][n] = apart;
       }
-      planes[k].damping += sum.damping;
-      planes[k].constraint += sum.constraint;
+      planes_[k].damping += sum.damping;
+      planes_[k].constraint += sum.constraint;
     }
 }
 
@@ -67,19 +67,19 @@ void EnergyAccount<Real>::load(std::int32_t plane, std::int32_t node, const std:
                                const Real* const v[3], double kick)
 {
   for (int axis = 0; axis < 3; ++axis)
-    planes[plane].load += kick * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
+    planes_[plane].load += kick * force[axis] * 0.5 * (double(before_[axis][node]) + double(v[axis][node]));
 }
 
 template <class Real>
 Work EnergyAccount<Real>::work() const
 {
   Work sum;
-  for (std::size_t k = 0; k < planes.size(); ++k)
+  for (std::size_t k = 0; k < planes_.size(); ++k)
   {
-    sum.load += planes[k].load;
-    sum.constraint += planes[k].constraint;
-    sum.friction += planes[k].friction;
-    sum.damping += planes[k].damping;
+    sum.load += planes_[k].load;
+    sum.constraint += planes_[k].constraint;
+    sum.friction += planes_[k].friction;
+    sum.damping += planes_[k].damping;
     sum.muscle += muscle[k];
     sum.viscous += viscous[2 * k] - viscous[2 * k + 1];
   }
@@ -87,14 +87,18 @@ Work EnergyAccount<Real>::work() const
 }
 
 template <class Real>
-void EnergyAccount<Real>::list_allocations(AllocationList& list) const
+void EnergyAccount<Real>::list_arrays(ArrayList& list)
 {
-  for (const auto* field : { &before_, &free_ })
-    for (const auto& component : *field)
-      list.add(Effect::elasticity, "account of energies", component);
-  for (const auto& component : beside)
-    list.add(Effect::elasticity, "account of energies", component);
-  list.add(Effect::elasticity, "account of energies", planes);
+  const char* const what = "account of energies";
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    list.add(what, before_[axis]);
+    list.add(what, free_[axis]);
+    list.add_state(what, beside_[axis]);
+  }
+  list.add_state(what, planes_);
+  list.add_state(what, muscle);
+  list.add_state(what, viscous);
 }
 
 template class EnergyAccount<float>;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "solver/stepping/discretisation.hpp"
-#include "frontalis/byte_archive.hpp"
 
 #include <array>
 #include <vector>
@@ -20,27 +19,13 @@ struct Work
   double viscous = 0;     ///< absorbed by viscous stresses
 };
 
-/// Work since the account was opened, per node plane.
-struct WorkBook
-{
-  std::vector<double> muscle;   ///< one per plane, filled by the backend
-  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and present H : E (physics/viscosity.hpp)
-  std::vector<Work> planes;
-  /// Displacement of each node by constraints in the latest step, in addition to dt times its velocity [m].
-  std::array<std::vector<double>, 3> beside;
-
-  void archive(ByteArchive& archive) { archive(muscle)(viscous)(planes)(beside); }
-};
-
 /// Accounts for the work of each step's impulses on the nodes. Impulses act along the mean of the velocities before and
 /// after the step, so that the sum is exactly the change of kinetic energy. Each plane is summed by itself in double
 /// precision, so that the result does not depend on the thread that sums it. Real is the backend's number type.
 template <class Real>
-class EnergyAccount : public WorkBook
+class EnergyAccount
 {
 public:
-  using Book = WorkBook;
-
   EnergyAccount(const Model& model, const Discretisation& discretisation);
 
   void open();
@@ -60,17 +45,17 @@ public:
   {
     const Real* const old[3] = { before_[0].data(), before_[1].data(), before_[2].data() };
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
-    planes[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
+    planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
   /// Adds the work of a force on a node of a plane during the step. To be called after after(), with the same `kick`.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double kick);
   Work work() const;
 
-  void list_allocations(AllocationList& list) const;
-  /// The complete state of the account between two steps.
-  const Book& book() const { return *this; }
-  void restore(const Book& book) { static_cast<Book&>(*this) = book; }
+  void list_arrays(ArrayList& list);
+
+  std::vector<double> muscle;   ///< work of fibres, one per plane, filled by the backend [J]
+  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and present H : E (physics/viscosity.hpp)
 
 private:
   using Field = std::array<std::vector<Real>, 3>;
@@ -78,6 +63,8 @@ private:
 
   const std::vector<double>& mass_;
   std::vector<std::int32_t> plane_nodes_;
+  std::vector<Work> planes_;
+  std::array<std::vector<double>, 3> beside_;  // displacement by constraints in the latest step beside dt v [m]
   Field before_, free_;
 };
 

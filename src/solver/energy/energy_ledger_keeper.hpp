@@ -18,8 +18,8 @@ public:
   void open(double time, double dt);
   /// `dt` [s]: length of the latest step, or of the next if there was none.
   EnergyLedger balance(double time, double dt);
-  void effect_switched() { loads_.run(conditions_.running); }
-  void list_allocations(AllocationList& list) const { loads_.list_allocations(list); }
+  void effects_switched() { loads_.run(conditions_.running); }
+  void list_arrays(ArrayList& list) { loads_.list_arrays(list); }
 
   const EnergyLedger& latest() const { return ledger_; }
   void restore(const EnergyLedger& ledger) { ledger_ = ledger; }

@@ -140,8 +140,8 @@ void ReferenceSolver::add_element(std::size_t e, const Components& u, const std:
   physics::add_fibres(voxel, k, P);
   if (accounting_)
     note_fibres(voxel, k);
-  if (relaxes())
-    for (const auto& H : relaxed_[e])
+  if (relaxed_.relax())
+    for (const auto& H : relaxed_.values[e])
       take_relaxed(k, H, P);
   add_stress(e, P, centre_, 1);
 }
@@ -157,11 +157,11 @@ void ReferenceSolver::forces(const Components& u, const std::vector<float>& acti
 
 void ReferenceSolver::relax(double elapsed, const Components& u_before)
 {
-  for (std::size_t e = 0; e < relaxed_.size(); ++e)
+  for (std::size_t e = 0; e < relaxed_.values.size(); ++e)
   {
     const Kinematics k = kinematics(e, centre_, u_), k_before = kinematics(e, centre_, u_before);
     double change = 0, now = 0;
-    const ViscousVoxel voxel{ { *model_, discretisation_, voxels_[e], e }, relaxed_[e] };
+    const ViscousVoxel voxel{ { *model_, discretisation_, voxels_[e], e }, relaxed_.values[e] };
     physics::relax_voxel(voxel, elapsed, k,
                          [&](const auto& before, const auto& after)
                          {

@@ -3,7 +3,6 @@
 #include "frontalis/physics/time_step.hpp"
 #include "frontalis/solver/backend.hpp"
 #include "solver/energy/voxel_monitor.hpp"
-#include "solver/skin/bound_points.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/step_bound.hpp"
 #include "solver/stepping/time_stepper.hpp"
@@ -15,7 +14,7 @@ namespace frontalis
 {
 
 ReferenceSolver::ReferenceSolver(const BackendInput& input)
-    : StepBackend(input), restricted_(*model_), loads_(*model_, discretisation_)
+    : HostBackend(input, 0, slide_plainly<double>)
 {
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());
@@ -34,12 +33,10 @@ ReferenceSolver::ReferenceSolver(const BackendInput& input)
     hourglass_shape_[2][b] = xi[1] * xi[2];
     hourglass_shape_[3][b] = xi[0] * xi[1] * xi[2];
   }
-  if (input.settings.ledger)
-  {
-    account_ = std::make_unique<EnergyAccount<double>>(*model_, discretisation_);
-    fibre_memory_.resize(model_->fibre_muscle.size());
-  }
-  rest();
+  for (auto& component : f_)
+    component.assign(model_->nodes.size(), 0);
+  relaxed_.values.resize(discretisation_.viscous_terms > 0 ? model_->voxels.size() : 0);
+  fibre_memory_.resize(account_ ? model_->fibre_muscle.size() : 0);
 }
 
 BackendTraits ReferenceSolver::traits() const
@@ -55,72 +52,20 @@ void ReferenceSolver::mix_voxels()
     discretisation_.voxel(e, voxels_[e]);
 }
 
-void ReferenceSolver::effect_switched(Effect effect)
+void ReferenceSolver::effects_switched()
 {
   mix_voxels();
-  if (effect == Effect::viscosity)
-    std::fill(relaxed_.begin(), relaxed_.end(), std::array<physics::Symmetric3<double>, 2>{});
-  if (effect == Effect::sliding || effect == Effect::friction)
-    restricted_.run(conditions_.running);
-  loads_.run(conditions_.running);
+  HostBackend::effects_switched();
 }
 
-void ReferenceSolver::list_allocations(AllocationList& list) const
+void ReferenceSolver::list_arrays(ArrayList& list)
 {
-  list.add(Effect::elasticity, "voxels", voxels_);
-  list.add(Effect::elasticity, "stiffness now", stiffness_);
-  for (const auto* field : { &u_, &v_, &f_ })
-    for (const auto& component : *field)
-      list.add(Effect::elasticity, "motion and forces", component);
-  list.add(Effect::viscosity, "relaxed stresses", relaxed_);
-  list.add(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
-  restricted_.list_allocations(list);
-  loads_.list_allocations(list);
-  if (account_)
-    account_->list_allocations(list);
-}
-
-void ReferenceSolver::skin(SkinState& out) { skin_state(*model_, u_pointers().data(), out); }
-
-void ReferenceSolver::rest()
-{
-  for (auto* field : { &u_, &v_, &f_ })
-    for (auto& component : *field)
-      component.assign(model_->nodes.size(), 0);
-  relaxed_.assign(discretisation_.viscous_terms > 0 ? model_->voxels.size() : 0, {});
-  restricted_.reset();
-}
-
-void ReferenceSolver::save(std::unique_ptr<BackendState>& to) const
-{
-  if (!to)
-    to = std::make_unique<State>();
-  State& state = static_cast<State&>(*to);
-  state.arrays = std::tie(u_, v_, relaxed_, fibre_memory_);
-  state.contacts = restricted_.contacts();
-  if (account_)
-    state.book = account_->book();
-}
-
-void ReferenceSolver::restore(const BackendState& from)
-{
-  const State& state = static_cast<const State&>(from);
-  std::tie(u_, v_, relaxed_, fibre_memory_) = state.arrays;
-  restricted_.restore(state.contacts);
-  if (account_)
-    account_->restore(state.book);
-}
-
-void ReferenceSolver::get(NodalField field, NodalVectors& out) const
-{
-  interleave(field == NodalField::displacements ? u_ : v_, model_->nodes.size(), out);
-}
-
-void ReferenceSolver::set(NodalField field, const NodalVectors& in)
-{
-  if (field == NodalField::displacements)
-    rest();
-  separate(in, field == NodalField::displacements ? u_ : v_);
+  HostBackend::list_arrays(list);
+  list.add("voxels", voxels_);
+  list.add("stiffness now", stiffness_);
+  for (const auto& component : f_)
+    list.add("forces", component);
+  list.add_state(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
 }
 
 void ReferenceSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
@@ -130,7 +75,7 @@ void ReferenceSolver::internal_forces(const NodalVectors* displacements, NodalVe
   if (displacements != nullptr)
     separate(*displacements, at);
   forces(at, conditions_.activation);
-  interleave(f_, model_->nodes.size(), out);
+  interleave(f_, out);
 }
 
 Monitor ReferenceSolver::monitor()
@@ -150,7 +95,7 @@ Work ReferenceSolver::work(bool open)
   forces(u_, conditions_.activation);
   if (open)
     std::fill(account_->muscle.begin(), account_->muscle.end(), 0.0);
-  else if (relaxes())
+  else if (relaxed_.relax())
     relax(0, u_);
   return account_->work();
 }
@@ -169,7 +114,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
     forces(u_, activation);
-    loads_.update(plan.time + step * plan.dt, u_pointers().data());
+    loads_.update(plan.time + step * plan.dt, pointers(u_).data());
     for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
       for (int axis = 0; axis < 3; ++axis)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
@@ -197,7 +142,7 @@ double ReferenceSolver::run(const StepPlan& plan)
       for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
         account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, kick);
     }
-    if (relaxes() && plan.relaxation[step] > 0)
+    if (relaxed_.relax() && plan.relaxation[step] > 0)
       relax(plan.relaxation[step], before);
   }
   return worst;

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/viscosity.hpp"
-#include "solver/stepping/host_state.hpp"
-#include "solver/stepping/nodal_loads.hpp"
+#include "solver/stepping/host_backend.hpp"
 
 namespace frontalis
 {
@@ -11,33 +10,24 @@ struct ModelVoxel;
 
 /// The reference for the other backends, in double precision and plain loops. It takes the kinematics from textbook
 /// shape-function derivatives, not from the Walsh-Hadamard transform, so that an error in the transform is found.
-class ReferenceSolver : public StepBackend
+class ReferenceSolver : public HostBackend<double, std::array<physics::Symmetric3<double>, 2>>
 {
 public:
   explicit ReferenceSolver(const BackendInput& input);
 
   BackendTraits traits() const override;
-  void list_allocations(AllocationList& list) const override;
+  void list_arrays(ArrayList& list) override;
   double run(const StepPlan& plan) override;
-  void effect_switched(Effect effect) override;
-  void get(NodalField field, NodalVectors& out) const override;
-  void set(NodalField field, const NodalVectors& in) override;
-  void save(std::unique_ptr<BackendState>& to) const override;
-  void restore(const BackendState& from) override;
+  void effects_switched() override;
   void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
   Monitor monitor() override;
   Work work(bool open) override;
-  void skin(SkinState& out) override;
 
 private:
-  using Components = std::array<std::vector<double>, 3>;
   using Kinematics = physics::Kinematics<double>;
   using Stress = physics::Matrix3<double>;
   using Derivatives = double[8][3];
-  using Relaxed = std::vector<std::array<physics::Symmetric3<double>, 2>>;
-  using State = HostState<double, Components, Components, Relaxed, std::vector<std::array<double, 2>>>;
 
-  std::array<const double*, 3> u_pointers() const { return { { u_[0].data(), u_[1].data(), u_[2].data() } }; }
   EffectSet effects() const { return conditions_.running; }
   void shape_derivatives(const double (&at)[3], Derivatives& out) const;
   Kinematics kinematics(std::size_t e, const Derivatives& derivative, const Components& u) const;
@@ -46,20 +36,14 @@ private:
   void add_hourglass(std::size_t e, const Components& u, const Kinematics& k);
   void add_element(std::size_t e, const Components& u, const std::vector<float>& activation);
   void forces(const Components& u, const std::vector<float>& activation);
-  void rest();
   void mix_voxels();
-  bool relaxes() const { return !relaxed_.empty() && runs(Effect::viscosity); }
   void relax(double elapsed, const Components& u_before);  // u_before: one step earlier
 
   std::vector<VoxelProperties> voxels_;
-  Components u_, v_, f_;
+  Components f_;
   Derivatives centre_;            // dN_b/dX_j at the centre [1/m]
   Derivatives gauss_[8];          // the same at the Gauss points
   double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
-  RestrictedNodes<double> restricted_;
-  NodalLoads loads_;
-  Relaxed relaxed_;  // viscous stresses times the volume of each voxel [N m]
-  std::unique_ptr<EnergyAccount<double>> account_;
   bool accounting_ = false;                          // whether fibres record their work
   std::vector<std::array<double, 2>> fibre_memory_;  // latest squared stretch, and stress times volume
   std::vector<double> stiffness_;                    // bound of each voxel at the latest forces [N/m]

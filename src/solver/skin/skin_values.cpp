@@ -139,7 +139,7 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
   }
 }
 
-void SkinValues::list_allocations(AllocationList& list) const
+void SkinValues::list_arrays(ArrayList& list) const
 {
   list.add(Effect::output_fields, "nodes below the skin", nodes_);
   list.add(Effect::output_fields, "voxels below the skin", voxels_);

@@ -21,7 +21,7 @@ public:
   /// `u`: displacements of all nodes [m]; `activation`: that of the fibres.
   void compute(SkinField field, const std::vector<std::array<double, 3>>& u, const std::vector<float>& activation,
                EffectSet running, std::vector<float>& out);
-  void list_allocations(AllocationList& list) const;
+  void list_arrays(ArrayList& list) const;
 
 private:
   const Model& model_;

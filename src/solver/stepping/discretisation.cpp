@@ -256,12 +256,12 @@ void Discretisation::bound_at_rest()
   frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
 }
 
-void Discretisation::list_allocations(AllocationList& list) const
+void Discretisation::list_arrays(ArrayList& list) const
 {
-  list.add(Effect::elasticity, "masses of nodes", node_mass);
-  list.add(Effect::elasticity, "held nodes", held);
-  list.add(Effect::elasticity, "shares of weight", weight_share);
-  list.add(Effect::elasticity, "mass scaling", mass_factor_);
+  list.add("masses of nodes", node_mass);
+  list.add("held nodes", held);
+  list.add("shares of weight", weight_share);
+  list.add("mass scaling", mass_factor_);
 }
 
 void Discretisation::voxel(std::size_t e, VoxelProperties& out) const

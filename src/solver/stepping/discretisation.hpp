@@ -2,7 +2,7 @@
 
 #include "frontalis/model/effects.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
-#include "frontalis/solver/allocation.hpp"
+#include "solver/stepping/array_list.hpp"
 
 #include <array>
 #include <vector>
@@ -50,7 +50,7 @@ public:
   void voxel(std::size_t index, VoxelProperties& out) const;
   /// Includes the fibre effects of this set in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
-  void list_allocations(AllocationList& list) const;
+  void list_arrays(ArrayList& list) const;
 
   double volume = 0;                         ///< of a whole voxel [m3]
   bool assumed_strain = false;               ///< hourglass control by assumed strain

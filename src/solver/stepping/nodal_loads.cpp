@@ -109,7 +109,7 @@ void NodalLoads::run(EffectSet running)
     std::fill(forces->begin(), forces->end(), std::array<double, 3>{});
 }
 
-void NodalLoads::list_allocations(AllocationList& list) const
+void NodalLoads::list_arrays(ArrayList& list)
 {
   const Effect effect = surfaces_.empty() ? Effect::gravity : Effect::surface_loads;
   list.add(effect, "loaded nodes", nodes_);

@@ -15,14 +15,15 @@ std::array<double, 3> gravity_relief(const Model& model, const Discretisation& d
 
 /// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding and summed in a
 /// fixed order; and the correction of gravity for selective mass scaling.
-class NodalLoads
+class NodalLoads : public EffectPart
 {
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
 
   /// Switches loads and the correction of gravity on or off with their effects.
-  void run(EffectSet running);
-  void list_allocations(AllocationList& list) const;
+  void run(EffectSet running) override;
+  void reset() override {}
+  void list_arrays(ArrayList& list) override;
   bool idle() const
   {
     const bool loaded = runs_ && !surfaces_.empty();

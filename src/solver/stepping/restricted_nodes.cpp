@@ -105,11 +105,12 @@ void RestrictedNodes<Real>::run(EffectSet running)
   slides_ = running.has(Effect::sliding);
   rubs_ = running.has(Effect::friction);
   contacts_.gliding.rub(rubs_);
-  reset();
+  if (!slides_)
+    reset();
 }
 
 template <class Real>
-void RestrictedNodes<Real>::list_allocations(AllocationList& list) const
+void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 {
   list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
@@ -119,7 +120,7 @@ void RestrictedNodes<Real>::list_allocations(AllocationList& list) const
       list.add(Effect::sliding, "surfaces", tree->boxes());
       list.add(Effect::sliding, "surfaces", tree->triangles());
     }
-  contacts_.gliding.list_allocations(list);
+  contacts_.gliding.list_arrays(list);
   list.add(Effect::sliding, "contacts", contacts_.sliding);
   list.add(Effect::sliding, "tangent planes", contacts_.blocks);
   list.add(Effect::sliding, "tangent planes", block_node_);

@@ -13,7 +13,7 @@ namespace frontalis
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
 /// may process disjoint ranges of node planes. Real is the backend's number type.
 template <class Real>
-class RestrictedNodes
+class RestrictedNodes : public EffectPart
 {
 public:
   using Block = SlidingBlock<Real>;
@@ -40,7 +40,7 @@ public:
   /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
-  void reset();
+  void reset() override;
   const Contacts& contacts() const { return contacts_; }
   void restore(const Contacts& contacts)
   {
@@ -59,9 +59,8 @@ public:
   {
     return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
   }
-  /// Switches sliding and friction, and resets all contacts.
-  void run(EffectSet running);
-  void list_allocations(AllocationList& list) const;
+  void run(EffectSet running) override;
+  void list_arrays(ArrayList& list) override;
   bool idle() const
   {
     const bool slides = slides_ && !(contacts_.sliding.empty() && contacts_.gliding.empty());

@@ -2,6 +2,7 @@
 
 #include "frontalis/byte_archive.hpp"
 #include "solver/energy/energy_account.hpp"
+#include "solver/stepping/array_list.hpp"
 #include "solver/stepping/discretisation.hpp"
 #include "solver/stepping/step_plan.hpp"
 
@@ -56,20 +57,20 @@ public:
   virtual ~StepBackend() = default;
 
   virtual BackendTraits traits() const = 0;
-  virtual void list_allocations(AllocationList& list) const = 0;
+  virtual void list_arrays(ArrayList& list) = 0;
 
   /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
   /// are not finite. If the plan allows it, this may be the bound of the previous plan.
   virtual double run(const StepPlan& plan) = 0;
   /// To be called after Conditions::running and the discretisation's bounds have changed. An effect that comes back has
   /// no history.
-  virtual void effect_switched(Effect effect) = 0;
+  virtual void effects_switched() = 0;
 
   virtual void get(NodalField field, NodalVectors& out) const = 0;
   /// Setting displacements brings everything else to rest. An empty list stands for zeros.
   virtual void set(NodalField field, const NodalVectors& in) = 0;
   /// `to` may hold an earlier state of this backend, whose memory is used again.
-  virtual void save(std::unique_ptr<BackendState>& to) const = 0;
+  virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
   /// Internal forces [N] at these displacements; null: at the present ones.

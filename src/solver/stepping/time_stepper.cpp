@@ -259,10 +259,9 @@ void TimeStepper::switch_effect(Effect effect, bool on)
 // the discretisation's bounds are those of the effects already
 void TimeStepper::effects_switched(const std::vector<Effect>& effects)
 {
-  for (const Effect effect : effects)
-    backend_->effect_switched(effect);
+  backend_->effects_switched();
   if (ledger_)
-    ledger_->effect_switched();
+    ledger_->effects_switched();
   if (motion_.diverged)
     return;
   if (std::any_of(effects.begin(), effects.end(), is_of_fibres))
@@ -273,15 +272,15 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
 
 std::vector<Allocation> TimeStepper::allocations() const
 {
-  AllocationList list;
+  ArrayList list;
   if (skin_values_)
-    skin_values_->list_allocations(list);
-  discretisation_.list_allocations(list);
-  list.add(Effect::elasticity, "mode of the highest frequency", motion_.highest_mode);
+    skin_values_->list_arrays(list);
+  discretisation_.list_arrays(list);
+  list.add("mode of the highest frequency", motion_.highest_mode);
   if (ledger_)
-    ledger_->list_allocations(list);
-  backend_->list_allocations(list);
-  return list.take();
+    ledger_->list_arrays(list);
+  backend_->list_arrays(list);
+  return list.take_allocations();
 }
 
 void TimeStepper::skin_field(SkinField field, std::vector<float>& out)

@@ -1,0 +1,144 @@
+#include "solver/stepping/host_backend.hpp"
+
+#include "frontalis/physics/viscosity.hpp"
+#include "solver/skin/bound_points.hpp"
+
+#include <cstring>
+
+namespace frontalis
+{
+namespace
+{
+
+template <class Real>
+struct HostState : BackendState
+{
+  std::vector<char> bytes;
+  typename RestrictedNodes<Real>::Contacts contacts;
+
+  void archive(ByteArchive& archive) override
+  {
+    const std::size_t size = bytes.size();
+    archive(bytes);
+    if (bytes.size() != size)
+      throw Error("a state of " + std::to_string(bytes.size()) + " bytes; allowed are " + std::to_string(size));
+    contacts.archive(archive);
+  }
+};
+
+}  // namespace
+
+template <class Real, class Relaxed>
+HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide)
+    : StepBackend(input), restricted_(*model_, slide), loads_(*model_, discretisation_)
+{
+  for (auto* field : { &u_, &v_ })
+    for (auto& component : *field)
+      component.assign(model_->nodes.size() + padding, 0);
+  if (input.settings.ledger)
+    account_ = std::make_unique<EnergyAccount<Real>>(*model_, discretisation_);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::rest()
+{
+  for (auto* field : { &u_, &v_ })
+    for (auto& component : *field)
+      std::fill(component.begin(), component.end(), Real(0));
+  for (EffectPart* const part : parts())
+    part->reset();
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
+{
+  for (auto* field : { &u_, &v_ })
+    for (auto& component : *field)
+      list.add_state("motion", component);
+  for (EffectPart* const part : parts())
+    part->list_arrays(list);
+  if (account_)
+    account_->list_arrays(list);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::effects_switched()
+{
+  for (EffectPart* const part : parts())
+    part->run(conditions_.running);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::save(std::unique_ptr<BackendState>& to)
+{
+  if (!to)
+    to = std::make_unique<HostState<Real>>();
+  auto& state = static_cast<HostState<Real>&>(*to);
+  ArrayList list;
+  list_arrays(list);
+  state.bytes.resize(list.state_bytes());
+  char* at = state.bytes.data();
+  for (const auto& array : list.state())
+  {
+    std::memcpy(at, array.data, array.bytes);
+    at += array.bytes;
+  }
+  state.contacts = restricted_.contacts();
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::restore(const BackendState& from)
+{
+  const auto& state = static_cast<const HostState<Real>&>(from);
+  ArrayList list;
+  list_arrays(list);
+  const char* at = state.bytes.data();
+  for (const auto& array : list.state())
+  {
+    std::memcpy(array.data, at, array.bytes);
+    at += array.bytes;
+  }
+  restricted_.restore(state.contacts);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::get(NodalField field, NodalVectors& out) const
+{
+  interleave(field == NodalField::displacements ? u_ : v_, out);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::set(NodalField field, const NodalVectors& in)
+{
+  if (field == NodalField::displacements)
+    rest();
+  separate(in, field == NodalField::displacements ? u_ : v_);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::skin(SkinState& out)
+{
+  skin_state(*model_, pointers(u_).data(), out);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::interleave(const Components& in, NodalVectors& out) const
+{
+  out.resize(model_->nodes.size());
+  for (std::size_t n = 0; n < out.size(); ++n)
+    out[n] = { { double(in[0][n]), double(in[1][n]), double(in[2][n]) } };
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::separate(const NodalVectors& in, Components& out)
+{
+  for (std::size_t n = 0; n < in.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[axis][n] = static_cast<Real>(in[n][axis]);
+}
+
+template class HostBackend<float, float>;
+template class HostBackend<double, float>;
+template class HostBackend<double, std::array<physics::Symmetric3<double>, 2>>;
+
+}  // namespace frontalis
