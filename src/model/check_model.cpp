@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -200,12 +201,33 @@ void check_fibres(const Model& model)
   }
 }
 
+void check_field(const std::string& array, const SampledField& field)
+{
+  using physics::DistanceField;
+  check_finite(array + " (origin)", 0, field.origin);
+  check_not_negative(array, "radius", field.radius);
+  if (field.radius > 0)
+    return;
+  check_positive(array + " (spacing)", 0, field.spacing);
+  std::size_t bricks = 1;
+  for (const std::int32_t count : field.bricks)
+    bricks *= static_cast<std::size_t>(std::max(count, 0));
+  check_length(array + " (table)", field.table.size(), bricks, "brick");
+  const std::size_t stored = field.samples.size() / DistanceField::brick_size;
+  check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");
+  for (std::size_t b = 0; b < bricks; ++b)
+    check_index(array + " (table)", b, field.table[b], stored, -1);
+  for (std::size_t s = 0; s < field.samples.size(); ++s)
+    check_finite(array + " (samples)", s, static_cast<double>(field.samples[s]));
+}
+
 void check_constraints(const Model& model)
 {
   for (const ConstraintSurface& surface : model.constraint_surfaces)
   {
     const std::string name = "constraint_surfaces '" + surface.name + "'";
     check_mesh(name, surface.mesh);
+    check_field(name, surface.field);
     check_index(name + " (bone)", 0, surface.bone, model.bones.size(), -1);
     check_not_negative(name, "friction", surface.friction);
   }

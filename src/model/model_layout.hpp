@@ -15,6 +15,17 @@ void exchange_mesh(Archive& archive, const std::string& path, Mesh& mesh)
   archive.array(path + "/triangles", mesh.triangles);
 }
 
+template <class Archive, class Field>
+void exchange_field(Archive& archive, const std::string& path, Field& field)
+{
+  archive.value(path + "/origin", field.origin);
+  archive.value(path + "/spacing", field.spacing);
+  archive.value(path + "/radius", field.radius);
+  archive.value(path + "/bricks", field.bricks);
+  archive.array(path + "/table", field.table);
+  archive.array(path + "/samples", field.samples);
+}
+
 template <class Archive, class Bound>
 void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
 {
@@ -67,6 +78,7 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
     const std::string path = in("constraint_surfaces/" + std::to_string(s));
     archive.group(path);
     exchange_mesh(archive, path, model.constraint_surfaces[s].mesh);
+    exchange_field(archive, path, model.constraint_surfaces[s].field);
   }
   archive.group(in("rigid"));
   archive.column(in("rigid/node"), model.rigid, &RigidNode::node);
