@@ -58,6 +58,7 @@ public:
   void list_arrays(Effect of_fibres, ArrayList& list);
   /// Brings all effects to their state at rest.
   void reset();
+
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }

@@ -31,7 +31,7 @@ struct SlidingFetch
 {
   float4 at, plane;
   float inverse_spacing;
-  float friction, pressing;  ///< only if the node has friction
+  float friction = 0, pressing = 0;
 };
 
 __device__ __forceinline__ physics::Vec3<float> normal_of(const float4& plane) { return { plane.x, plane.y, plane.z }; }
@@ -107,12 +107,12 @@ __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t in
   if (code != __float_as_uint(fetch.at.w) && !aside(enter_cell)(g, index, code))
     return false;
   physics::FieldSamples samples;
-#pragma unroll
+  FRONTALIS_UNROLL
   for (int w = 0; w < sample_words; ++w)
   {
     const float4 word = g.samples[w * g.sliding_count + index];
     const float of[4] = { word.x, word.y, word.z, word.w };
-#pragma unroll
+    FRONTALIS_UNROLL
     for (int n = 4 * w; n < 4 * w + 4 && n < 27; ++n)
       samples.value[n] = of[n - 4 * w];
   }

@@ -226,7 +226,6 @@ void check_constraints(const Model& model)
   for (const ConstraintSurface& surface : model.constraint_surfaces)
   {
     const std::string name = "constraint_surfaces '" + surface.name + "'";
-    check_mesh(name, surface.mesh);
     check_field(name, surface.field);
     check_index(name + " (bone)", 0, surface.bone, model.bones.size(), -1);
     check_not_negative(name, "friction", surface.friction);

@@ -77,7 +77,6 @@ void exchange_model(Archive& archive, AnyModel& model, const std::string& root)
   {
     const std::string path = in("constraint_surfaces/" + std::to_string(s));
     archive.group(path);
-    exchange_mesh(archive, path, model.constraint_surfaces[s].mesh);
     exchange_field(archive, path, model.constraint_surfaces[s].field);
   }
   archive.group(in("rigid"));

@@ -12,19 +12,27 @@ namespace
 using Point = std::array<double, 3>;
 using physics::DistanceField;
 
-// Distances that samples must cover [m].
+// Distances that samples of a brick must cover [m].
 struct Band
 {
-  double least, largest;
+  double least = 1e300, largest = -1e300;
+  bool home = false;  // a node rests in the brick
 };
 
 // Whether the distance is in the band somewhere in a cube, found by halving it down to `smallest` [m].
 bool reaches(const Distance& distance, const Band& band, const Point& middle, double edge, double smallest)
 {
-  const double d = distance(middle), radius = 0.5 * std::sqrt(3.0) * edge;
-  if (d < band.least - radius || d > band.largest + radius)
+  const SurfaceDistance d = distance(middle);
+  const double radius = 0.5 * std::sqrt(3.0) * edge;
+  // the nearest point may jump to the rim and back, and sign and way past the rim with it, but not the true distance
+  const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
+  const bool too_far =
+      std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;
+  if (too_far || (beside_band && d.past_rim == 0))
     return false;
-  if (edge <= smallest || (d >= band.least && d <= band.largest))
+  if (edge <= smallest)
+    return !beside_band && d.past_rim <= radius;
+  if (d.value >= band.least && d.value <= band.largest && d.past_rim == 0)
     return true;
   for (int part = 0; part < 8; ++part)
   {
@@ -37,33 +45,24 @@ bool reaches(const Distance& distance, const Band& band, const Point& middle, do
   return false;
 }
 
-Point rest_position(const Model& model, std::int32_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
-// Bricks of the table within `travel` of a point.
-std::vector<bool> bricks_near(const std::vector<Point>& points, double travel, const SampledField& field)
+// Calls visit(index in the table) for bricks within `way` of a point.
+template <class Visit>
+void visit_bricks(const SampledField& field, const Point& p, double way, const Visit& visit)
 {
   const double edge = DistanceField::brick_edge * field.spacing;
-  std::vector<bool> near(field.table.size(), false);
-  for (const Point& p : points)
+  std::int32_t first[3], last[3];
+  for (int axis = 0; axis < 3; ++axis)
   {
-    std::array<std::int32_t, 3> first{}, last{};
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      // a cell begins half a spacing before its sample
-      const double x = p[axis] - field.origin[axis] + 0.5 * field.spacing;
-      first[axis] = std::max(0, static_cast<std::int32_t>(std::floor((x - travel) / edge)));
-      last[axis] = std::min(field.bricks[axis] - 1, static_cast<std::int32_t>(std::floor((x + travel) / edge)));
-    }
-    for (std::int32_t k = first[2]; k <= last[2]; ++k)
-      for (std::int32_t j = first[1]; j <= last[1]; ++j)
-        std::fill_n(near.begin() + (static_cast<std::ptrdiff_t>(k) * field.bricks[1] + j) * field.bricks[0] + first[0],
-                    last[0] - first[0] + 1, true);
+    // a cell begins half a spacing before its sample
+    const double x = p[axis] - field.origin[axis] + 0.5 * field.spacing;
+    const double count = field.bricks[axis];
+    first[axis] = static_cast<std::int32_t>(std::clamp(std::floor((x - way) / edge), 0.0, count));
+    last[axis] = static_cast<std::int32_t>(std::clamp(std::floor((x + way) / edge), -1.0, count - 1));
   }
-  return near;
+  for (std::int32_t k = first[2]; k <= last[2]; ++k)
+    for (std::int32_t j = first[1]; j <= last[1]; ++j)
+      for (std::int32_t i = first[0]; i <= last[0]; ++i)
+        visit((static_cast<std::size_t>(k) * field.bricks[1] + j) * field.bricks[0] + i);
 }
 
 }  // namespace
@@ -82,9 +81,7 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
   if (rest.empty())
     return field;
   std::vector<double> level(rest.size());
-  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]); });
-  const Band band{ *std::min_element(level.begin(), level.end()) - 2 * spacing,
-                   *std::max_element(level.begin(), level.end()) + 2 * spacing };
+  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]).value; });
   const double edge = DistanceField::brick_edge * spacing;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -96,10 +93,20 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
   }
   field.table.resize(static_cast<std::size_t>(field.bricks[0]) * field.bricks[1] * field.bricks[2], -1);
 
-  const std::vector<bool> near = bricks_near(rest, travel, field);
+  std::vector<Band> bands(field.table.size());
+  for (std::size_t n = 0; n < rest.size(); ++n)
+  {
+    visit_bricks(field, rest[n], travel,
+                 [&](std::size_t brick)
+                 {
+                   bands[brick].least = std::min(bands[brick].least, level[n] - spacing);
+                   bands[brick].largest = std::max(bands[brick].largest, level[n] + spacing);
+                 });
+    visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
+  }
   std::vector<std::size_t> places;
-  for (std::size_t b = 0; b < near.size(); ++b)
-    if (near[b])
+  for (std::size_t b = 0; b < bands.size(); ++b)
+    if (bands[b].least < bands[b].largest)
       places.push_back(b);
   std::vector<std::vector<float>> samples(places.size());
   loop(places.size(),
@@ -114,7 +121,8 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
            first[axis] = field.origin[axis] + static_cast<double>(brick[axis]) * edge - spacing;
            middle[axis] = first[axis] + 0.5 * (edge + spacing);
          }
-         if (!reaches(distance, band, middle, edge, spacing))
+         const Band& band = bands[places[n]];
+         if (!band.home && !reaches(distance, band, middle, edge, spacing))
            return;
          samples[n].reserve(DistanceField::brick_size);
          for (int s = 0; s < DistanceField::brick_size; ++s)
@@ -122,7 +130,8 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
            constexpr int width = DistanceField::brick_row;
            const std::array<int, 3> at{ { s % width, s / width % width, s / (width * width) } };
            samples[n].push_back(static_cast<float>(
-               distance({ { first[0] + at[0] * spacing, first[1] + at[1] * spacing, first[2] + at[2] * spacing } })));
+               distance({ { first[0] + at[0] * spacing, first[1] + at[1] * spacing, first[2] + at[2] * spacing } })
+                   .value));
          }
        });
   std::int32_t stored = 0;
@@ -162,6 +171,13 @@ double level_at(const SampledField& field, const Point& p)
   physics::FieldValue<double> value{};
   const bool found = physics::sample(of, physics::field_point(of, { p[0], p[1], p[2] }), value);
   return found ? value.value : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool has_samples_near(const SampledField& field, const Point& p, double way)
+{
+  bool any = field.radius > 0;
+  visit_bricks(field, p, way, [&](std::size_t brick) { any = any || field.table[brick] >= 0; });
+  return any;
 }
 
 std::int32_t slide_on(Model& model, const std::string& name, SampledField field, const std::vector<std::int32_t>& nodes)

@@ -49,7 +49,7 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   model.bones = { "skull", "mandible" };
   const SampledField sampled = sample_field(
       { { { 0, 0, 0 } } }, [](const auto& p) { return p[2] - 1e-3; }, 1e-3, 2e-3);
-  model.constraint_surfaces = { { "skull", triangle, 1, 0.25, sampled } };
+  model.constraint_surfaces = { { "skull", 1, 0.25, sampled } };
   model.rigid = { { 0, -1 }, { 1, 1 } };
   model.sliding = { { 2, 0, -0.00125 } };
   model.gravity = { 0, 0, -9.81 };

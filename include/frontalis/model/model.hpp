@@ -118,6 +118,13 @@ struct Model
 /// Fills nodes and voxel_nodes from voxels. Voxels must be sorted by k, j, i and unique; throws Error otherwise.
 void build_nodes(Model& model);
 
+/// Position of a node at rest, in local coordinates [m].
+inline std::array<double, 3> rest_position(const Model& model, std::size_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
+
 /// Checks that indices are in range, arrays have matching lengths and numbers are finite; throws Error naming the
 /// array.
 void check_model(const Model& model);

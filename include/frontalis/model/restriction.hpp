@@ -26,7 +26,6 @@ struct SampledField
 struct ConstraintSurface
 {
   std::string name;
-  TriangleMesh mesh;
   std::int32_t bone = -1;  ///< index into Model::bones of the one it moves with; -1: still
   double friction = 0;     ///< Coulomb's coefficient
   SampledField field;

@@ -14,7 +14,12 @@ struct FieldValue
   T value;           ///< [m]
   Vec3<T> gradient;  ///< about a unit vector, shorter on ridges and in furrows
   T curvature;       ///< Frobenius norm of the Hessian [1/m]
+  T reach;           ///< way along which a plane may rely on that curvature [m]; see level_plane()
 };
+
+/// Largest error of a tangent plane that replaces a level set: small, because each change of plane excites vibrations
+/// [m].
+constexpr double plane_error = 0.5e-6;
 
 /// The samples of a cell, x fastest [m].
 struct FieldSamples
@@ -22,10 +27,12 @@ struct FieldSamples
   float value[27];
 };
 
-/// The spline at a place in a cell that enter_cell() returned.
+/// The spline at a place in a cell that enter_cell() returned. Its second derivatives may jump at the cell's faces, but
+/// are at most 2 / spacing, because distances of neighbouring samples differ by at most the spacing.
 template <class T>
 FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
 {
+  using N = Number<T>;
   const T x[3] = { place.x, place.y, place.z };
   // weights of value and slope; those of the second derivative are 1, -2, 1
   T w[3][3], d[3][3];
@@ -65,9 +72,14 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
   }
   const T xx = sum(w[2], fxx), yy = sum(w[2], fyy), zz = bend(f);
   const T xy = sum(w[2], fxy), xz = sum(d[2], fx), yz = sum(d[2], fy);
+  T to_face = T(0.5);
+  for (int axis = 0; axis < 3; ++axis)
+    to_face = N::min(to_face, T(0.5) - N::max(x[axis], -x[axis]));
+  const T spacing = T(1) / inverse_spacing;
   const T squared = xx * xx + yy * yy + zz * zz + T(2) * (xy * xy + xz * xz + yz * yz);
   return { sum(w[2], f), inverse_spacing * Vec3<T>{ sum(w[2], fx), sum(w[2], fy), sum(d[2], f) },
-           inverse_spacing * inverse_spacing * Number<T>::sqrt(squared) };
+           inverse_spacing * inverse_spacing * N::sqrt(squared),
+           N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)) };
 }
 
 /// Distance from a sphere at `offset` [m] from its centre, in the same form.
@@ -75,7 +87,7 @@ template <class T>
 FRONTALIS_LAW FieldValue<T> sphere_value(const T& radius, const Vec3<T>& offset)
 {
   const T distance = Number<T>::max(norm(offset), T(1e-9));
-  return { distance - radius, (T(1) / distance) * offset, T(1.4142136) / distance };
+  return { distance - radius, (T(1) / distance) * offset, T(1.4142136) / distance, distance };
 }
 
 }  // namespace physics

@@ -21,9 +21,6 @@ struct LevelPlane
   T slip;          ///< way along which the plane stays within plane_error of the level set, to second order [m]
 };
 
-/// Small, because each change of plane excites vibrations [m].
-constexpr double plane_error = 0.5e-6;
-
 /// Plane of the set on which the field is `level` [m], from the field at a point. Returns false, and leaves `plane` as
 /// it is, where the gradient is too short.
 template <class T>
@@ -36,7 +33,7 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   const T scale = T(1) / slope;
   plane.normal = scale * field.gradient;
   plane.distance = scale * (field.value - level);
-  plane.slip = N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, T(1e-3)));
+  plane.slip = N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach);
   return true;
 }
 

@@ -36,9 +36,6 @@ Model voxel_model(const std::array<std::int32_t, 3>& size, double edge, const Ma
 /// Gives every voxel fibres of one muscle; direction(e) is theirs in voxel e, of length 1.
 void add_muscle(Model& model, const Muscle& muscle, const std::function<std::array<float, 3>(std::size_t)>& direction);
 
-/// Position of a node at rest [m].
-std::array<double, 3> rest_position(const Model& model, std::size_t node);
-
 /// Displacements [m] that deform the whole model by one gradient (row by row) and move it by `shift` [m].
 Vectors affine_displacements(const Model& model, const std::array<double, 9>& gradient,
                              const std::array<double, 3>& shift = { { 0, 0, 0 } });

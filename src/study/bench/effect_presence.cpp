@@ -1,5 +1,6 @@
 #include "frontalis/study/effect_presence.hpp"
 
+#include "frontalis/model/sample_field.hpp"
 #include "frontalis/study/dense_block.hpp"
 
 #include <algorithm>
@@ -47,21 +48,22 @@ void give(Model& model, Effect effect, double share)
   {
     // the cost of friction is what it adds to sliding, so that all nodes of the face slide
     const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
-    ConstraintSurface floor;
-    floor.name = "smooth floor";
-    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
-    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
-    model.constraint_surfaces.push_back(floor);
-    if (effect == Effect::friction && rows > 0)
+    const auto height = [](const std::array<double, 3>& p) { return p[2]; };
+    const auto slides_between = [&](std::int32_t first, std::int32_t last)
     {
-      floor.name = "rough floor";
-      floor.friction = 0.3;
-      model.constraint_surfaces.push_back(floor);
+      std::vector<std::int32_t> nodes;
+      for (std::size_t n = 0; n < model.nodes.size(); ++n)
+        if (const auto& at = model.nodes[n]; at[2] == 0 && at[0] > 0 && at[1] >= first && at[1] < last)
+          nodes.push_back(static_cast<std::int32_t>(n));
+      return nodes;
+    };
+    const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
+    slide_on(model, "smooth floor", height, slides_between(rough_rows, sliding_rows));
+    if (rough_rows > 0)
+    {
+      slide_on(model, "rough floor", height, slides_between(0, rough_rows));
+      model.constraint_surfaces.back().friction = 0.3;
     }
-    const auto rough = static_cast<std::int32_t>(model.constraint_surfaces.size()) - 1;
-    for (std::size_t n = 0; n < model.nodes.size(); ++n)
-      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < sliding_rows)
-        model.sliding.push_back({ static_cast<std::int32_t>(n), model.nodes[n][1] < rows ? rough : 0, 0 });
   }
 }
 

@@ -62,12 +62,6 @@ void add_muscle(Model& model, const Muscle& muscle, const std::function<std::arr
   model.fibre_weight.assign(model.voxels.size(), 1);
 }
 
-std::array<double, 3> rest_position(const Model& model, std::size_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 Vectors affine_displacements(const Model& model, const std::array<double, 9>& gradient,
                              const std::array<double, 3>& shift)
 {
