@@ -65,8 +65,11 @@ FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const V
   double* const offset[3] = { &point.offset.x, &point.offset.y, &point.offset.z };
   for (int axis = 0; axis < 3; ++axis)
   {
-    point.cell[axis] = static_cast<std::int32_t>(std::floor(*offset[axis] / field.spacing + 0.5));
-    *offset[axis] -= point.cell[axis] * field.spacing;
+    const double whole = std::floor(*offset[axis] / field.spacing + 0.5);
+    // false where a motion has diverged
+    const bool sound = whole > -1e9 && whole < 1e9;
+    point.cell[axis] = sound ? static_cast<std::int32_t>(whole) : -1000000000;
+    *offset[axis] = sound ? *offset[axis] - whole * field.spacing : 0;
   }
   return point;
 }
