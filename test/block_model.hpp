@@ -74,11 +74,7 @@ inline void add_muscle(Model& model, const std::array<float, 3>& direction, cons
 }
 
 /// Rest position of a node [m].
-inline std::array<double, 3> rest(const Model& model, std::size_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
+inline std::array<double, 3> rest(const Model& model, std::size_t node) { return rest_position(model, node); }
 
 }  // namespace test
 }  // namespace frontalis

@@ -101,7 +101,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const double built = wall_seconds() - start;
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no tangent plane is renewed: the difference to the motion is the cost of sliding far
+  // at rest no node enters another cell of its field: the difference to the motion is the cost of sliding far
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();

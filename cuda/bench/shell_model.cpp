@@ -1,6 +1,6 @@
 #include "cuda/bench/shell_model.hpp"
 
-#include "solver/contact/surface_tree.hpp"
+#include "frontalis/model/sample_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-using Point = SurfaceTree::Point;
+using Point = physics::Vec3<double>;
 
 // outer ellipsoid's semi-axes (up, lateral, out) and what is cut out of it [m]
 constexpr double axes[3] = { 130e-3, 78e-3, 92e-3 };
@@ -186,12 +186,7 @@ struct ShellBuilder
 
   void add_constraints()
   {
-    ConstraintSurface bone;
-    bone.name = "bone";
-    bone.mesh = sheet(12e-3 - 4e-3, 3e-3, [](double up) { return thickness(up) + 1e-3; });
-    to_local(bone.mesh);
-    const SurfaceTree tree(bone.mesh);
-    model.constraint_surfaces.push_back(bone);
+    std::vector<std::int32_t> sliding;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
     {
       const auto& c = model.nodes[n];
@@ -200,14 +195,16 @@ struct ShellBuilder
         continue;
       const auto node = static_cast<std::int32_t>(n);
       if (p.x > height - 6e-3 || std::abs(p.y) > half_width - 8e-3)
-      {
         model.rigid.push_back({ node, -1 });
-        continue;
-      }
-      const auto found = tree.closest(p - origin, 0.1);
-      const double distance = std::sqrt(found.squared_distance);
-      model.sliding.push_back({ node, 0, dot(p - origin - found.point, found.normal) < 0 ? -distance : distance });
+      else
+        sliding.push_back(node);
     }
+    const auto above_bone = [this](const std::array<double, 3>& at_rest)
+    {
+      const Point p = origin + Point{ at_rest[0], at_rest[1], at_rest[2] };
+      return thickness(p.x) + 1e-3 - depth(p);
+    };
+    slide_on(model, "bone", above_bone, sliding);
   }
 
   // binds points to the nearest voxel straight below them

@@ -197,6 +197,24 @@ void check_fibres(const Model& model)
     check_direction("fibre_direction", m, model.fibre_direction[m].data());
 }
 
+void check_field(const std::string& array, const SampledField& field)
+{
+  using physics::DistanceField;
+  check_entry(array + " (origin)", 0, check_finite, field.origin);
+  check_not_negative(array, "radius", field.radius);
+  if (field.radius > 0)
+    return;
+  check_positive(array + " (spacing)", 0, field.spacing);
+  std::size_t bricks = 1;
+  for (const std::int32_t count : field.bricks)
+    bricks *= static_cast<std::size_t>(std::max(count, 0));
+  check_length(array + " (table)", field.table.size(), bricks, "brick");
+  const std::size_t stored = field.samples.size() / DistanceField::brick_size;
+  check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");
+  check_each(array + " (table)", index_below(stored, -1), field.table);
+  check_each(array + " (samples)", check_finite, field.samples);
+}
+
 void check_constraints(const Model& model)
 {
   const auto node = index_below(model.nodes.size());
@@ -205,7 +223,7 @@ void check_constraints(const Model& model)
   for (const ConstraintSurface& surface : model.constraint_surfaces)
   {
     const std::string name = "constraint_surfaces '" + surface.name + "'";
-    check_mesh(name, surface.mesh);
+    check_field(name, surface.field);
     bone_or_none(name + " (bone)", 0, surface.bone);
     check_not_negative(name, "friction", surface.friction);
   }

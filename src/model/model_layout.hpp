@@ -17,6 +17,17 @@ void exchange_mesh(Archive& archive, const std::string& path, Mesh& mesh)
   archive(path + "/triangles", mesh.triangles);
 }
 
+template <class Archive, class Field>
+void exchange_field(Archive& archive, const std::string& path, Field& field)
+{
+  archive(path + "/origin", field.origin);
+  archive(path + "/spacing", field.spacing);
+  archive(path + "/radius", field.radius);
+  archive(path + "/bricks", field.bricks);
+  archive(path + "/table", field.table);
+  archive(path + "/samples", field.samples);
+}
+
 template <class Archive, class Bound>
 void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
 {
@@ -60,7 +71,7 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive.table("constraint_surfaces", model.constraint_surfaces, Column{ "name", &ConstraintSurface::name },
                 Column{ "bone", &ConstraintSurface::bone }, Column{ "friction", &ConstraintSurface::friction });
   for (std::size_t s = 0; s < model.constraint_surfaces.size(); ++s)
-    exchange_mesh(archive, "constraint_surfaces/" + std::to_string(s), model.constraint_surfaces[s].mesh);
+    exchange_field(archive, "constraint_surfaces/" + std::to_string(s), model.constraint_surfaces[s].field);
   archive.table("rigid", model.rigid, Column{ "node", &RigidNode::node }, Column{ "bone", &RigidNode::bone },
                 Column{ "constraint", &RigidNode::constraint });
   archive.table("sliding", model.sliding, Column{ "node", &SlidingNode::node },

@@ -262,6 +262,7 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("hourglass energy [J]", frame_.monitor.hourglass);
   status.add("smallest volume ratio", frame_.monitor.worst_jacobian);
   status.add("inverted voxels", frame_.monitor.inverted);
+  status.add("nodes past the rim of their surface", frame_.monitor.past_rim);
   status.add("returns to an earlier stable state", frame_.guard.rollbacks);
   if (frame_.guard.rollbacks > 0)
     status.add("reason of the latest return", words_for(frame_.guard.latest));

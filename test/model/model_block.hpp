@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "frontalis/model/sample_field.hpp"
 
 namespace frontalis
 {
@@ -47,7 +47,9 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   const TriangleMesh triangle{ { { { 0, 0, 0 } }, { { 1e-3, 0, 0 } }, { { 0, 1e-3, 1e-9 } } }, { { { 0, 1, 2 } } } };
   const Binding binding{ { 0, 0, 0 }, { { { 0, 0, 0 } }, { { 1, 0, 0 } }, { { 0, 0.5f, -0.25f } } } };
   model.bones = { "skull", "mandible" };
-  model.constraint_surfaces = { { "skull", triangle, 1, 0.25 } };
+  const SampledField sampled = sample_field(
+      { { { 0, 0, 0 } } }, [](const auto& p) { return p[2] - 1e-3; }, 1e-3, 2e-3);
+  model.constraint_surfaces = { { "skull", 1, 0.25, sampled } };
   model.rigid = { { 0, -1 }, { 1, 1 } };
   model.sliding = { { 2, 0, -0.00125 } };
   model.gravity = { 0, 0, -9.81 };

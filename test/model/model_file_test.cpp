@@ -89,7 +89,14 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.time_step_estimate, TimeStepEstimate::assembled);
   EXPECT_EQ(a.bones, b.bones);
   ASSERT_EQ(b.constraint_surfaces.size(), 1u);
-  EXPECT_EQ(a.constraint_surfaces[0].mesh.vertices, b.constraint_surfaces[0].mesh.vertices);
+  const SampledField &a_field = a.constraint_surfaces[0].field, &b_field = b.constraint_surfaces[0].field;
+  EXPECT_EQ(a_field.origin, b_field.origin);
+  EXPECT_EQ(a_field.spacing, b_field.spacing);
+  EXPECT_EQ(a_field.radius, b_field.radius);
+  EXPECT_EQ(a_field.bricks, b_field.bricks);
+  EXPECT_EQ(a_field.table, b_field.table);
+  EXPECT_EQ(a_field.samples, b_field.samples);
+  EXPECT_FALSE(b_field.samples.empty());
   EXPECT_EQ(b.constraint_surfaces[0].bone, 1);
   EXPECT_EQ(b.constraint_surfaces[0].friction, 0.25);
   ASSERT_EQ(b.rigid.size(), 2u);

@@ -2,6 +2,7 @@
 
 #include "block_model.hpp"
 
+#include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/materials/all.hpp"
 
 #include <algorithm>
@@ -38,6 +39,9 @@ inline std::vector<unsigned> every_combination()
       combinations.push_back(effects);
   return combinations;
 }
+
+/// Distance from the plane z = 0 [m].
+inline double height(const std::array<double, 3>& p) { return p[2]; }
 
 /// Strips of several lengths, so that tiles are full, half full and empty. Each effect has its own part of the scene.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
@@ -114,15 +118,12 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
   }
   if (effects & sliding)
   {
-    ConstraintSurface floor;
-    floor.name = "floor";
-    floor.friction = effects & friction ? 0.3 : 0;
-    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
-    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
-    model.constraint_surfaces.push_back(floor);
+    std::vector<std::int32_t> underside;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
       if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][0] < 9)
-        model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 0 });
+        underside.push_back(static_cast<std::int32_t>(n));
+    slide_on(model, "floor", height, underside, 10e-3, 0.1);
+    model.constraint_surfaces.back().friction = effects & friction ? 0.3 : 0;
   }
   return model;
 }

@@ -1,16 +1,15 @@
-#include "solver/contact/surface_tree.hpp"
 #include "backends.hpp"
 #include "block_model.hpp"
-#include "sphere_mesh.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/sample_field.hpp"
+#include "frontalis/solver/guard.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace frontalis;
 using Vectors = std::vector<std::array<double, 3>>;
-using Point = SurfaceTree::Point;
 
 namespace
 {
@@ -27,34 +26,37 @@ RigidTransform turned_about_z(double angle, const std::array<double, 3>& centre,
   return pose;
 }
 
-// A closed shell around a ball that is a bone.
-Model shell(const std::array<double, 3>& centre, double friction, int divisions = 64)
+constexpr double radius = 4.8e-3;
+
+double from(const std::array<double, 3>& centre, const std::array<double, 3>& p)
 {
-  const double radius = 4.8e-3;
+  return std::hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]);
+}
+
+// A closed shell around a ball that is a bone, whose field is sampled or in closed form.
+Model shell(const std::array<double, 3>& centre, double friction, bool sampled = false)
+{
   test::BlockSettings s;
   s.voxels = { { 14, 14, 14 } };
   s.damping = 20;
-  const auto from_centre = [&](double i, double j, double k)
-  { return std::hypot(1e-3 * i - centre[0], 1e-3 * j - centre[1], 1e-3 * k - centre[2]); };
   s.keep = [&](std::int32_t i, std::int32_t j, std::int32_t k)
   {
-    const double r = from_centre(i + 0.5, j + 0.5, k + 0.5);
+    const double r = from(centre, { { 1e-3 * i + 0.5e-3, 1e-3 * j + 0.5e-3, 1e-3 * k + 0.5e-3 } });
     return r > radius && r < radius + 1.7e-3;
   };
   Model model = test::block_model(s);
   model.bones = { "other", "ball" };
-  model.constraint_surfaces.push_back({ "ball", test::sphere(radius, centre, divisions), 1, friction });
-  const SurfaceTree tree(model.constraint_surfaces[0].mesh);
+  std::vector<std::int32_t> nodes;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
-  {
-    const auto p = test::rest(model, n);
-    const auto closest = tree.closest({ p[0], p[1], p[2] }, 1);
-    const double distance = std::sqrt(closest.squared_distance);
-    if (distance < 0.6e-3)
-      model.sliding.push_back(
-          { static_cast<std::int32_t>(n), 0,
-            from_centre(model.nodes[n][0], model.nodes[n][1], model.nodes[n][2]) > radius ? distance : -distance });
-  }
+    if (std::abs(from(centre, test::rest(model, n)) - radius) < 0.6e-3)
+      nodes.push_back(static_cast<std::int32_t>(n));
+  if (sampled)
+    slide_on(
+        model, "ball", [&](const auto& p) { return from(centre, p) - radius; }, nodes);
+  else
+    slide_on(model, "ball", sphere_field(centre, radius), nodes);
+  model.constraint_surfaces[0].bone = 1;
+  model.constraint_surfaces[0].friction = friction;
   return model;
 }
 
@@ -80,13 +82,13 @@ Model block_on_plane(double degrees, double friction)
   s.voxels = { { 6, 4, 2 } };
   s.damping = 50;
   Model model = test::block_model(s);
-  TriangleMesh plane;
-  plane.vertices = { { { -1, -1, -1e-4 } }, { { 1, -1, -1e-4 } }, { { 1, 1, -1e-4 } }, { { -1, 1, -1e-4 } } };
-  plane.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
-  model.constraint_surfaces.push_back({ "plane", plane, -1, friction });
+  std::vector<std::int32_t> underside;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     if (model.nodes[n][2] == 0)
-      model.sliding.push_back({ static_cast<std::int32_t>(n), 0, 1e-4 });
+      underside.push_back(static_cast<std::int32_t>(n));
+  slide_on(
+      model, "plane", [](const auto& p) { return p[2] + 1e-4; }, underside, 10e-3, 0.5);
+  model.constraint_surfaces[0].friction = friction;
   const double angle = degrees * 3.14159265358979 / 180;
   model.gravity = { { gravity * std::sin(angle), 0, -gravity * std::cos(angle) } };
   return model;
@@ -115,10 +117,9 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } }, shift{ { 2e-3, -1e-3, 1.5e-3 } };
   const double angle = 1.2;
-  for (const double friction : { 0.0, 20.0 })
+  for (const auto& [friction, sampled] : { std::pair(0.0, false), std::pair(0.0, true), std::pair(20.0, true) })
   {
-    const Model model = shell(centre, friction);
-    const SurfaceTree tree(model.constraint_surfaces[0].mesh);
+    const Model model = shell(centre, friction, sampled);
     const auto solver_ = solver(model);
     Controls controls = solver_->controls();
     Vectors u;
@@ -138,12 +139,12 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
           moved[i] = test::rest(model, node.node)[i] + u[node.node][i] - controls.bone[1].translation[i];
         for (int i = 0; i < 3; ++i)
           p[i] = r[i] * moved[0] + r[3 + i] * moved[1] + r[6 + i] * moved[2];
-        const double now = std::sqrt(tree.closest({ p[0], p[1], p[2] }, 1).squared_distance);
-        worst = std::max(worst, std::abs(now - std::abs(node.distance)));
+        const auto& field = model.constraint_surfaces[0].field;
+        worst = std::max(worst, std::abs(level_at(field, { { p[0], p[1], p[2] } }) - node.distance));
       }
     }
-    EXPECT_LT(worst, 10e-6);
-    // the body is carried along as a whole; edges between triangles drag it a little
+    EXPECT_LT(worst, 5e-6);
+    // the body is carried along as a whole
     EXPECT_NEAR(mean_x(u), shift[0], 0.05e-3 + (friction > 0 ? 0.1e-3 : 0));
     if (friction > 0)
       EXPECT_GT(spin(model, u, centre, shift), 0.5 * std::sin(angle));
@@ -214,7 +215,7 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
   for (const bool on_ball : { false, true })
     for (const bool follows_a_bone : { false, true })
     {
-      Model model = on_ball ? shell(centre, 0, 16) : block_on_plane(0, 0);
+      Model model = on_ball ? shell(centre, 0, true) : block_on_plane(0, 0);
       model.damping = 0;
       model.gravity = {};
       model.bones = { "other", "ball" };
@@ -295,7 +296,7 @@ TEST_P(SpinningShell, IsBrakedByFrictionAsInTheReference)
   const double free = spin_after(*spinning(smooth, GetParam()), smooth, 20e-3);
   for (const bool parts : { false, true })
   {
-    const Model model = model_of(parts, 1.5);
+    const Model model = model_of(parts, 2);
     const double braked = spin_after(*spinning(model, GetParam()), model, 20e-3);
     EXPECT_LT(braked, (parts ? 0.92 : 0.8) * free);
     EXPECT_NEAR(braked, spin_after(*spinning(model, "reference"), model, 20e-3), 0.01 * braked);
@@ -306,7 +307,7 @@ TEST_P(SpinningShell, LosesToFrictionWhatItDoesInTheReference)
 {
   for (const bool parts : { false, true })
   {
-    const Model model = model_of(parts, 1.5);
+    const Model model = model_of(parts, 2);
     const auto here = spinning(model, GetParam(), true), there = spinning(model, "reference", true);
     here->advance(10e-3, here->controls());
     there->advance(10e-3, there->controls());
@@ -327,6 +328,52 @@ TEST_P(SpinningShell, GoesOnInAnotherSolverThatHasTheSameFriction)
   EXPECT_EQ(spin_after(*one, model, 5e-3), spin_after(*other, model, 5e-3));
   EXPECT_THROW(spinning(model_of(true, 0), GetParam())->unpack(bytes), Error);
   EXPECT_THROW(other->unpack(spinning(model_of(true, 0), GetParam())->pack()), Error);
+}
+
+// Nodes that leave the samples of a field keep their plane, are counted, and stop the motion when they are far.
+TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
+{
+  for (const bool follows_a_bone : { false, true })
+  {
+    Model model = block_on_plane(90, 0);
+    model.damping = 0;
+    model.bones = { "bone" };
+    model.constraint_surfaces[0].bone = follows_a_bone ? 0 : -1;
+    // the plane ends 3 mm in front of the block
+    const auto plane = [](const auto& p) { return SurfaceDistance(p[2] + 1e-4, std::max(0.0, p[0] - 9e-3)); };
+    std::vector<std::array<double, 3>> rest;
+    for (const auto& node : model.sliding)
+      rest.push_back(test::rest(model, node.node));
+    model.constraint_surfaces[0].field = sample_field(rest, plane, 0.25e-3, 50e-3);
+    const auto shared = std::make_shared<const Model>(model);
+    const auto solver_ = make_solver(shared, { GetParam(), 0, 0 });
+    Guard guard(*solver_, shared);
+    EXPECT_EQ(solver_->monitor().past_rim, 0);
+    std::int64_t counted = 0;
+    std::string report;
+    Vectors u;
+    for (int i = 0; i < 60 && report.empty(); ++i)
+    {
+      try
+      {
+        guard.advance(1e-3, solver_->controls());
+        guard.check();
+      }
+      catch (const Unstable& why)
+      {
+        EXPECT_EQ(why.report.kind, Instability::past_rim);
+        report = why.what();
+      }
+      counted = std::max(counted, solver_->monitor().past_rim);
+      solver_->displacements(u);
+      for (const auto& node : model.sliding)
+        EXPECT_NEAR(u[node.node][2], 0, 1e-6);
+    }
+    EXPECT_GE(counted, 5);
+    EXPECT_NE(report.find("sliding on surface plane: continue the surface"), std::string::npos) << report;
+    EXPECT_GT(mean_x(u), 3e-3);
+    EXPECT_LT(mean_x(u), 8e-3);
+  }
 }
 
 TEST_P(Gliding, SameInputSameBits)

@@ -2,6 +2,7 @@
 // and repeat bit by bit.
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
@@ -94,13 +95,9 @@ Model model_of(const SmallScene& scene)
   }
   if (scene.floor)
   {
-    const double wide = 1, low = -0.2e-3;
-    model.constraint_surfaces.push_back(
-        { "floor",
-          { { { { -wide, -wide, low } }, { { wide, -wide, low } }, { { wide, wide, low } }, { { -wide, wide, low } } },
-            { { { 0, 1, 2 } }, { { 0, 2, 3 } } } } });
-    for (const auto node : nodes_where(model, [](const auto& p) { return p[0] > 0 && p[2] == 0; }))
-      model.sliding.push_back({ node, 0, -low });
+    slide_on(
+        model, "floor", [](const auto& p) { return p[2] + 0.2e-3; },
+        nodes_where(model, [](const auto& p) { return p[0] > 0 && p[2] == 0; }), 10e-3, 0.5);
   }
   return model;
 }

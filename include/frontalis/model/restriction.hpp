@@ -1,20 +1,34 @@
 #pragma once
 
 #include "frontalis/model/surface.hpp"
+#include "frontalis/physics/distance_field.hpp"
 
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace frontalis
 {
 
+/// Signed distance from a surface where nodes may slide along it, in local coordinates at rest: the arrays of a
+/// physics::DistanceField, which says what they mean. See model/sample_field.hpp.
+struct SampledField
+{
+  std::array<double, 3> origin{ { 0, 0, 0 } };
+  double spacing = 0;
+  double radius = 0;
+  std::array<std::int32_t, 3> bricks{ { 0, 0, 0 } };
+  std::vector<std::int32_t> table;
+  std::vector<float> samples;
+};
+
 struct ConstraintSurface
 {
   std::string name;
-  TriangleMesh mesh;
   std::int32_t bone = -1;  ///< index into Model::bones of the one it moves with; -1: still
   double friction = 0;     ///< Coulomb's coefficient
+  SampledField field;
 };
 
 struct RigidNode
@@ -28,7 +42,7 @@ struct SlidingNode
 {
   std::int32_t node = 0;
   std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
-  double distance = 0;           ///< distance to keep from the surface [m], positive on the side of its outward normals
+  double distance = 0;           ///< value of the surface's field at the rest position, which the node keeps [m]
   std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 

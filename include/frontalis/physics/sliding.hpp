@@ -1,12 +1,41 @@
 #pragma once
 
+#include "frontalis/physics/field_spline.hpp"
 #include "frontalis/physics/mutation.hpp"
-#include "frontalis/physics/number.hpp"
 
 namespace frontalis
 {
 namespace physics
 {
+
+/// Gradients shorter than this have no direction that a node could follow: it is in the middle of a furrow narrower
+/// than its distance, or of a ridge. It keeps the plane it has, as it does where no samples are stored.
+constexpr double least_gradient = 0.05;
+
+/// Tangent plane of a level set near a point: a node moves by -distance * normal to be on it.
+template <class T>
+struct LevelPlane
+{
+  Vec3<T> normal;  ///< unit vector towards larger distances from the surface
+  T distance;      ///< of the point from the level set, to first order [m]
+  T slip;          ///< way along which the plane stays within plane_error of the level set, to second order [m]
+};
+
+/// Plane of the set on which the field is `level` [m], from the field at a point. Returns false, and leaves `plane` as
+/// it is, where the gradient is too short.
+template <class T>
+FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, LevelPlane<T>& plane)
+{
+  using N = Number<T>;
+  const T slope = norm(field.gradient);
+  if (!(slope > N::of(least_gradient)))
+    return false;
+  const T scale = T(1) / slope;
+  plane.normal = scale * field.gradient;
+  plane.distance = scale * (field.value - level);
+  plane.slip = N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach);
+  return true;
+}
 
 /// A sliding node off its plane moves back by half of the error per step; of an error above twice this value, all but
 /// this value is removed [m]. The error arises suddenly when the tangent plane of a node is replaced. Removing it

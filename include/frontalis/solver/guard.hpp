@@ -19,7 +19,8 @@ enum class Instability
   energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
   hourglass,   ///< the same in hourglass modes only
   inverted,    ///< more voxels are inverted than allowed
-  time_step    ///< steps were longer than critical
+  time_step,   ///< steps were longer than critical
+  past_rim     ///< a sliding node is far past the rim of its surface's field
 };
 
 /// The rest of a sentence that begins with "the motion is unstable: ".

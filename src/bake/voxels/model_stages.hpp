@@ -29,14 +29,17 @@ struct LocalFrame
       v = to_array(to_local(to_vector(v)));
     return mesh;
   }
-  /// Scene coordinates of the point (i, j, k) of the model's grid, in voxel edges from the origin.
-  Vector3d grid_point(const Model& model, double i, double j, double k) const
+  Vector3d to_scene(const Vector3d& local) const
   {
-    const Vector3d local = to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k));
     Vector3d p = origin;
     for (int a = 0; a < 3; ++a)
       p[scene_axis(a)] += local[a];
     return p;
+  }
+  /// Scene coordinates of the point (i, j, k) of the model's grid, in voxel edges from the origin.
+  Vector3d grid_point(const Model& model, double i, double j, double k) const
+  {
+    return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {

@@ -1,6 +1,8 @@
 #include "bake/voxels/model_stages.hpp"
 
+#include "frontalis/model/sample_field.hpp"
 #include "bake/messages.hpp"
+#include "bake/voxels/tissue_sheet.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -55,24 +57,14 @@ public:
 
   double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
 
-  /// The part of a surface that tissue can touch, in local coordinates; of one that moves, all of it.
-  TriangleMesh local_mesh(const PreparedSurface& surface, bool moves) const
+  /// The part of a surface that nodes may slide on.
+  const PreparedSurface& sheet_of(const PreparedSurface& surface)
   {
-    if (moves)
-      return frame_.to_local(surface.mesh());
-    const Vector3d margin = Vector3d::Constant(30e-3);  // more than tissue moves
-    Box box;
-    for (const Vector3d& p : positions_)
-      box.extend(p);
-    box = Box(box.min() - margin, box.max() + margin);
-    const TriangleMesh& mesh = surface.mesh();
-    std::vector<bool> keep(mesh.triangles.size());
-    for (std::size_t t = 0; t < keep.size(); ++t)
-    {
-      const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
-      keep[t] = Box(a).extend(b).extend(c).intersects(box);
-    }
-    return frame_.to_local(keep_triangles(mesh, keep));
+    auto& sheet = sheet_[&surface];
+    if (!sheet)
+      sheet = std::make_unique<PreparedSurface>(
+          surface.name(), tissue_sheet(surface, tissue_side(surface), frame_, model_), surface.line());
+    return *sheet;
   }
 
 private:
@@ -116,6 +108,7 @@ private:
   double edge_ = 0;  ///< longest of a voxel [m]
   std::vector<Vector3d> positions_;
   std::map<const PreparedSurface*, double> side_;
+  std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;
 };
 
 /// Index in the model of the bone that a constraint moves with, added if it is new; -1: none.
@@ -152,14 +145,16 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     double distance = 0;  // from the surface of a sliding node [m]
   };
   std::vector<Restriction> restrictions(nodes);
-  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict
-  const auto for_each_node =
-      [&](const std::string& place, const std::vector<std::string>& names, const auto& part, const auto& restrict)
+  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; of surfaces
+  // to slide on, it is the sheet that faces tissue
+  const auto for_each_node = [&](const std::string& place, const std::vector<std::string>& names, const auto& part,
+                                 const auto& restrict, bool slides = false)
   {
     bool any = false;
     for (const std::string& name : names)
     {
-      const PreparedSurface& surface = named_surface(surfaces, name, place);
+      const PreparedSurface& whole = named_surface(surfaces, name, place);
+      const PreparedSurface& surface = slides ? finder.sheet_of(whole) : whole;
       const Distances distances = finder.find(surface, part.within, part.crop);
       for (std::size_t n = 0; n < nodes; ++n)
       {
@@ -205,33 +200,45 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                   });
   }
 
+  std::vector<const PreparedSurface*> sheets;  // of the model's constraint surfaces
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
     const SceneConstraint& constraint = scene.constraints[c];
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    // index of a surface among the model's, which it becomes one of
-    const auto index_of = [&](const PreparedSurface& surface)
+    // index of a sheet among the model's surfaces, which it becomes one of
+    const auto index_of = [&](const PreparedSurface& sheet)
     {
       auto& list = model.constraint_surfaces;
       const auto same = [&](const ConstraintSurface& other)
-      { return other.name == surface.name() && other.bone == bone && other.friction == constraint.friction; };
+      { return other.name == sheet.name() && other.bone == bone && other.friction == constraint.friction; };
       const auto index = static_cast<std::size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
       if (index == list.size())
-        list.push_back({ surface.name(), finder.local_mesh(surface, bone >= 0), bone, constraint.friction });
+      {
+        list.push_back({ sheet.name(), bone, constraint.friction, {} });
+        sheets.push_back(&sheet);
+      }
       return static_cast<std::int32_t>(index);
     };
     for_each_node(
         place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
-        [&](std::size_t n, double d, const PreparedSurface& surface)
+        [&](std::size_t n, double d, const PreparedSurface& sheet)
         {
-          const std::int32_t index = index_of(surface);
+          const std::int32_t index = index_of(sheet);
           const Restriction& known = restrictions[n];
           if (known.kind < Kind::sliding || (known.kind == Kind::sliding && std::abs(d) < std::abs(known.distance)))
             restrictions[n] = { Kind::sliding, index, static_cast<std::int32_t>(c), d };
-        });
+        },
+        true);
   }
+
+  std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes that slide on each
+  for (std::size_t n = 0; n < nodes; ++n)
+    if (restrictions[n].kind == Kind::sliding)
+      rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
+  for (std::size_t s = 0; s < sheets.size(); ++s)
+    model.constraint_surfaces[s].field = distance_field(*sheets[s], rest[s], frame, model, monitor);
 
   for (std::size_t n = 0; n < nodes; ++n)
   {
@@ -240,7 +247,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (kind == Kind::rigid)
       model.rigid.push_back({ node, of, constraint });
     else if (kind == Kind::sliding)
-      model.sliding.push_back({ node, of, distance, constraint });
+      model.sliding.push_back(
+          { node, of, level_at(model.constraint_surfaces[of].field, rest_position(model, node)), constraint });
   }
 }
 

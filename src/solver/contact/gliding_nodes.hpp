@@ -2,13 +2,11 @@
 
 #include "frontalis/model/surface.hpp"
 #include "frontalis/physics/pose.hpp"
-#include "solver/contact/archive_contacts.hpp"
-#include "solver/stepping/constraint_step.hpp"
+#include "solver/contact/kept_level.hpp"
 #include "solver/stepping/array_list.hpp"
-#include "solver/contact/surface_contact.hpp"
+#include "solver/stepping/constraint_step.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 namespace frontalis
@@ -22,47 +20,52 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision. A node's
-/// contact is stored in the frame of the bone.
+/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision, in the
+/// frame of the bone.
 template <class Real>
 class GlidingNodes
 {
 public:
+  using Point = physics::Vec3<double>;
   struct Node
   {
     std::int32_t node;
     std::int32_t bone;  // -1: the surface is fixed
     double friction;
-    SurfaceContact::Point rest;
-    SurfaceContact contact;
-    ContactPlane plane;
-    SurfaceContact::Point reference;  // where the plane was found
-    double pressing;                  // reaction per mass, delayed as friction needs it [m/s2]
-    // values of the latest step
-    SurfaceContact::Point normal;            // outward unit normal
-    SurfaceContact::Point surface_velocity;  // [m/s]
+    Point rest;
+    KeptLevel level;
   };
-
-  void add(Node node) { nodes_.push_back(std::move(node)); }
-  void reset();
-  /// Switches friction on or off.
-  void rub(bool on)
+  struct State
   {
-    rubs_ = on;
-    for (auto& node : nodes_)
-      node.pressing = on ? node.pressing : 0;
-  }
+    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: there is none yet
+    double height = 0;
+    double slip = -1;            // way from the reference within which the plane is valid [m]
+    Point reference{ 0, 0, 0 };  // where the plane was found
+    double pressing = 0;         // reaction per mass, delayed as friction needs it [m/s2]
+    // values of the latest step
+    Point outward{ 0, 0, 0 };           // the normal in the scene's frame
+    Point surface_velocity{ 0, 0, 0 };  // [m/s]
+  };
+  using States = std::vector<State>;
+
+  /// Nodes must be added in their order.
+  void add(const Node& node) { nodes_.push_back(node); }
+  std::size_t size() const { return nodes_.size(); }
+  /// Switches friction on or off.
+  void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
-  bool empty() const { return nodes_.empty(); }
-  void archive(ByteArchive& archive) { archive_contacts(nodes_, archive); }
-  /// Nodes whose index lies in [first, last). They are stored in the order of their nodes.
-  std::pair<const Node*, const Node*> range(std::int32_t first, std::int32_t last) const;
+  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::apply.
+  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step,
+             States& states) const;
   /// See RestrictedNodes::friction_loss.
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
-                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const;
-  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step);
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3],
+                       const States& states) const;
 
 private:
+  /// Indices of the nodes in [first, last).
+  std::pair<std::size_t, std::size_t> range(std::int32_t first, std::int32_t last) const;
+
   std::vector<Node> nodes_;
   bool rubs_ = true;
 };

@@ -65,6 +65,7 @@ struct Guard::Implementation
   Instability judged(const Monitor& monitor, double imbalance, double largest) const;
   Instability check();
   void go_back(Instability finding, const Controls& target, double end);
+  std::int32_t voxel_at(std::int32_t node) const;
   InstabilityReport examined(Instability finding, const Controls& target, double end);
 };
 
@@ -91,6 +92,8 @@ Instability Guard::Implementation::judged(const Monitor& m, double imbalance, do
   const double inverted = std::max(settings.inverted_share * voxels, static_cast<double>(good.monitor.inverted));
   if (static_cast<double>(m.inverted) > inverted)
     return Instability::inverted;
+  if (m.lost_node >= 0)
+    return Instability::past_rim;
   const double most =
       bound.most({ energy(good.monitor), good.time, solver.time(), activation, bone_way, good.largest_internal });
   if (m.hourglass > most)
@@ -165,6 +168,14 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target,
   bone_way.assign(good.bone.size(), 0);
 }
 
+std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
+{
+  const auto& all = model->voxel_nodes;
+  const auto has = [&](const auto& corners)
+  { return std::find(corners.begin(), corners.end(), node) != corners.end(); };
+  return static_cast<std::int32_t>(std::find_if(all.begin(), all.end(), has) - all.begin());
+}
+
 // Finds where the motion goes wrong. Numbers that are not finite spread at once over many voxels, so the motion is
 // repeated step by step from the good state, to see the voxel where they begin.
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
@@ -203,8 +214,10 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
     }
   }
   // a voxel that is crushed or not finite, or else one that is stretched until it is the stiffest
-  const std::int32_t voxel =
+  std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
+  if (finding == Instability::past_rim)
+    voxel = voxel_at(worst.lost_node);
   return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
 }
 

@@ -45,6 +45,10 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
                                     ? "set hourglass: assumed_strain, or take smaller voxels"
                                     : "set integration: selective_reduced, or take smaller voxels" };
   const auto& corners = model.voxel_nodes[e];
+  const auto sliding = held(model.sliding, corners);
+  if (kind == Instability::past_rim)
+    return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
+             "continue the surface beyond the tissue, or hold the tissue near its rim" };
   const auto rigid = held(model.rigid, corners);
   if (rigid != model.rigid.end() && rigid->bone >= 0 && moved[rigid->bone])
     return { "the motion of bone " + model.bones[rigid->bone], "move it in smaller parts" };
@@ -68,7 +72,6 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
                "lower its stress_reference or activation, or let it rise more slowly (time's activation_slew, the "
                "muscle's rise_time)" };
   }
-  const auto sliding = held(model.sliding, corners);
   if (sliding != model.sliding.end())
     return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
              "smooth the surface there, or take smaller voxels" };
@@ -96,7 +99,8 @@ std::string words_for(Instability instability)
                                     "energy grows without a cause",
                                     "hourglass energy grows without a cause",
                                     "voxels turn inside out",
-                                    "the time step is longer than critical" };
+                                    "the time step is longer than critical",
+                                    "nodes have slid past the rim of their surface" };
   return words[static_cast<int>(instability)];
 }
 

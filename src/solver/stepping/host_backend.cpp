@@ -10,11 +10,9 @@ namespace frontalis
 namespace
 {
 
-template <class Real>
 struct HostState : BackendState
 {
   std::vector<char> bytes;
-  typename RestrictedNodes<Real>::Contacts contacts;
 
   void archive(ByteArchive& archive) override
   {
@@ -22,7 +20,6 @@ struct HostState : BackendState
     archive(bytes);
     if (bytes.size() != size)
       throw Error("a state of " + std::to_string(bytes.size()) + " bytes; allowed are " + std::to_string(size));
-    contacts.archive(archive);
   }
 };
 
@@ -72,8 +69,8 @@ template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::save(std::unique_ptr<BackendState>& to)
 {
   if (!to)
-    to = std::make_unique<HostState<Real>>();
-  auto& state = static_cast<HostState<Real>&>(*to);
+    to = std::make_unique<HostState>();
+  auto& state = static_cast<HostState&>(*to);
   ArrayList list;
   list_arrays(list);
   state.bytes.resize(list.state_bytes());
@@ -83,13 +80,12 @@ void HostBackend<Real, Relaxed>::save(std::unique_ptr<BackendState>& to)
     std::memcpy(at, array.data, array.bytes);
     at += array.bytes;
   }
-  state.contacts = restricted_.contacts();
 }
 
 template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::restore(const BackendState& from)
 {
-  const auto& state = static_cast<const HostState<Real>&>(from);
+  const auto& state = static_cast<const HostState&>(from);
   ArrayList list;
   list_arrays(list);
   const char* at = state.bytes.data();
@@ -98,7 +94,6 @@ void HostBackend<Real, Relaxed>::restore(const BackendState& from)
     std::memcpy(array.data, at, array.bytes);
     at += array.bytes;
   }
-  restricted_.restore(state.contacts);
 }
 
 template <class Real, class Relaxed>

@@ -1,5 +1,6 @@
 #include "solver/stepping/restricted_nodes.hpp"
 
+#include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/element/sliding_node.hpp"
 #include "frontalis/physics/ramp.hpp"
@@ -13,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-using Point = SurfaceTree::Point;
+using Point = physics::Vec3<double>;
 
 template <class Entry>
 auto range(std::vector<Entry>& entries, std::int32_t first, std::int32_t last)
@@ -29,16 +30,20 @@ void sort_by_node(std::vector<Entry>& entries)
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.node < b.node; });
 }
 
+Point rest_point(const Model& model, std::int32_t node)
+{
+  const auto p = rest_position(model, node);
+  return { p[0], p[1], p[2] };
+}
+
 }  // namespace
 
 template <class Real>
 RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
     : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)
 {
-  trees_.resize(model.constraint_surfaces.size());
-  for (const auto& node : model.sliding)
-    if (auto& tree = trees_[node.surface]; !tree)
-      tree = std::make_unique<SurfaceTree>(model.constraint_surfaces[node.surface].mesh);
+  for (const auto& surface : model.constraint_surfaces)
+    fields_.push_back(view(surface.field));
   sort_by_node(rigid_);
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
@@ -51,18 +56,12 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
                                            });
   for (auto node = sliding.begin(); node != plain; ++node)
   {
-    const auto rest = rest_position(model, node->node);
     const auto& surface = model.constraint_surfaces[node->surface];
-    contacts_.gliding.add({ node->node,
-                            surface.bone,
-                            surface.friction,
-                            { rest[0], rest[1], rest[2] },
-                            { *trees_[node->surface], node->distance },
-                            {},
-                            {},
-                            0,
-                            {},
-                            {} });
+    gliding_.add({ node->node,
+                   surface.bone,
+                   surface.friction,
+                   rest_point(model, node->node),
+                   { &fields_[node->surface], node->distance } });
   }
   make_blocks({ plain, sliding.end() });
   reset();
@@ -93,9 +92,8 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
       block_sliding_.emplace_back().fill(-1);
       covered = first + block_count_.back();
     }
-    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(contacts_.sliding.size());
-    const auto rest = rest_position(model_, node.node);
-    contacts_.sliding.push_back({ { rest[0], rest[1], rest[2] }, { *trees_[node.surface], node.distance } });
+    block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(sliding_.size());
+    sliding_.push_back({ rest_point(model_, node.node), { &fields_[node.surface], node.distance } });
   }
 }
 
@@ -104,9 +102,12 @@ void RestrictedNodes<Real>::run(EffectSet running)
 {
   slides_ = running.has(Effect::sliding);
   rubs_ = running.has(Effect::friction);
-  contacts_.gliding.rub(rubs_);
+  gliding_.rub(rubs_);
   if (!slides_)
     reset();
+  if (!rubs_)
+    for (auto& state : contacts_.gliding)
+      state.pressing = 0;
 }
 
 template <class Real>
@@ -114,15 +115,10 @@ void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 {
   list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
-  for (const auto& tree : trees_)
-    if (tree)
-    {
-      list.add(Effect::sliding, "surfaces", tree->boxes());
-      list.add(Effect::sliding, "surfaces", tree->triangles());
-    }
-  contacts_.gliding.list_arrays(list);
-  list.add(Effect::sliding, "contacts", contacts_.sliding);
-  list.add(Effect::sliding, "tangent planes", contacts_.blocks);
+  gliding_.list_arrays(list);
+  list.add(Effect::sliding, "nodes that slide", sliding_);
+  list.add_state(Effect::sliding, "tangent planes", contacts_.gliding);
+  list.add_state(Effect::sliding, "tangent planes", contacts_.blocks);
   list.add(Effect::sliding, "tangent planes", block_node_);
   list.add(Effect::sliding, "tangent planes", block_count_);
   list.add(Effect::sliding, "tangent planes", block_sliding_);
@@ -131,9 +127,7 @@ void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 template <class Real>
 void RestrictedNodes<Real>::reset()
 {
-  contacts_.gliding.reset();
-  for (auto& sliding : contacts_.sliding)
-    sliding.contact.forget();
+  contacts_.gliding.assign(gliding_.size(), {});
   contacts_.blocks.assign(block_node_.size(), {});
   for (std::size_t block = 0; block < contacts_.blocks.size(); ++block)
     for (int lane = 0; lane < Block::width; ++lane)
@@ -149,9 +143,12 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
   // a node that does not slide gets here if its displacement is NaN
   if (index < 0)
     return;
-  Sliding& s = nodes.contacts_.sliding[index];
+  const Sliding& s = nodes.sliding_[index];
   Block& b = nodes.contacts_.blocks[block];
-  const ContactPlane plane = s.contact.renew(s.rest + Point{ u[0], u[1], u[2] });
+  const Point moved{ u[0], u[1], u[2] };
+  physics::LevelPlane<double> plane{};
+  if (!s.level.plane_at(s.rest + moved, plane))
+    return;
   const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
                                                      plane.normal, { v[0], v[1], v[2] });
   const double normal[3] = { plane.normal.x, plane.normal.y, plane.normal.z };
@@ -162,7 +159,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
     b.normal[axis][lane] = static_cast<Real>(normal[axis]);
     b.reference[axis][lane] = u[axis];
   }
-  b.offset[lane] = static_cast<Real>(plane.height - dot(plane.normal, s.rest));
+  b.offset[lane] = static_cast<Real>(dot(plane.normal, moved) - plane.distance);
   b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
 }
 
@@ -185,7 +182,7 @@ void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* c
               renew,
               this },
             block_of(first), block_of(last));
-    contacts_.gliding.apply(first, last, u, v, step);
+    gliding_.apply(first, last, u, v, step, contacts_.gliding);
   }
 
   if (!prescribed_.empty())
@@ -223,8 +220,7 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
         u[axis][r->node] = v[axis][r->node] = 0;
       continue;
     }
-    const auto rest = rest_position(model_, r->node);
-    const Point p{ rest[0], rest[1], rest[2] }, moved = pose_of(step.bone[r->bone]).outwards(p) - p;
+    const Point p = rest_point(model_, r->node), moved = pose_of(step.bone[r->bone]).outwards(p) - p;
     const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
       physics::move_to(to[axis], before[axis][r->node], static_cast<Real>(step.dt), u[axis][r->node], v[axis][r->node]);

@@ -1,10 +1,11 @@
 #pragma once
 
+#include "frontalis/byte_archive.hpp"
 #include "frontalis/model/model.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 
-#include <memory>
+#include <string>
 #include <vector>
 
 namespace frontalis
@@ -17,36 +18,17 @@ class RestrictedNodes : public EffectPart
 {
 public:
   using Block = SlidingBlock<Real>;
-  struct Sliding
-  {
-    SurfaceTree::Point rest;
-    SurfaceContact contact;
-  };
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    GlidingNodes<Real> gliding;    ///< those whose surface moves with a bone or has friction
-    std::vector<Sliding> sliding;  ///< the others
-    std::vector<Block> blocks;
-
-    void archive(ByteArchive& archive)
-    {
-      gliding.archive(archive);
-      archive_contacts(sliding, archive);
-      archive(blocks);
-    }
+    typename GlidingNodes<Real>::States gliding;  ///< of those whose surface moves with a bone or has friction
+    std::vector<Block> blocks;                    ///< of the others
   };
 
   /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset() override;
-  const Contacts& contacts() const { return contacts_; }
-  void restore(const Contacts& contacts)
-  {
-    contacts_ = contacts;
-    contacts_.gliding.rub(rubs_);
-  }
   /// Applies the constraints to nodes in [first, last), which must be whole node planes. `u`: displacements after the
   /// update of the step; `before`: displacements before it.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
@@ -57,17 +39,18 @@ public:
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
   {
-    return slides_ ? contacts_.gliding.friction_loss(first, last, mass, before, without, after) : 0;
+    return slides_ ? gliding_.friction_loss(first, last, mass, before, without, after, contacts_.gliding) : 0;
   }
   void run(EffectSet running) override;
   void list_arrays(ArrayList& list) override;
-  bool idle() const
-  {
-    const bool slides = slides_ && !(contacts_.sliding.empty() && contacts_.gliding.empty());
-    return rigid_.empty() && prescribed_.empty() && !slides;
-  }
+  bool idle() const { return rigid_.empty() && prescribed_.empty() && !(slides_ && !model_.sliding.empty()); }
 
 private:
+  struct Sliding
+  {
+    physics::Vec3<double> rest;
+    KeptLevel level;
+  };
   void make_blocks(const std::vector<SlidingNode>& nodes);
   void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
@@ -77,12 +60,14 @@ private:
 
   const Model& model_;
   SlideKernel<Real> kernel_;
-  std::vector<std::unique_ptr<SurfaceTree>> trees_;
-  std::vector<RigidNode> rigid_;  // all lists sorted by node
+  std::vector<physics::DistanceField> fields_;  // of the model's surfaces
+  std::vector<RigidNode> rigid_;                // all lists sorted by node
   std::vector<PrescribedNode> prescribed_;
+  GlidingNodes<Real> gliding_;
+  std::vector<Sliding> sliding_;
   Contacts contacts_;
   std::vector<std::int32_t> block_node_, block_count_;
-  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // index into contacts_.sliding, or -1
+  std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // index into sliding_, or -1
   bool slides_ = true, rubs_ = true;
 };
 

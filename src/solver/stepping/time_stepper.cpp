@@ -1,5 +1,7 @@
 #include "solver/stepping/time_stepper.hpp"
 
+#include "solver/contact/past_rim.hpp"
+
 #include "frontalis/solver/rigid_motion.hpp"
 #include "solver/stepping/dynamic_relaxation.hpp"
 #include "solver/stepping/highest_frequency_search.hpp"
@@ -301,6 +303,12 @@ Monitor TimeStepper::monitor()
   Monitor result = backend_->monitor();
   result.step_share =
       motion_.latest_step * std::sqrt(controller_.state().assembled.share()) / result.critical_time_step;
+  if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
+  {
+    NodalVectors u;
+    displacements(u);
+    find_nodes_past_rim(*model_, u, motion_.controls.bone, result);
+  }
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "frontalis/study/effect_costs.hpp"
 
+#include "frontalis/model/sample_field.hpp"
 #include "frontalis/study/voxel_model.hpp"
 
 #include <algorithm>
@@ -62,18 +63,24 @@ void give(Model& model, Effect effect, double share)
   {
     // the cost of friction is what it adds to sliding, so that all nodes of the face slide
     const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
-    ConstraintSurface floor{ "smooth floor", {} };
-    floor.mesh.vertices = { { { -1, -1, 0 } }, { { 1, -1, 0 } }, { { 1, 1, 0 } }, { { -1, 1, 0 } } };
-    floor.mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } } };
-    model.constraint_surfaces = { floor };
-    floor.name = "rough floor";
-    floor.friction = 0.3;
-    if (effect == Effect::friction && rows > 0)
-      model.constraint_surfaces.push_back(floor);
-    const auto rough = static_cast<std::int32_t>(model.constraint_surfaces.size()) - 1;
-    for (std::size_t n = 0; n < model.nodes.size(); ++n)
-      if (model.nodes[n][2] == 0 && model.nodes[n][0] > 0 && model.nodes[n][1] < sliding_rows)
-        model.sliding.push_back({ static_cast<std::int32_t>(n), model.nodes[n][1] < rows ? rough : 0, 0 });
+    const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
+    const auto slide_between = [&](const char* floor, std::int32_t first, std::int32_t last)
+    {
+      slide_on(
+          model, floor, [](const Point& p) { return p[2]; },
+          nodes_where(model,
+                      [&](const Point& p)
+                      {
+                        const double row = p[1] / model.spacing[1];
+                        return p[2] == 0 && p[0] > 0 && row > first - 0.5 && row < last - 0.5;
+                      }));
+    };
+    slide_between("smooth floor", rough_rows, sliding_rows);
+    if (rough_rows > 0)
+    {
+      slide_between("rough floor", 0, rough_rows);
+      model.constraint_surfaces.back().friction = 0.3;
+    }
   }
 }
 

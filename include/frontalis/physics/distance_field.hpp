@@ -1,0 +1,120 @@
+#pragma once
+
+#include "frontalis/physics/field_spline.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Signed distance from a surface [m], positive on the side of its outward normals, in the surface's frame: that of a
+/// sphere, or samples on a lattice. Samples are the coefficients of a quadratic B-spline (de Boor, A Practical Guide to
+/// Splines, 1978), which is smooth: its gradient has no kinks, and it rounds the surface's edges within about one
+/// spacing. Plain pointers, so that the same code runs on host and GPU.
+///
+/// Samples are stored in bricks of 8 x 8 x 8 cells where nodes may come, and each cell belongs to the sample in its
+/// middle. A brick repeats one layer of its neighbours' samples, so that a cell finds its 3 x 3 x 3 samples in its own.
+struct DistanceField
+{
+  static constexpr std::int32_t brick_edge = 8;              ///< [cells]
+  static constexpr std::int32_t brick_row = brick_edge + 2;  ///< [samples]
+  static constexpr std::int32_t brick_size = brick_row * brick_row * brick_row;
+
+  double origin[3] = { 0, 0, 0 };        ///< of sample (0,0,0), or centre of the sphere [m]
+  double spacing = 1;                    ///< of samples [m]
+  double radius = 0;                     ///< of the sphere [m]; 0: sampled
+  std::int32_t bricks[3] = { 0, 0, 0 };  ///< of the table along x, y, z
+  const std::int32_t* table = nullptr;   ///< index of each brick's samples, x fastest; negative: there are none
+  const float* samples = nullptr;        ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
+
+  /// The first of the 3 x 3 x 3 samples around a cell; null where none are stored.
+  FRONTALIS_LAW const float* around(const std::int32_t (&cell)[3]) const
+  {
+    std::int32_t brick = 0, first = 0;
+    for (int axis = 2; axis >= 0; --axis)
+    {
+      const std::int32_t b = cell[axis] >> 3;
+      if (b < 0 || b >= bricks[axis])
+        return nullptr;
+      brick = brick * bricks[axis] + b;
+      first = first * brick_row + (cell[axis] & 7);
+    }
+    brick = table[brick];
+    return brick < 0 ? nullptr : samples + static_cast<std::int64_t>(brick) * brick_size + first;
+  }
+};
+
+/// A point as a cell of a field and the offset from the sample in its middle [m], which may be longer than a cell.
+/// While a node moves, the cell of its rest position stays and the offset grows: float resolves it to nanometres.
+template <class T>
+struct FieldPoint
+{
+  std::int32_t cell[3];
+  Vec3<T> offset;
+};
+
+/// The point p [m] of the surface's frame. The cell of a sphere is (0,0,0), at its centre.
+FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const Vec3<double>& p)
+{
+  FieldPoint<double> point{ { 0, 0, 0 }, p - Vec3<double>{ field.origin[0], field.origin[1], field.origin[2] } };
+  if (field.radius > 0)
+    return point;
+  double* const offset[3] = { &point.offset.x, &point.offset.y, &point.offset.z };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double whole = std::floor(*offset[axis] / field.spacing + 0.5);
+    // false where a motion has diverged
+    const bool sound = whole > -1e9 && whole < 1e9;
+    point.cell[axis] = sound ? static_cast<std::int32_t>(whole) : -1000000000;
+    *offset[axis] = sound ? *offset[axis] - whole * field.spacing : 0;
+  }
+  return point;
+}
+
+/// The samples of a cell from the first of them, as around() returns it.
+FRONTALIS_LAW FieldSamples gather(const float* first)
+{
+  FieldSamples samples;
+  FRONTALIS_UNROLL
+  for (int n = 0; n < 27; ++n)
+    samples.value[n] = first[(n / 9 * DistanceField::brick_row + n / 3 % 3) * DistanceField::brick_row + n % 3];
+  return samples;
+}
+
+/// Moves whole cells from the offset into the cell. Returns the rest [cells], from -0.5 to 0.5 per axis.
+template <class T>
+FRONTALIS_LAW Vec3<T> enter_cell(const T& inverse_spacing, const Vec3<T>& offset, std::int32_t (&cell)[3])
+{
+  T x[3] = { inverse_spacing * offset.x, inverse_spacing * offset.y, inverse_spacing * offset.z };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const T whole = std::floor(x[axis] + T(0.5));
+    cell[axis] += static_cast<std::int32_t>(whole);
+    x[axis] -= whole;
+  }
+  return { x[0], x[1], x[2] };
+}
+
+/// The field at a point, which `value` receives. Returns false, and leaves it as it is, where no samples are stored.
+template <class T>
+FRONTALIS_LAW bool sample(const DistanceField& field, FieldPoint<T> point, FieldValue<T>& value)
+{
+  if (field.radius > 0)
+  {
+    value = sphere_value(static_cast<T>(field.radius), point.offset);
+    return true;
+  }
+  const T inverse_spacing = static_cast<T>(1 / field.spacing);
+  const Vec3<T> place = enter_cell(inverse_spacing, point.offset, point.cell);
+  const float* const first = field.around(point.cell);
+  if (first == nullptr)
+    return false;
+  value = spline(gather(first), inverse_spacing, place);
+  return true;
+}
+
+}  // namespace physics
+}  // namespace frontalis

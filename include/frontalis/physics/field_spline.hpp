@@ -1,0 +1,94 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// What a field has at a point.
+template <class T>
+struct FieldValue
+{
+  T value;           ///< [m]
+  Vec3<T> gradient;  ///< about a unit vector, shorter on ridges and in furrows
+  T curvature;       ///< Frobenius norm of the Hessian [1/m]
+  T reach;           ///< way along which a plane may rely on that curvature [m]; see level_plane()
+};
+
+/// Largest error of a tangent plane that replaces a level set: small, because each change of plane excites vibrations
+/// [m].
+constexpr double plane_error = 0.5e-6;
+
+/// The samples of a cell, x fastest [m].
+struct FieldSamples
+{
+  float value[27];
+};
+
+/// The spline at a place in a cell that enter_cell() returned. Its second derivatives may jump at the cell's faces, but
+/// are at most 2 / spacing, because distances of neighbouring samples differ by at most the spacing.
+template <class T>
+FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
+{
+  using N = Number<T>;
+  const T x[3] = { place.x, place.y, place.z };
+  // weights of value and slope; those of the second derivative are 1, -2, 1
+  T w[3][3], d[3][3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const T before = T(0.5) - x[axis], after = T(0.5) + x[axis];
+    w[axis][0] = T(0.5) * before * before;
+    w[axis][1] = T(0.75) - x[axis] * x[axis];
+    w[axis][2] = T(0.5) * after * after;
+    d[axis][0] = -before;
+    d[axis][1] = T(-2) * x[axis];
+    d[axis][2] = after;
+  }
+  const auto sum = [](const T(&weight)[3], const T(&of)[3])
+  { return weight[0] * of[0] + weight[1] * of[1] + weight[2] * of[2]; };
+  const auto bend = [](const T(&of)[3]) { return of[0] - T(2) * of[1] + of[2]; };
+  T f[3], fx[3], fy[3], fxx[3], fxy[3], fyy[3];  // in each plane of samples
+  FRONTALIS_UNROLL
+  for (int k = 0; k < 3; ++k)
+  {
+    T g[3], gx[3], gxx[3];  // in each row of the plane
+    FRONTALIS_UNROLL
+    for (int j = 0; j < 3; ++j)
+    {
+      const float* const row = samples.value + 9 * k + 3 * j;
+      const T of[3] = { T(row[0]), T(row[1]), T(row[2]) };
+      g[j] = sum(w[0], of);
+      gx[j] = sum(d[0], of);
+      gxx[j] = bend(of);
+    }
+    f[k] = sum(w[1], g);
+    fx[k] = sum(w[1], gx);
+    fy[k] = sum(d[1], g);
+    fxx[k] = sum(w[1], gxx);
+    fxy[k] = sum(d[1], gx);
+    fyy[k] = bend(g);
+  }
+  const T xx = sum(w[2], fxx), yy = sum(w[2], fyy), zz = bend(f);
+  const T xy = sum(w[2], fxy), xz = sum(d[2], fx), yz = sum(d[2], fy);
+  T to_face = T(0.5);
+  for (int axis = 0; axis < 3; ++axis)
+    to_face = N::min(to_face, T(0.5) - N::max(x[axis], -x[axis]));
+  const T spacing = T(1) / inverse_spacing;
+  const T squared = xx * xx + yy * yy + zz * zz + T(2) * (xy * xy + xz * xz + yz * yz);
+  return { sum(w[2], f), inverse_spacing * Vec3<T>{ sum(w[2], fx), sum(w[2], fy), sum(d[2], f) },
+           inverse_spacing * inverse_spacing * N::sqrt(squared),
+           N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)) };
+}
+
+/// Distance from a sphere at `offset` [m] from its centre, in the same form.
+template <class T>
+FRONTALIS_LAW FieldValue<T> sphere_value(const T& radius, const Vec3<T>& offset)
+{
+  const T distance = Number<T>::max(norm(offset), T(1e-9));
+  return { distance - radius, (T(1) / distance) * offset, T(1.4142136) / distance, distance };
+}
+
+}  // namespace physics
+}  // namespace frontalis

@@ -1,0 +1,202 @@
+#include "bake/voxels/tissue_sheet.hpp"
+
+#include "bake/bake_monitor.hpp"
+#include "bake/voxels/voxel_index.hpp"
+#include "frontalis/model/sample_field.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <queue>
+#include <set>
+
+namespace frontalis
+{
+namespace
+{
+
+/// How far nodes may slide beyond the places where nodes rest: more than skin moves [m].
+constexpr double travel = 20e-3;
+
+Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
+
+/// Whether `ask` is true at a point of a triangle, of points at most `spacing` apart.
+template <class Ask>
+bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
+{
+  const double longest = std::max({ (v[1] - v[0]).norm(), (v[2] - v[1]).norm(), (v[0] - v[2]).norm() });
+  const int parts = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, 1000);
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; i + j < parts; ++j)
+    {
+      const double a = (i + 1.0 / 3) / parts, b = (j + 1.0 / 3) / parts;
+      if (ask(v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0])))
+        return true;
+    }
+  return false;
+}
+
+/// Extends a selection of triangles over their edges up to `travel` farther, where the surface does not turn away by
+/// more than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it.
+void grow(const TriangleMesh& mesh, std::vector<bool>& selected)
+{
+  constexpr double least_cosine = 0.2;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::size_t>> at_edge;
+  std::vector<Vector3d> normal;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+  {
+    normal.push_back(normal_of(corners(mesh, mesh.triangles[t])));
+    for (std::size_t c = 0; c < 3; ++c)
+      at_edge[std::minmax(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3])].push_back(t);
+  }
+  // Dijkstra's algorithm over the middles of edges, through which triangles are entered
+  struct Entry
+  {
+    double way;
+    std::size_t triangle;
+    Vector3d at, normal;  ///< of the selected triangle that it came from
+    bool operator<(const Entry& other) const { return way > other.way; }
+  };
+  std::priority_queue<Entry> entries;
+  const auto leave = [&](std::size_t t, double way, const Vector3d* at, const Vector3d& origin)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const std::int32_t a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
+      const Vector3d middle = 0.5 * (vertex(mesh, a) + vertex(mesh, b));
+      const double far = way + (at == nullptr ? 0 : (middle - *at).norm());
+      for (const std::size_t other : at_edge.at(std::minmax(a, b)))
+        if (!selected[other] && far < travel && normal[other].dot(origin) >= least_cosine)
+          entries.push({ far, other, middle, origin });
+    }
+  };
+  const std::vector<bool> seeds = selected;
+  for (std::size_t t = 0; t < seeds.size(); ++t)
+    if (seeds[t])
+      leave(t, 0, nullptr, normal[t]);
+  while (!entries.empty())
+  {
+    const Entry entry = entries.top();
+    entries.pop();
+    if (selected[entry.triangle])
+      continue;
+    selected[entry.triangle] = true;
+    leave(entry.triangle, entry.way, &entry.at, entry.normal);
+  }
+}
+
+/// Centre and radius of the sphere that a closed mesh approximates, if it does: vertices lie on it within a thousandth
+/// of its radius, and middles of triangles within a hundredth.
+std::optional<std::pair<Vector3d, double>> sphere_of(const PreparedSurface& surface)
+{
+  const TriangleMesh& mesh = surface.mesh();
+  if (!surface.closed() || mesh.vertices.size() < 12)
+    return std::nullopt;
+  // |v - m|^2 = 2 (c - m) . (v - m) + k for all vertices v, with any point m
+  const Vector3d middle = surface.box().center();
+  Eigen::MatrixX4d a(mesh.vertices.size(), 4);
+  Eigen::VectorXd b(mesh.vertices.size());
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n)
+  {
+    const Vector3d v = vertex(mesh, static_cast<std::int32_t>(n)) - middle;
+    a.row(static_cast<Eigen::Index>(n)) << 2 * v.transpose(), 1;
+    b[static_cast<Eigen::Index>(n)] = v.squaredNorm();
+  }
+  const Eigen::Vector4d fit = a.colPivHouseholderQr().solve(b);
+  const Vector3d centre = middle + fit.head<3>();
+  const double radius = std::sqrt(fit[3] + fit.head<3>().squaredNorm());
+  const auto near = [&](const Vector3d& p, double tolerance)
+  { return std::abs((p - centre).norm() - radius) <= tolerance * radius; };
+  for (const Triangle& t : mesh.triangles)
+  {
+    const auto v = corners(mesh, t);
+    if (!near(v[0], 1e-3) || !near(v[1], 1e-3) || !near(v[2], 1e-3) || !near((v[0] + v[1] + v[2]) / 3, 1e-2))
+      return std::nullopt;
+  }
+  return std::pair(centre, radius);
+}
+
+/// Whether the parts of each triangle, numbered as ClosestPoint::feature, lie on the rim of the mesh.
+std::vector<std::array<bool, 7>> rim_features(const TriangleMesh& mesh)
+{
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  std::vector<bool> corners(mesh.vertices.size(), false);
+  for (const auto& [a, b] : unbalanced_edges(mesh))
+  {
+    edges.insert(std::minmax(a, b));
+    corners[a] = corners[b] = true;
+  }
+  std::vector<std::array<bool, 7>> features(mesh.triangles.size());
+  for (std::size_t t = 0; t < features.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const std::int32_t a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
+      features[t][1 + c] = edges.count(std::minmax(a, b)) > 0;
+      features[t][4 + c] = corners[a];
+    }
+  return features;
+}
+
+}  // namespace
+
+TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const LocalFrame& frame, const Model& model)
+{
+  const TriangleMesh& mesh = surface.mesh();
+  if (sphere_of(surface))
+    return mesh;
+  const VoxelIndex tissue(model.voxels, model.size);
+  const Vector3d spacing = to_vector(model.spacing);
+  const auto is_tissue = [&](const Vector3d& p)
+  {
+    const Vector3d cell = frame.to_local(p).cwiseQuotient(spacing).array().floor();
+    if (cell.cwiseAbs().maxCoeff() > 1e6)
+      return false;
+    return tissue.find({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
+                           static_cast<std::int32_t>(cell[2]) } }) >= 0;
+  };
+  std::vector<bool> facing(mesh.triangles.size());
+  for (std::size_t t = 0; t < facing.size(); ++t)
+  {
+    const auto v = corners(mesh, mesh.triangles[t]);
+    const Vector3d ahead = spacing.maxCoeff() * normal_of(v);
+    facing[t] = any_point(v, spacing.minCoeff(),
+                          [&](const Vector3d& p)
+                          { return (side >= 0 && is_tissue(p + ahead)) || (side <= 0 && is_tissue(p - ahead)); });
+  }
+  // tissue thinner than a voxel
+  if (std::find(facing.begin(), facing.end(), true) == facing.end())
+    return mesh;
+  grow(mesh, facing);
+  return keep_triangles(mesh, facing);
+}
+
+SampledField distance_field(const PreparedSurface& sheet, const std::vector<std::array<double, 3>>& rest,
+                            const LocalFrame& frame, const Model& model, BakeMonitor& monitor)
+{
+  if (const auto sphere = sphere_of(sheet))
+    return sphere_field(to_array(frame.to_local(sphere->first)), sphere->second);
+  const std::vector<std::array<bool, 7>> on_rim = rim_features(sheet.mesh());
+  const auto distance = [&](const std::array<double, 3>& local)
+  {
+    // neighbouring samples are asked for one after the other
+    thread_local std::int32_t hint = -1;
+    const Vector3d p = frame.to_scene(to_vector(local));
+    const auto triangles = static_cast<std::int32_t>(sheet.mesh().triangles.size());
+    const ClosestPoint closest = sheet.tree().closest(p, 1e300, hint < triangles ? hint : -1);
+    hint = closest.triangle;
+    if (!on_rim[closest.triangle][closest.feature])
+      return SurfaceDistance(sheet.signed_distance(p, closest));
+    const Vector3d away = p - closest.point, &normal = sheet.pseudonormal(closest);
+    const double height = away.dot(normal);
+    return SurfaceDistance(height, (away - height * normal).norm());
+  };
+  constexpr std::size_t grain = 64;
+  return sample_field(rest, distance, std::min(0.5e-3, 0.5 * to_vector(model.spacing).minCoeff()), travel,
+                      [&](std::size_t count, const std::function<void(std::size_t)>& body)
+                      { parallel_for(monitor, count, grain, body); });
+}
+
+}  // namespace frontalis

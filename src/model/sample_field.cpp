@@ -1,0 +1,204 @@
+#include "frontalis/model/sample_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontalis
+{
+namespace
+{
+
+using Point = std::array<double, 3>;
+using physics::DistanceField;
+
+// Distances that samples of a brick must cover [m].
+struct Band
+{
+  double least = 1e300, largest = -1e300;
+  bool home = false;  // a node rests in the brick
+};
+
+// Whether the distance is in the band somewhere in a cube, found by halving it down to `smallest` [m].
+bool reaches(const Distance& distance, const Band& band, const Point& middle, double edge, double smallest)
+{
+  const SurfaceDistance d = distance(middle);
+  const double radius = 0.5 * std::sqrt(3.0) * edge;
+  // the nearest point may jump to the rim and back, and sign and way past the rim with it, but not the true distance
+  const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
+  const bool too_far =
+      std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;
+  if (too_far || (beside_band && d.past_rim == 0))
+    return false;
+  if (edge <= smallest)
+    return !beside_band && d.past_rim <= radius;
+  if (d.value >= band.least && d.value <= band.largest && d.past_rim == 0)
+    return true;
+  for (int part = 0; part < 8; ++part)
+  {
+    Point p = middle;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] += (part >> axis & 1 ? 0.25 : -0.25) * edge;
+    if (reaches(distance, band, p, 0.5 * edge, smallest))
+      return true;
+  }
+  return false;
+}
+
+// Calls visit(index in the table) for bricks within `way` of a point.
+template <class Visit>
+void visit_bricks(const SampledField& field, const Point& p, double way, const Visit& visit)
+{
+  const double edge = DistanceField::brick_edge * field.spacing;
+  std::int32_t first[3], last[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // a cell begins half a spacing before its sample
+    const double x = p[axis] - field.origin[axis] + 0.5 * field.spacing;
+    const double count = field.bricks[axis];
+    first[axis] = static_cast<std::int32_t>(std::clamp(std::floor((x - way) / edge), 0.0, count));
+    last[axis] = static_cast<std::int32_t>(std::clamp(std::floor((x + way) / edge), -1.0, count - 1));
+  }
+  for (std::int32_t k = first[2]; k <= last[2]; ++k)
+    for (std::int32_t j = first[1]; j <= last[1]; ++j)
+      for (std::int32_t i = first[0]; i <= last[0]; ++i)
+        visit((static_cast<std::size_t>(k) * field.bricks[1] + j) * field.bricks[0] + i);
+}
+
+}  // namespace
+
+void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
+{
+  for (std::size_t n = 0; n < count; ++n)
+    body(n);
+}
+
+SampledField sample_field(const std::vector<Point>& rest, const Distance& distance, double spacing, double travel,
+                          const Loop& loop)
+{
+  SampledField field;
+  field.spacing = spacing;
+  if (rest.empty())
+    return field;
+  std::vector<double> level(rest.size());
+  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]).value; });
+  const double edge = DistanceField::brick_edge * spacing;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto range = std::minmax_element(rest.begin(), rest.end(),
+                                           [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+    field.origin[axis] = (*range.first)[axis] - travel;
+    field.bricks[axis] =
+        1 + static_cast<std::int32_t>(((*range.second)[axis] + travel - field.origin[axis] + spacing) / edge);
+  }
+  field.table.resize(static_cast<std::size_t>(field.bricks[0]) * field.bricks[1] * field.bricks[2], -1);
+
+  std::vector<Band> bands(field.table.size());
+  for (std::size_t n = 0; n < rest.size(); ++n)
+  {
+    visit_bricks(field, rest[n], travel,
+                 [&](std::size_t brick)
+                 {
+                   bands[brick].least = std::min(bands[brick].least, level[n] - spacing);
+                   bands[brick].largest = std::max(bands[brick].largest, level[n] + spacing);
+                 });
+    visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
+  }
+  std::vector<std::size_t> places;
+  for (std::size_t b = 0; b < bands.size(); ++b)
+    if (bands[b].least < bands[b].largest)
+      places.push_back(b);
+  std::vector<std::vector<float>> samples(places.size());
+  loop(places.size(),
+       [&](std::size_t n)
+       {
+         const std::size_t row = places[n] / field.bricks[0];
+         const std::array<std::size_t, 3> brick{ { places[n] % field.bricks[0], row % field.bricks[1],
+                                                   row / field.bricks[1] } };
+         Point first{}, middle{};
+         for (int axis = 0; axis < 3; ++axis)
+         {
+           first[axis] = field.origin[axis] + static_cast<double>(brick[axis]) * edge - spacing;
+           middle[axis] = first[axis] + 0.5 * (edge + spacing);
+         }
+         const Band& band = bands[places[n]];
+         if (!band.home && !reaches(distance, band, middle, edge, spacing))
+           return;
+         samples[n].reserve(DistanceField::brick_size);
+         for (int s = 0; s < DistanceField::brick_size; ++s)
+         {
+           constexpr int width = DistanceField::brick_row;
+           const std::array<int, 3> at{ { s % width, s / width % width, s / (width * width) } };
+           samples[n].push_back(static_cast<float>(
+               distance({ { first[0] + at[0] * spacing, first[1] + at[1] * spacing, first[2] + at[2] * spacing } })
+                   .value));
+         }
+       });
+  std::int32_t stored = 0;
+  for (std::size_t n = 0; n < places.size(); ++n)
+  {
+    if (samples[n].empty())
+      continue;
+    field.table[places[n]] = stored++;
+    field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
+  }
+  return field;
+}
+
+SampledField sphere_field(const Point& centre, double radius)
+{
+  SampledField field;
+  field.origin = centre;
+  field.radius = radius;
+  return field;
+}
+
+DistanceField view(const SampledField& field)
+{
+  DistanceField view;
+  std::copy(field.origin.begin(), field.origin.end(), view.origin);
+  std::copy(field.bricks.begin(), field.bricks.end(), view.bricks);
+  view.spacing = field.spacing;
+  view.radius = field.radius;
+  view.table = field.table.data();
+  view.samples = field.samples.data();
+  return view;
+}
+
+double level_at(const SampledField& field, const Point& p)
+{
+  const DistanceField of = view(field);
+  physics::FieldValue<double> value{};
+  const bool found = physics::sample(of, physics::field_point(of, { p[0], p[1], p[2] }), value);
+  return found ? value.value : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool has_samples_near(const SampledField& field, const Point& p, double way)
+{
+  bool any = field.radius > 0;
+  visit_bricks(field, p, way, [&](std::size_t brick) { any = any || field.table[brick] >= 0; });
+  return any;
+}
+
+std::int32_t slide_on(Model& model, const std::string& name, SampledField field, const std::vector<std::int32_t>& nodes)
+{
+  const auto surface = static_cast<std::int32_t>(model.constraint_surfaces.size());
+  for (const auto node : nodes)
+    model.sliding.push_back({ node, surface, level_at(field, rest_position(model, node)) });
+  ConstraintSurface added;
+  added.name = name;
+  added.field = std::move(field);
+  model.constraint_surfaces.push_back(std::move(added));
+  return surface;
+}
+
+std::int32_t slide_on(Model& model, const std::string& name, const Distance& distance,
+                      const std::vector<std::int32_t>& nodes, double spacing, double travel)
+{
+  std::vector<Point> rest;
+  for (const auto node : nodes)
+    rest.push_back(rest_position(model, node));
+  return slide_on(model, name, sample_field(rest, distance, spacing, travel), nodes);
+}
+
+}  // namespace frontalis

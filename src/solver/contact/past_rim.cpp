@@ -1,0 +1,32 @@
+#include "solver/contact/past_rim.hpp"
+
+#include "frontalis/model/sample_field.hpp"
+#include "solver/contact/gliding_nodes.hpp"
+
+namespace frontalis
+{
+
+void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
+                         const std::vector<RigidTransform>& bones, Monitor& monitor)
+{
+  constexpr double far = 2e-3;  // [m]
+  for (const SlidingNode& node : model.sliding)
+  {
+    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
+    auto p = rest_position(model, node.node);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[axis] += displacements[node.node][axis];
+    if (surface.bone >= 0)
+    {
+      const auto at_rest = pose_of(bones[surface.bone]).inwards({ p[0], p[1], p[2] });
+      p = { { at_rest.x, at_rest.y, at_rest.z } };
+    }
+    if (has_samples_near(surface.field, p, 0))
+      continue;
+    ++monitor.past_rim;
+    if (!has_samples_near(surface.field, p, far))
+      monitor.lost_node = node.node;
+  }
+}
+
+}  // namespace frontalis
