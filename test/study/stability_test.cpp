@@ -76,7 +76,7 @@ TEST_F(StabilityFile, EveryOneHasACase)
 TEST_F(StabilityFile, ItsBoundsDecide)
 {
   EXPECT_TRUE(played(folder("tests: [cpu, reference]", "tests: [cpu]")).passed());
-  const Trial strict = played(folder("kept_distance: 20 um", "kept_distance: 1 um"));
+  const Trial strict = played(folder("kept_level: 5 um", "kept_level: 0.1 um"));
   EXPECT_TRUE(strict.failure.empty()) << strict.failure;
   EXPECT_FALSE(strict.passed());
 }
@@ -85,7 +85,7 @@ TEST_F(StabilityFile, TellsWhatIsMissingOrTooMuch)
 {
   EXPECT_NE(played(folder("pull: 60 m/s2\n", "")).failure.find("sharp_ridge.yaml: pull: is missing"),
             std::string::npos);
-  EXPECT_NE(played(folder("distance: 20 um", "distance: 20 mm")).failure.find("'20 mm'; must be a number in um"),
+  EXPECT_NE(played(folder("level: 5 um", "level: 20 mm")).failure.find("'20 mm'; must be a number in um"),
             std::string::npos);
   EXPECT_NE(played(folder("[8, 3, 2]", "[8, 3.5, 2]")).failure.find("size: must be three whole numbers"),
             std::string::npos);

@@ -81,7 +81,7 @@ void drag(
     way = std::max(way, come);
   }
   motion.check_balance(of);
-  run.check("error of kept levels, " + of, "um", 0, 1e6 * worst, "kept_distance");
+  run.check("error of kept levels, " + of, "um", 0, 1e6 * worst, "kept_level");
   run.trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
                             std::max(0.0, least_way - 1e3 * way), 0);
 }
