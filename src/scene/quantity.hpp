@@ -6,11 +6,11 @@
 namespace frontalis
 {
 
-/// The quantity of a number in a scene: its units; the one that a number without a unit has.
+/// Physical dimension of a number in a scene file: the allowed units; then the unit of a number without one.
 enum class Dimension
 {
-  number,       ///< no unit
-  length,       ///< m, cm, mm, um, in; without one the scene's length unit
+  number,       ///< without a unit
+  length,       ///< m, cm, mm, um, in; the scene's length unit
   time,         ///< s, ms, us; s
   rate,         ///< 1/s, Hz; 1/s
   pressure,     ///< Pa, kPa, MPa, GPa; Pa
@@ -27,7 +27,7 @@ struct Bound
   bool upper_allowed = true;
 
   bool holds(double value) const;
-  std::string text() const;  ///< "greater than 0", "from 0 to 1"
+  std::string text() const;  ///< "greater than 0", "at least 0 and at most 1"
 };
 
 constexpr Bound any_number{};
@@ -36,8 +36,8 @@ constexpr Bound not_negative{ 0 };
 constexpr Bound at_least_one{ 1 };
 constexpr Bound proportion{ 0, 1 };
 
-/// Number with an optional unit, in SI units. Throws Error saying what was found and what is allowed; numbers that are
-/// not finite are refused.
+/// Parses a finite number with an optional unit and returns it in SI units. `length_unit` [m] applies to lengths
+/// without a unit. Throws Error with what was found and what is allowed.
 double parse_quantity(const std::string& text, Dimension dimension, double length_unit);
 
 /// Metres per length unit. Throws Error naming the units that exist.

@@ -21,12 +21,12 @@ struct SceneConstraint
   std::vector<std::string> surfaces;
   double within = -1;  ///< nodes at most this far outside the surface are restricted [m]; < 0: 0.75 voxel edges
   Region crop;
-  std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone; empty: they stand still
-  double friction = 0;  ///< sliding: Coulomb's coefficient
+  std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
+  double friction = 0;  ///< sliding: Coulomb friction coefficient
   int line = 0;
 };
 
-/// Load or prescribed motion on a named surface; all ramp linearly from 0 over `ramp` seconds.
+/// Load or prescribed displacement on a surface. It grows linearly from 0 during the first `ramp` seconds.
 struct SceneLoad
 {
   enum class Kind
@@ -40,7 +40,7 @@ struct SceneLoad
   std::string surface;
   Vector3 value{ 0, 0, 0 };
   std::array<bool, 3> fixed{ true, true, true };
-  double within = -1;  ///< displacement only, as for constraints
+  double within = -1;  ///< displacement only: as SceneConstraint::within
   double ramp = 0;     ///< [s]
   Region crop;
   int line = 0;
