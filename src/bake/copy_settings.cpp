@@ -82,7 +82,7 @@ void copy_presets(const Scene& scene, Model& model)
 void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
-  // both have the kinds none, uniform and selective in this order
+  // both enumerations are none, uniform, selective
   model.mass_scaling = { static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step };
   for (const std::string& name : from.materials)
     model.mass_scaling.materials.push_back(index_of(model.materials, name, scene.file + ": mass_scaling", "material"));

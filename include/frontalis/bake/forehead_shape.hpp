@@ -24,16 +24,16 @@ struct ForeheadDimensions
 {
   double height = 70e-3;               ///< from the brow to the hairline, in the midline
   double width = 150e-3;               ///< arc from temple to temple
-  double front_radius = 75e-3;         ///< of the horizontal section of the bone in the midline
-  double half_breadth = 68e-3;         ///< lateral semi-axis of that section; it tightens towards the temples
-  double brow_height = 18e-3;          ///< of the brow over the sellion
+  double front_radius = 75e-3;         ///< radius of curvature of the bone's horizontal section in the midline
+  double half_breadth = 68e-3;         ///< lateral semi-axis of this elliptic section
+  double brow_height = 18e-3;          ///< height of the brow over the sellion
   double brow_thickness = 8e-3;        ///< of the soft tissue at the brow
   double hairline_thickness = 4.5e-3;  ///< of the soft tissue at the hairline
-  double profile_radius = 130e-3;      ///< of the bone's profile in the midline
+  double profile_radius = 130e-3;      ///< radius of curvature of the bone's profile in the midline
   double ridge = 3e-3;                 ///< height of the brow ridge over the bone around it
-  double glabella = 2e-3;              ///< the same for the glabella
-  double temple_flattening = 3e-3;     ///< how far the temples lie behind the ellipse
-  double margin = 8e-3;                ///< how far the part `skull` reaches beyond the skin's edges
+  double glabella = 2e-3;              ///< height of the glabella over the bone around it
+  double temple_flattening = 3e-3;     ///< distance of the temples behind the ellipse
+  double margin = 8e-3;                ///< distance by which `skull` extends beyond the edges of `skin`
   double muscle_thickness = 2e-3;      ///< of frontalis, corrugators and procerus
   double galea_thickness = 1e-3;       ///< of the tendon sheet
 };
@@ -42,7 +42,7 @@ struct ForeheadDimensions
 std::vector<std::string> forehead_dimension_names();
 
 /// Triangles of one of the forehead_parts(). Throws Error on an unknown part or dimension, listing those that exist,
-/// and on dimensions that make no forehead.
+/// and on dimensions with which the surfaces would fold or meet.
 TriangleMesh make_forehead(const Shape& shape);
 
 }  // namespace frontalis

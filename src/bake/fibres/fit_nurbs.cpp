@@ -9,8 +9,8 @@ namespace frontalis
 namespace
 {
 
-/// Fits the control points of a tensor-product surface by least squares, with a little bending stiffness, which
-/// determines it where there are no data.
+/// Fits the control points of a tensor-product surface by least squares. A small bending stiffness determines the
+/// surface where there are no data.
 class SurfaceFit
 {
 public:
@@ -74,7 +74,7 @@ private:
   {
     return axis == 0 ? i * axes_[1].points() + j : j * axes_[1].points() + i;
   }
-  /// The control points on which a point of the surface depends, and how much.
+  /// The control points that influence a point of the surface, and their basis functions there.
   struct Terms
   {
     std::size_t count = 0;
@@ -99,7 +99,7 @@ private:
   std::vector<Vector3d> points_;
 };
 
-/// The sheet through the middle of the muscle, over (u, v): a fit to the centres of the cells.
+/// Surface through the middle of the muscle as a function of (u, v), fitted to the centres of the cells.
 SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordinates, const SplineAxis& along)
 {
   SurfaceFit sheet(along, SplineAxis(3, 6, false));
@@ -148,7 +148,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       continue;
     const auto [u, v] = coordinates.samples[s];
     const SheetFrame frame = sheet_frame(sheet, u, v);
-    // surfaces across the fibres are ends of the muscle: leave them out
+    // leave out the ends of the muscle, where the surface is across the fibres
     if (std::abs(frame.tangent.dot(sample.normal)) > 0.7)
       continue;
     const Vector3d middle = sheet.at({ u, v });
@@ -173,7 +173,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
     surface.solve(0.01);
   }
 
-  // control points of the inner sheet: means of those that face each other across it
+  // inner control points: means of opposite control points of the outer surface
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)

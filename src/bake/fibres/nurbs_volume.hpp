@@ -12,7 +12,7 @@ namespace frontalis
 class SplineAxis
 {
 public:
-  static constexpr int most = 4;  ///< basis functions that are not zero at a parameter, for degree 3
+  static constexpr int most = 4;  ///< largest number of basis functions that are not 0 at a parameter (degree 3)
 
   /// Degree 1 to 3; at least degree + 1 control points.
   SplineAxis(int degree, int points, bool closed);
@@ -46,8 +46,7 @@ public:
     std::array<Vector3d, 3> derivative;
   };
 
-  /// Control points with the index along w fastest and that along u slowest. Weights: one per point, or none for equal
-  /// ones.
+  /// The index of control points runs fastest along w and slowest along u. `weights`: one per point; empty: all equal.
   NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vector<Vector3d>& points,
               const std::vector<double>& weights = {});
 

@@ -26,8 +26,8 @@ struct BlockState
   std::vector<Answer> in_sight;       ///< one per volume; see Volumes::Entry::needs_sight()
 };
 
-/// Finds what the voxels of a block consist of. A uniform block is decided as a whole; any other is halved, down
-/// to single voxels, which are sampled. Not safe for use by several threads at once.
+/// Finds the materials and muscles in the voxels of a block. A uniform block is decided as a whole; any other is halved
+/// repeatedly, down to single voxels, which are sampled. Not thread-safe.
 class BlockClassifier
 {
 public:
@@ -41,7 +41,7 @@ public:
 private:
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
 
-  // Find what is not known yet about a block. decide() returns whether everything is known then.
+  // These determine what is unknown about a block. decide() returns whether everything is known then.
   bool decide(const Box& box, BlockState& state);
   void decide_volume(std::size_t volume, const Box& box, BlockState& state);
   void decide_body(std::size_t body, const Box& box, BlockState& state) const;
@@ -65,7 +65,7 @@ private:
   double fill_min_;
   double voxel_volume_;
   double reach_;                   ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;  ///< from the voxel's corner to the samples, in voxels
+  std::vector<Vector3d> offsets_;  ///< from the voxel's lower corner to the samples, in voxel edges
   Voxels voxels_;
 
   /// Proportions in a voxel, or in each voxel of a uniform block.
@@ -76,7 +76,7 @@ private:
   };
   Proportions nothing_, share_;
 
-  // What is found once at the middle of the sampled voxel and holds near it.
+  // Data computed once per sampled voxel, near its middle, and used for all its samples.
   struct NearbyBody
   {
     bool known = false;
@@ -90,13 +90,13 @@ private:
     std::int32_t triangle = -1;  ///< closest to the middle
     double distance = 0;         ///< of the middle [m]
     double depth = 0;            ///< of the middle [m]
-    bool steady = false;         ///< no rim is so near that the depth's sign could change where its value does not
+    bool steady = false;         ///< no border is so near that the depth may change sign without passing 0
   };
   Vector3d middle_{ 0, 0, 0 };
   std::vector<NearbyBody> nearby_body_;
   std::vector<NearbyDepth> nearby_depth_;
 
-  // answers already found for the present sample; -1 or NaN: none yet
+  // answers found for the current sample; -1 or NaN: none yet
   std::vector<std::int8_t> body_here_;
   std::vector<double> depth_here_;
 };

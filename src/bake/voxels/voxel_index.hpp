@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Finds the voxel at (i, j, k): a sparse grid, whose blocks of 8^3 cells exist where they hold a voxel.
+/// Sparse grid that finds the voxel at (i, j, k). Only blocks of 8^3 cells that hold a voxel are stored.
 class VoxelIndex
 {
 public:
