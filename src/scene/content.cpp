@@ -38,7 +38,7 @@ public:
     text_ += kind;
     add(words...);
   }
-  /// Adds words to the last line.
+  /// Appends values to the last line.
   template <class... Words>
   void add(const Words&... words)
   {

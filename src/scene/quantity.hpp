@@ -6,19 +6,19 @@
 namespace frontalis
 {
 
-/// Physical dimension of a number in a scene file: the allowed units; then the unit of a number without one.
+/// Physical dimension of a number in a scene file, with the allowed units and the default unit.
 enum class Dimension
 {
   number,       ///< without a unit
-  length,       ///< m, cm, mm, um, in; the scene's length unit
-  time,         ///< s, ms, us; s
-  rate,         ///< 1/s, Hz; 1/s
-  pressure,     ///< Pa, kPa, MPa, GPa; Pa
-  density,      ///< kg/m3, g/cm3; kg/m3
-  acceleration  ///< m/s2; m/s2
+  length,       ///< m, cm, mm, um, in; default: the scene's length unit
+  time,         ///< s, ms, us; default: s
+  rate,         ///< 1/s, Hz; default: 1/s
+  pressure,     ///< Pa, kPa, MPa, GPa; default: Pa
+  density,      ///< kg/m3, g/cm3; default: kg/m3
+  acceleration  ///< m/s2; default: m/s2
 };
 
-/// Range that a number must lie in.
+/// Range of allowed numbers.
 struct Bound
 {
   double lower = -std::numeric_limits<double>::infinity();
@@ -40,7 +40,7 @@ constexpr Bound proportion{ 0, 1 };
 /// without a unit. Throws Error with what was found and what is allowed.
 double parse_quantity(const std::string& text, Dimension dimension, double length_unit);
 
-/// Metres per length unit. Throws Error naming the units that exist.
+/// Length unit [m] of a name such as "mm". Throws Error naming the units that exist.
 double parse_length_unit(const std::string& text);
 
 /// Shortest text that reads back as the same number, whatever the locale.

@@ -41,13 +41,13 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
 void read_expressions(const Node& node, Scene& scene, SceneNames& names);
 void read_demo(const Node& node, Scene& scene, const SceneNames& names);
 
-/// Reads {lower: [x, y, z], upper: [x, y, z]}; one of the two lists, and each number (null), may be missing.
+/// Reads {lower: [x, y, z], upper: [x, y, z]}. One of the two lists may be missing, and numbers may be null.
 Region read_region(const Node& node);
 
 /// Reads the mapping in a YAML file, which messages describe by `what` and `expected`. Throws Error if it cannot.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
-/// Metres per length unit; `fallback` if the value is absent or wrong.
+/// Reads the name of a length unit and returns the unit [m]; `fallback` if the value is absent or wrong.
 double read_length_unit(const Node& node, double fallback);
 
 /// Returns the only one of `keys` that the mapping has. If it has none or several, records a fault, accepts all keys

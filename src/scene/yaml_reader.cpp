@@ -170,7 +170,7 @@ int Node::integer(int lower, int upper, int fallback) const
   }
   catch (const Error&)
   {
-    value = std::nan("");  // the fault below says what is expected
+    value = std::nan("");  // leads to the fault below
   }
   if (value >= lower && value <= upper && value == std::floor(value))
     return static_cast<int>(value);

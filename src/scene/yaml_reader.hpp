@@ -47,7 +47,7 @@ struct ReadingContext
   double length_unit = 1;  ///< unit of lengths without one [m]
 };
 
-/// Names that a section defines, for references to them.
+/// Names that a section defines and others refer to.
 struct Names
 {
   std::string kind;  ///< singular noun for messages, such as "surface"
@@ -57,8 +57,8 @@ struct Names
   bool has(const std::string& name) const;
 };
 
-/// A value of the file, or the absence of one, with its dotted path and line. Each reading function returns `fallback`
-/// (without one, an empty text) if the value is absent or wrong; if it is wrong, it records a fault.
+/// A value of the file, or an absent one, with its dotted path and line. If the value is absent or wrong, each reading
+/// function returns `fallback` or an empty text; if it is wrong, it also records a fault.
 class Node
 {
 public:
@@ -108,7 +108,7 @@ public:
 
   /// One of `names`; an unknown name is a fault.
   std::string reference(const Names& names) const;
-  /// Records a fault for a name that is not among the known ones.
+  /// Records a fault if `name` is not among `names`, unless these are incomplete.
   void check_known(const std::string& name, const Names& names) const;
   /// One of `names` or a list of several different ones.
   std::vector<std::string> references(const Names& names) const;

@@ -12,7 +12,7 @@ namespace frontalis
 
 using Vector3 = std::array<double, 3>;
 
-/// Axis-aligned box in scene coordinates [m]; a side that is not given lies at infinity.
+/// Axis-aligned box in scene coordinates [m]. By default all sides lie at infinity.
 struct Region
 {
   Vector3 lower{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
@@ -31,7 +31,7 @@ struct Shape
     ellipsoid,  ///< centre, size (semi-axes)
     cylinder,   ///< centre, axis, radius, length; closed by caps
     torus,      ///< centre, axis, radius (of the ring), minor_radius (of the tube)
-    forehead    ///< part (skin, skull, rim, or a muscle of the generated forehead), forehead dimensions
+    forehead    ///< part (one of forehead_parts()), dimensions
   };
   Kind kind = Kind::box;
   Vector3 centre{ 0, 0, 0 };
@@ -49,7 +49,7 @@ struct Shape
 struct Surface
 {
   std::string name;
-  std::string file;            ///< path, resolved against the mesh directory or the scene's; empty for a shape
+  std::string file;            ///< path, relative to the mesh directory or the scene's folder; empty for a shape
   std::optional<Shape> shape;  ///< set if `file` is empty
   double unit = 1;             ///< metres per unit of the mesh (files only)
   int line = 0;                ///< line in the scene file, for messages of the bake
@@ -75,10 +75,10 @@ struct Volume
   int line = 0;
 };
 
-/// Parts of the generated forehead: `skin`, `skull` (both face outwards; open sheets), `rim` (joins the edges of skin
-/// and bone) and its pieces `rim_upper`, `rim_lower`, `rim_lateral`; `tissue` (closed: skin, rim and the bone below
-/// them); the muscles `frontalis_left`, `frontalis_right`, `corrugator_left`, `corrugator_right`, `procerus` and the
-/// tendon sheet `galea` (closed, following the curvature).
+/// Parts of the generated forehead. Open surfaces: `skin` and `skull`, which face outwards, and `rim`, which joins the
+/// edges of skin and bone, with its pieces `rim_upper`, `rim_lower` and `rim_lateral`. Closed surfaces: `tissue` (skin,
+/// rim and the bone below the skin), the muscles `frontalis_left`, `frontalis_right`, `corrugator_left`,
+/// `corrugator_right` and `procerus`, and the tendon sheet `galea`.
 const std::vector<std::string>& forehead_parts();
 
 }  // namespace frontalis

@@ -19,7 +19,7 @@ struct SceneConstraint
   std::string name;
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
-  double within = -1;  ///< nodes at most this far outside the surface are restricted [m]; < 0: 0.75 voxel edges
+  double within = -1;  ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
   Region crop;
   std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
   double friction = 0;  ///< sliding: Coulomb friction coefficient
@@ -31,9 +31,9 @@ struct SceneLoad
 {
   enum class Kind
   {
-    traction,     ///< value: force per area of the surface at rest [Pa], of constant direction
+    traction,     ///< value: force per area of the undeformed surface [Pa]; its direction is constant
     pressure,     ///< value[0]: pressure [Pa] against the outward normal of the deformed surface
-    displacement  ///< value: displacement [m] of the nodes near the surface; components not in `fixed` stay free
+    displacement  ///< value: displacement of nodes near the surface [m]; components not `fixed` are free
   };
   std::string name;
   Kind kind = Kind::traction;

@@ -41,7 +41,7 @@ struct MassScaling
   {
     none,
     uniform,   ///< every density is multiplied by `factor`
-    selective  ///< mass is added to voxels with one of `materials` (empty: all) until they allow `time_step`
+    selective  ///< mass is added to voxels with one of `materials` (empty: all) to reach `time_step`
   };
   Kind kind = Kind::none;
   double factor = 1;
@@ -66,7 +66,7 @@ struct AccuracyProfile
   double fill_min = 0.2;              ///< voxels with a smaller proportion of tissue are left out
   double time_step_share = 0.9;       ///< time step as a proportion of the critical time step
   MassScaling mass_scaling;
-  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness per voxel
+  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of a scalar stiffness
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend
   std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
@@ -76,7 +76,7 @@ struct AccuracyProfile
 struct SceneTime
 {
   double damping = 0;      ///< mass-proportional damping coefficient [1/s]
-  double scaling = 1;      ///< time scaling: the motion is played this many times faster in simulated time
+  double scaling = 1;      ///< time scaling: simulated motions are this many times as fast as real ones
   double frame_rate = 30;  ///< skins published per wall second [1/s]
   /// Largest rate of change of a muscle's activation [1/s], before time scaling; 0: no limit.
   double activation_slew = 0;
@@ -86,8 +86,8 @@ struct SceneTime
 struct DemoPhase
 {
   std::string expression;
-  double ramp = 0.3;     ///< duration of the ramp [s] simulated
-  double seconds = 1.0;  ///< duration of the phase, ramp included [s] simulated
+  double ramp = 0.3;     ///< duration of the ramp [simulated s]
+  double seconds = 1.0;  ///< duration of the phase, including the ramp [simulated s]
 };
 
 /// Contents of a scene file, in SI units. doc/scene.md documents every key of the file.
@@ -108,9 +108,9 @@ struct Scene
   Vector3 gravity{ 0, 0, 0 };  ///< scene coordinates [m/s2]
   EffectSet switched_off;      ///< effects that the bake leaves out
   SceneTime time;
-  AccuracyProfile accuracy;  ///< the profile chosen
+  AccuracyProfile accuracy;  ///< the chosen profile
   std::vector<AccuracyProfile> profiles;
-  std::map<std::string, std::map<std::string, double>> expressions;  ///< preset -> muscle -> activation 0..1
+  std::map<std::string, std::map<std::string, double>> expressions;  ///< expression -> muscle -> activation 0..1
   std::vector<DemoPhase> demo;
   std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
 };

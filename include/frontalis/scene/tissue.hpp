@@ -33,7 +33,7 @@ struct SceneMaterial
   int line = 0;
 };
 
-/// Skin layer of constant thickness, measured from a surface inwards; layers of one surface follow each other in order.
+/// Skin layer of constant thickness below a surface. The layers of one surface follow each other inwards in list order.
 struct Layer
 {
   std::string name;
@@ -57,7 +57,7 @@ struct MuscleEnd
 /// least four points is cubic; one with fewer has the highest degree possible.
 struct ControlNet
 {
-  std::array<int, 3> size{ { 0, 0, 0 } };  ///< points along, across and through the muscle, each at least 2
+  std::array<int, 3> size{ { 0, 0, 0 } };  ///< numbers of points along, across and through the muscle, each at least 2
   bool ring = false;                       ///< closed along the fibres
   std::vector<Vector3> points;             ///< [m]; the index through the muscle runs fastest
   std::vector<double> weights;             ///< one positive weight per point; empty: all 1
