@@ -19,7 +19,7 @@ public:
 
   /// Ends the current stage, if any, and begins this one.
   void begin(const std::string& stage);
-  /// Tells the caller the proportion of the stage that is done; throws Error("interrupted") if it wants to stop.
+  /// Reports the proportion of the stage that is done. Throws Error("interrupted") if the caller stops the bake.
   void advance(double done);
   void finish();
   void found(const std::string& sentence);

@@ -52,7 +52,7 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   return out;
 }
 
-/// Rows of the face frame: forward, left, up, in scene axes.
+/// Axes of the face frame (forward, left, up) as unit vectors in scene axes.
 std::array<Vector3d, 3> face_axes(const Scene& scene)
 {
   const Vector3d forward = to_vector(scene.frame.forward).normalized(), upwards = to_vector(scene.frame.up);

@@ -50,7 +50,7 @@ inline std::string place_text(const Vector3d& place, double unit)
   return fmt::format("({:.6g}, {:.6g}, {:.6g}) {}", p[0], p[1], p[2], unit_text(unit));
 }
 
-/// "1 edge", "2 edges".
+/// A count with its noun: "1 edge", "2 edges".
 inline std::string count_text(std::size_t count, const char* one, const char* many)
 {
   return fmt::format("{} {}", count, count == 1 ? one : many);

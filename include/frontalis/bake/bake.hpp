@@ -37,7 +37,7 @@ struct BakeReport
   std::vector<std::string> findings;  ///< repairs, clippings and omissions, one sentence each
 };
 
-/// Called with the stage's name and the proportion done, 0..1; returning false interrupts the bake.
+/// Called with the name of the stage and the proportion of it that is done, 0..1. To interrupt the bake, return false.
 using BakeProgress = std::function<bool(const std::string& stage, double done)>;
 
 /// Builds the model of a scene. Throws Error naming the surface or volume, the position and the remedy.

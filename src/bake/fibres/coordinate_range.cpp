@@ -56,7 +56,7 @@ struct Limits
     }
   }
 
-  /// Averages neighbouring bins.
+  /// Averages over neighbouring bins, with weights 1, 2, 1, and fills empty ones.
   void smooth(bool closed)
   {
     const Limits old = *this;

@@ -9,7 +9,7 @@ namespace frontalis
 struct RingHole
 {
   Vector3d centre;
-  Vector3d axis;  ///< length 1
+  Vector3d axis;  ///< unit vector
 };
 
 /// The largest hole; none if its area is less than a twentieth of that within the muscle's outline.
@@ -20,7 +20,7 @@ std::optional<RingHole> find_hole(const MuscleGrid& grid);
 struct FibreCoordinates
 {
   std::vector<std::array<double, 2>> cells;    ///< at the centres of the grid's cells
-  std::vector<std::array<double, 2>> samples;  ///< at the samples of its surface; NaN for those in no cell
+  std::vector<std::array<double, 2>> samples;  ///< at the samples of the muscle's surface; NaN if they lie in no cell
   double length = 0;                           ///< mean distance from u = 0 to u = 1 [m]
   double width = 0;                            ///< mean distance from v = 0 to v = 1 [m]
   /// Ratio of the length along u to that along the next best direction; infinite if u follows from ends or a ring

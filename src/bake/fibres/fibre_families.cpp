@@ -7,7 +7,7 @@ namespace
 
 constexpr std::size_t grain = 1024;
 
-/// The shortest rotation from unit vector `from` to `to`; if they are opposite, about `axis`, normal to `from`.
+/// The shortest rotation from unit vector `from` to `to`. If they are opposite, rotates about `axis`, normal to `from`.
 Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, const Vector3d& axis)
 {
   if (from.dot(to) < -1 + 1e-9)

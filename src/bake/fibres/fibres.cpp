@@ -26,7 +26,7 @@ NurbsVolume volume_of(const ControlNet& net)
   return NurbsVolume({ { axis(0), axis(1), axis(2) } }, points, net.weights);
 }
 
-/// Surfaces of a muscle's volume as one mesh.
+/// All surfaces that bound a muscle's volume, as one mesh.
 TriangleMesh mesh_of(const Volumes::Entry& entry, const Volumes& volumes)
 {
   std::vector<std::size_t> bodies = entry.inside;
@@ -74,7 +74,7 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
   return distance;
 }
 
-/// A NURBS volume that fits a muscle's mesh. `finding` receives a sentence about the fit.
+/// Fits a NURBS volume to a muscle's mesh. `finding` receives a sentence about the quality of the fit.
 MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const PreparedSurfaces& surfaces,
                         std::string& finding)
 {

@@ -111,7 +111,7 @@ SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordina
 
 struct SheetFrame
 {
-  Vector3d tangent, normal;  ///< along u, and across the sheet; length 1
+  Vector3d tangent, normal;  ///< unit vectors along u and normal to the sheet
 };
 
 SheetFrame sheet_frame(const SurfaceFit& sheet, double u, double v)
@@ -131,8 +131,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   const SplineAxis around(3, 12, true);
   const SurfaceFit sheet = middle_sheet(grid, coordinates, along);
 
-  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, back from 1/2 to 1 on the
-  // other.
+  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, then to 1 on the other.
   struct Datum
   {
     std::array<double, 2> parameter;
@@ -204,7 +203,7 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1) });
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1) });
     }
-  // caps: strips between the two sides
+  // caps at the ends: strips that connect opposite points of the outline
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
     for (const std::int32_t i : { 0, along })
     {

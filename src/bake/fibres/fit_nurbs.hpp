@@ -17,7 +17,7 @@ TriangleMesh outer_surface(const NurbsVolume& volume);
 
 struct NurbsFit
 {
-  double volume = 0;    ///< within the outer surface [m3]
+  double volume = 0;    ///< enclosed by the outer surface [m3]
   double enclosed = 0;  ///< proportion of the muscle's cells whose centres are inside it
   double distance = 0;  ///< RMS distance of the muscle's mesh from it [m]
 };

@@ -15,7 +15,7 @@ using Stiffness = Eigen::Matrix<double, 8, 8>;
 
 struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
 {
-  /// Throws Error with the name of the field if the matrix is singular.
+  /// Throws Error naming the field if the matrix is singular.
   Cholesky(const Eigen::SparseMatrix<double>& matrix, const char* field) : SimplicialLDLT(matrix)
   {
     if (info() != Eigen::Success)
@@ -23,7 +23,7 @@ struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
   }
 };
 
-/// Integrals over the unit cube of the products of shape function derivatives a (rows) and b (columns).
+/// [a][b]: integrals over the unit cube of dN_i/dx_a dN_j/dx_b for the trilinear shape functions N (i rows, j columns).
 std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
 {
   const double mass[2][2] = { { 1.0 / 3, 1.0 / 6 }, { 1.0 / 6, 1.0 / 3 } };

@@ -22,12 +22,12 @@ class GridField
 public:
   struct Modes
   {
-    Eigen::VectorXd values;  ///< ascending [1/m2]
-    Eigen::MatrixXd fields;  ///< nodal values, one column per mode; orthogonal to constants
+    Eigen::VectorXd values;  ///< eigenvalues, ascending [1/m2]
+    Eigen::MatrixXd fields;  ///< nodal values, one column per mode; their mean is 0
   };
 
   GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>& tensors);
-  /// D = d d^T + `rest` I for unit directions d. One-point quadrature of the first part avoids locking.
+  /// D = d d^T + `rest` I for unit vectors d. The first term is integrated at one point to avoid locking.
   GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest);
 
   /// The non-constant eigenmodes with the lowest ratio of energy to mean square, found by subspace iteration. There is

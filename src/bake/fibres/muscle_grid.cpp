@@ -70,7 +70,7 @@ void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
 // Values in a CellBox while the cells are classified; enclosed cells keep -1.
 constexpr std::int32_t outside = 0, on_surface = 1, visited = -2;
 
-/// Marks the cells that can be reached from the box's border without passing a cell of the surface.
+/// Marks the cells that are connected to the box's border without passing a cell of the surface.
 void flood_outside(CellBox& box)
 {
   const auto take = [&box](const Vector3i& place)

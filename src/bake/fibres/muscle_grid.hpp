@@ -18,10 +18,10 @@ struct MuscleGrid
     std::int32_t cell = -1;  ///< -1: its cell was removed from the grid
   };
 
-  Vector3d lower{ 0, 0, 0 };  ///< [m]
+  Vector3d lower{ 0, 0, 0 };  ///< lower corner of the grid [m]
   double edge = 0;            ///< of a cell [m]
   std::vector<Eigen::Vector3i> cells;
-  std::vector<std::array<std::int32_t, 8>> cell_nodes;  ///< corner b = i + 2j + 4k
+  std::vector<std::array<std::int32_t, 8>> cell_nodes;  ///< nodes of each cell; corner b = i + 2j + 4k
   std::vector<Eigen::Vector3i> nodes;
   std::vector<Sample> samples;
   double kept = 1;  ///< proportion of cells in the largest connected component; the others were removed

@@ -91,7 +91,7 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
   std::array<SplineAxis::Basis, 3> basis;
   for (std::size_t a = 0; a < 3; ++a)
     basis[a] = axes_[a].at(parameter[a]);
-  // value and derivatives of weight times position, and of the weight
+  // value and three derivatives of the homogeneous coordinates (weight times position, weight)
   std::array<Eigen::Vector4d, 4> sum;
   sum.fill(Eigen::Vector4d::Zero());
   for (int i = 0; i <= axes_[0].degree(); ++i)

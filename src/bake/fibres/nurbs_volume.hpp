@@ -52,15 +52,14 @@ public:
 
   const std::array<SplineAxis, 3>& axes() const { return axes_; }
   Point at(const Vector3d& parameter) const;
-  /// Parameters of the volume's point closest to p, found by Levenberg-Marquardt iteration from the nearest of a table
-  /// of samples.
+  /// Parameters of the volume's point closest to p, by Levenberg-Marquardt iteration from the nearest of samples_.
   Vector3d closest(const Vector3d& p) const;
   /// Unit tangent of the fibre through the closest point to p.
   Vector3d fibre(const Vector3d& p) const;
 
 private:
   std::array<SplineAxis, 3> axes_;
-  std::vector<Eigen::Vector4d> points_;  ///< weight times position, weight
+  std::vector<Eigen::Vector4d> points_;  ///< homogeneous coordinates: weight times position, weight
   std::vector<Vector3d> sample_parameters_, samples_;
 };
 

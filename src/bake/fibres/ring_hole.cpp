@@ -9,13 +9,13 @@ namespace
 
 using Pixel = Eigen::Vector2i;
 
-/// Projection of the cells along an axis onto an image with pixels as wide as cells and a border of two pixels.
+/// Projection of the cells along an axis. Pixels are as wide as cells; a border of two pixels surrounds the muscle.
 struct Image
 {
   Vector3d origin, x, y;
   Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, 2 or more: number of a hole
 
-  /// Marks an unknown pixel and those that are connected to it, and returns them.
+  /// Marks and returns an unknown pixel and all unknown pixels connected to it.
   std::vector<Pixel> fill(const Pixel& seed, int mark)
   {
     static const std::vector<Pixel> steps{ { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 } };

@@ -50,7 +50,7 @@ constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// Whether an open mesh is inside-out: its winding number of largest magnitude, in its bounding box, is negative.
+/// Whether an open mesh is inside-out: the winding number with the largest magnitude in its bounding box is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);
@@ -66,7 +66,7 @@ bool open_and_inside_out(const TriangleMesh& mesh)
   return strongest < -0.75;
 }
 
-/// The regions that crossing pieces of a mesh enclose twice or inside-out.
+/// The regions that a mesh's components with crossing triangles enclose twice or inside-out.
 struct Overlap
 {
   double share = 0;  ///< volume of these regions over the whole enclosed volume

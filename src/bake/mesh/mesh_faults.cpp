@@ -34,7 +34,7 @@ void add(MeshFaults::Kind& kind, const Vector3d& place)
     kind.place = place;
 }
 
-/// Edges from the lower to the higher vertex number.
+/// Edges as pairs of vertex numbers, the lower one first.
 using EdgeSet = std::set<std::pair<std::size_t, std::size_t>>;
 
 /// Collects the edges that more than two triangles share.
@@ -115,7 +115,7 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   if (pairs.empty())
     return;
 
-  // groups of crossing triangles, connected where they cross or share an edge
+  // groups of crossing triangles: those connected by crossings or common edges
   boost::disjoint_sets_with_storage<> groups(mesh.number_of_faces());
   std::vector<bool> crosses(mesh.number_of_faces(), false);
   for (const auto& [a, b] : pairs)

@@ -41,7 +41,7 @@ struct MeshRepairs
   std::size_t collapsed = 0;     ///< removed because two corners are the same vertex
   std::size_t repeated = 0;      ///< removed because the same triangle exists already
   std::size_t back_to_back = 0;  ///< pairs of opposite triangles removed, since they enclose nothing
-  std::size_t flat = 0;          ///< removed because they have no area; the neighbour is split instead
+  std::size_t flat = 0;          ///< removed because they have no area; their neighbour is split at their middle vertex
   std::size_t turned = 0;        ///< flipped to agree with their neighbours
 };
 

@@ -58,8 +58,8 @@ std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
   return 2;
 }
 
-/// Removes each triangle a, b, c without area, where b lies between a and c: the triangle a, c, d on the other side of
-/// its edge a-c becomes a, b, d and b, c, d, which cover the same points.
+/// Removes each triangle a, b, c without area, where b lies between a and c. The neighbour a, c, d across the edge a-c
+/// is split into a, b, d and b, c, d, which cover the same points.
 void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
   std::vector<std::size_t> flat;

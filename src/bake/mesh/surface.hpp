@@ -62,7 +62,7 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 /// Reads a mesh file of any format known to assimp, with coordinates in `unit` [m]. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on impossible sizes.
+/// Closed mesh with outward normals of a built-in shape, not for the forehead. Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
 
 struct LoadedSurface

@@ -48,7 +48,7 @@ void for_each_edge(const std::vector<HalfEdge>& half_edges, const Body& body)
   }
 }
 
-/// Keeps the part on one side of a plane: below `limit` along the axis for sign +1, above it for -1.
+/// Keeps the part of a mesh below `limit` along an axis (sign +1) or above it (sign -1).
 TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
 {
   const auto height = [&](std::int32_t v) { return sign * (limit - mesh.vertices[v][axis]); };

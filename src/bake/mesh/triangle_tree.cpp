@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::int32_t leaf_size = 4;  // triangles
+constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf
 
 /// Closest point of a triangle (Ericson, Real-Time Collision Detection 2005, 5.1.5). `feature`: see ClosestPoint.
 Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c,
@@ -276,7 +276,7 @@ TriangleTree::Expansion TriangleTree::expand(const Node& range) const
     const Vector3d normal = 0.5 * (b - a).cross(c - a);
     const Vector3d middle = (1.0 / 3) * (a + b + c);
     node.dipole += normal;
-    // mean of offset j times offset k over the triangle
+    // mean over the triangle of offsets j and k from the centre, multiplied
     const auto moment = [&](std::size_t j, std::size_t k)
     { return (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + 9 * middle[j] * middle[k]) / 12; };
     const double moments[6] = { moment(0, 0), moment(1, 1), moment(2, 2), moment(0, 1), moment(1, 2), moment(2, 0) };

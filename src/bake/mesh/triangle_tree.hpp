@@ -44,8 +44,8 @@ private:
   struct Node
   {
     Box box;
-    std::int32_t begin = 0, end = 0;  ///< triangles in order_
-    std::int32_t right = 0;           ///< second child, 0 for a leaf; the first child is the next node
+    std::int32_t begin = 0, end = 0;  ///< range of triangles in order_
+    std::int32_t right = 0;           ///< index of the second child, 0 for a leaf; the first child is the next node
   };
   /// Taylor series of a node's winding number about its area centroid.
   struct Expansion
@@ -53,8 +53,8 @@ private:
     Vector3d centre{ 0, 0, 0 };
     double squared_reach = 0;
     Vector3d dipole{ 0, 0, 0 };
-    std::array<double, 9> first{};    ///< sum of area normal i times offset j from the centre
-    std::array<double, 18> second{};  ///< sum of area normal i times offsets j and k: xx, yy, zz, xy, yz, zx
+    std::array<double, 9> first{};    ///< first moments: sum of area normal i times offset j from the centre
+    std::array<double, 18> second{};  ///< second moments, with offsets j and k: xx, yy, zz, xy, yz, zx
   };
 
   /// Walks down from the root to the children of nodes for which enter(node index) is true, and calls leaf(index in

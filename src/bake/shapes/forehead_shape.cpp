@@ -58,7 +58,7 @@ public:
   {
     const double arc = std::abs(s);
     const double brow = dimensions_.brow_height;
-    // nasal root, then the orbital rim, then down towards the cheek bone
+    // height of the nasal root, plus the rise to the orbital rim, minus the fall towards the cheek bone
     return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 4e-3) / 20e-3) -
            0.35 * brow * smooth_step((arc - 42e-3) / 30e-3);
   }
@@ -76,7 +76,7 @@ private:
     const double angle = s / d.half_breadth;
     const double lean = std::tan(5 * pi / 180);
     const double above = z - d.brow_height;
-    // the profile leans and curves backwards above the brow; below it, it is straight
+    // the profile leans and curves backwards above the brow and is straight below
     const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
 
     // relief along the horizontal normal: the brow ridge, strongest above the medial half of the orbit; the glabella;

@@ -11,7 +11,7 @@ namespace
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
-/// Finds the voxel that a point follows: the one that contains it, or the nearest within the extrapolation distance.
+/// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
 {
 public:
@@ -76,7 +76,7 @@ struct BoundMesh
 {
   TriangleMesh mesh;
   Binding binding;
-  std::size_t triangles = 0;    ///< inside the crop
+  std::size_t triangles = 0;    ///< number of triangles inside the crop
   std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
   Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
 };

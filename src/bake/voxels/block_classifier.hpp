@@ -18,7 +18,7 @@ struct BlockState
   struct Depth
   {
     bool known = false;  ///< no threshold of the depth field lies in the block
-    double value = 0;    ///< if known: a depth between the same thresholds as all depths in the block [m]
+    double value = 0;    ///< if known: depth of the block's centre [m], between the same thresholds as all its depths
   };
   std::vector<Answer> inside_body;    ///< one answer per body
   std::vector<Depth> depth;           ///< one per depth field
@@ -33,7 +33,7 @@ class BlockClassifier
 public:
   BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min);
 
-  /// Adds the voxels from begin to end (exclusive).
+  /// Adds the voxels of the block from `begin` to `end` (exclusive).
   void visit(const VoxelPlace& begin, const VoxelPlace& end);
 
   Voxels take() { return std::move(voxels_); }
@@ -41,7 +41,7 @@ public:
 private:
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
 
-  // These determine what is unknown about a block. decide() returns whether everything is known then.
+  // These determine unknown entries of a block's state. decide() returns whether all entries are known then.
   bool decide(const Box& box, BlockState& state);
   void decide_volume(std::size_t volume, const Box& box, BlockState& state);
   void decide_body(std::size_t body, const Box& box, BlockState& state) const;
@@ -68,7 +68,7 @@ private:
   std::vector<Vector3d> offsets_;  ///< from the voxel's lower corner to the samples, in voxel edges
   Voxels voxels_;
 
-  /// Proportions in a voxel, or in each voxel of a uniform block.
+  /// Proportions of a voxel, or of each voxel of a uniform block, by index.
   struct Proportions
   {
     std::vector<double> material, muscle, volume;
@@ -82,7 +82,7 @@ private:
     bool known = false;
     std::vector<std::int32_t> triangles;  ///< triangles that overlap the voxel
     double winding = 0;                   ///< winding number at the middle
-    double variation = 0;                 ///< bound on its change within the voxel if no triangle is crossed
+    double variation = 0;  ///< bound on the change of `winding` within the voxel if no triangle is crossed
   };
   struct NearbyDepth
   {

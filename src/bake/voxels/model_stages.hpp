@@ -29,7 +29,7 @@ struct LocalFrame
       v = to_array(to_local(to_vector(v)));
     return mesh;
   }
-  /// Scene coordinates of the point (i, j, k) of the model's grid, in voxel edges from the origin.
+  /// Scene coordinates [m] of the point (i, j, k), given in voxel edges from the origin.
   Vector3d grid_point(const Model& model, double i, double j, double k) const
   {
     const Vector3d local = to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k));
@@ -45,7 +45,7 @@ struct LocalFrame
   }
 };
 
-// The stages of the bake that fill the model, in their order.
+// The stages of the bake that fill the model, in the order of the calls.
 
 /// Chooses as local x the axis along which rows of voxels are longest, sorts the voxels, and fills the model's grid,
 /// mixtures and muscle weights. add_fibres() fills the fibre directions.
@@ -55,7 +55,6 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
 void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
-///
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the
 /// side with most of the tissue within two voxels of it. If several constraints apply to a node, rigid takes precedence
 /// over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several sliding
@@ -80,9 +79,8 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
 void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
-/// Fills the skin, the landmarks and the loads of the model and binds their points to voxels. Throws Error if no
-/// triangle of a load can be bound, a vertex of the skin is too far from all voxels, or a landmark is too far from the
-/// skin.
+/// Fills the model's skin, landmarks and loads and binds their points to voxels. Throws Error if no triangle of a load
+/// can be bound, a vertex of the skin is too far from all voxels, or a landmark is too far from the skin.
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 

@@ -9,7 +9,7 @@ namespace
 
 using Polygon = std::vector<Vector3d>;
 
-constexpr double most_of_voxel = 0.9;  // the largest proportion of a voxel that thin layers may take
+constexpr double most_of_voxel = 0.9;  // largest proportion of a voxel that a thin layer may fill
 
 /// Keeps the part of a polygon from `low` to `high` along an axis.
 void clip(Polygon& polygon, Polygon& scratch, int axis, double low, double high)

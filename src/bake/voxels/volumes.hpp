@@ -23,7 +23,7 @@ public:
     int material = 0;
     const Layer* layer = nullptr;
   };
-  /// A layer too thin for sampling.
+  /// A layer that is thinner than the distance between samples.
   struct ThinLayer
   {
     const PreparedSurface* surface = nullptr;
@@ -47,7 +47,7 @@ public:
 
     /// Whether the volume excludes points that an `outside` body hides from the surface of their depth.
     bool needs_sight() const { return within && hiding > 0; }
-    /// Whether `condition` is true of any of the hiding bodies.
+    /// Whether condition(body index) is true for any of the hiding bodies.
     template <class Condition>
     bool any_hiding(const Condition& condition) const
     {
@@ -68,7 +68,7 @@ public:
   /// The box around all tissue, in scene coordinates [m]. Throws Error if a tissue volume has no bounds.
   Box tissue_box() const;
 
-  /// The beginning of error messages about a volume.
+  /// The beginning of a message about a volume: see place_in_scene().
   std::string place(const Volume& volume) const;
 
 private:
@@ -95,7 +95,7 @@ enum class Membership
 {
   inside,
   cropped,   ///< outside its crop
-  beyond,    ///< outside the surfaces that bound it
+  beyond,    ///< outside the surfaces that enclose it
   excluded,  ///< inside one of its `outside` or `without` surfaces
   wrong_depth,
   hidden  ///< an `outside` surface lies between the point and the surface from which its depth is measured

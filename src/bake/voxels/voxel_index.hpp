@@ -29,7 +29,7 @@ public:
     }
   }
 
-  /// The voxel's number; -1 if there is none.
+  /// Index of the voxel at `place`; -1 if there is none.
   std::int32_t find(const std::array<std::int32_t, 3>& place) const
   {
     for (int a = 0; a < 3; ++a)

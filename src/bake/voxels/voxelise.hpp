@@ -11,8 +11,8 @@ using VoxelPlace = std::array<std::int32_t, 3>;
 /// Grid of voxels along the axes of the scene.
 struct Grid
 {
-  Vector3d lower{ 0, 0, 0 };    ///< [m]
-  Vector3d spacing{ 0, 0, 0 };  ///< [m]
+  Vector3d lower{ 0, 0, 0 };    ///< lower corner of the grid [m]
+  Vector3d spacing{ 0, 0, 0 };  ///< voxel edges [m]
   VoxelPlace size{ { 0, 0, 0 } };
 
   /// The corner of a voxel with the smallest coordinates [m].
