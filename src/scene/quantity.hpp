@@ -43,7 +43,7 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
 /// Length unit [m] of a name such as "mm". Throws Error naming the units that exist.
 double parse_length_unit(const std::string& text);
 
-/// Shortest text that reads back as the same number, whatever the locale.
+/// Shortest text that reads back as the same number, independent of the locale.
 std::string number_text(double value);
 
 }  // namespace frontalis

@@ -44,7 +44,7 @@ private:
 struct ReadingContext
 {
   Faults faults;
-  double length_unit = 1;  ///< unit of lengths without one [m]
+  double length_unit = 1;  ///< unit of lengths given as plain numbers [m]
 };
 
 /// Names that a section defines and others refer to.

@@ -94,7 +94,7 @@ struct DemoPhase
 struct Scene
 {
   std::string file;
-  double unit = 1e-3;  ///< [m] unit of lengths without one in the file, and of lengths and positions in messages
+  double unit = 1e-3;  ///< length unit of plain numbers in the file and of lengths in messages [m]
   std::vector<Surface> surfaces;
   std::vector<Volume> volumes;
   std::vector<SceneMaterial> materials;

@@ -53,8 +53,8 @@ struct MuscleEnd
   bool given() const { return !surface.empty() || !points.empty(); }
 };
 
-/// Control net of a NURBS volume with uniform knots; its fibres run along the first direction. A direction with at
-/// least four points is cubic; one with fewer has the highest degree possible.
+/// Control net of a NURBS volume with uniform knots; its fibres run along the first direction. Its degree
+/// along each axis is 3 if there are at least four points, otherwise the number of points - 1.
 struct ControlNet
 {
   std::array<int, 3> size{ { 0, 0, 0 } };  ///< numbers of points along, across and through the muscle, each at least 2

@@ -83,8 +83,8 @@ void flood_outside(CellBox& box)
   flood<Vector3i>(Vector3i::Zero(), face_steps(), take);
 }
 
-/// The largest component, connected across faces, edges or corners, of the cells that are not outside. `kept` receives
-/// the proportion of these cells in it.
+/// Largest connected component of the cells that are not outside; faces, edges and corners connect cells. `kept`
+/// receives the proportion of these cells that are in it.
 std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
   std::vector<Vector3i> steps;
