@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// Refuses volumes of which nothing lies in the tissue, and reports how much of each muscle was clipped.
+/// Throws Error for a volume outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
@@ -22,7 +22,7 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
                   ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; "
                   "check these, the units and the voxel size");
     if (size <= 0)
-      throw failure("{}: {}, or is thinner than the samples can see; check its surfaces, its crop and the voxel size",
+      throw failure("{}: {}, or is thinner than the sample spacing; check its surfaces, its crop and the voxel size",
                     volumes.place(*entry.volume),
                     muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue");
     if (muscle.empty() || entry.closed_by || entry.inside.empty())
@@ -39,7 +39,7 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
   }
 }
 
-/// Greatest depth of a volume's points below a surface [m], estimated from some thousand points.
+/// Greatest depth of a volume's points below a surface [m], estimated from 4000 points.
 double greatest_depth(const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& surface)
 {
   const Box box = volumes.tissue_box();
@@ -53,7 +53,7 @@ double greatest_depth(const Volumes& volumes, const Volumes::Entry& entry, const
   return greatest;
 }
 
-/// Refuses layers that begin below the end of the tissue, and layers that leave nothing of the material below them.
+/// Throws Error for layers that begin below the tissue, and for layers that leave no room for the material below them.
 void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxels)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
@@ -106,8 +106,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     check_layers(scene, volumes, voxels);
     if (voxels.place.empty())
       throw Error(scene.file +
-                  ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: take smaller ones, "
-                  "or a smaller fill_min");
+                  ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
+                  "voxels or a smaller fill_min");
     frame = assemble_voxels(grid, voxels, model);
   }
   copy_settings(scene, frame, model);

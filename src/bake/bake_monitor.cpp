@@ -48,12 +48,12 @@ void BakeMonitor::found(const std::string& sentence)
 void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t)>& body)
 {
-  std::atomic<std::size_t> done{ 0 }, failed{ count };  // failed: the lowest index that threw
+  std::atomic<std::size_t> done{ 0 }, failed{ count };  // failed: lowest index whose call threw
   std::exception_ptr failure;
   std::mutex mutex;
   const auto call = [&](std::size_t index)
   {
-    // lower indices still run after a failure, so that the same scene always ends with the same message
+    // lower indices still run after a failure, so that the message does not depend on the threads
     if (index > failed)
       return;
     try

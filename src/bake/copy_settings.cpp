@@ -52,7 +52,7 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   return out;
 }
 
-/// Rows of the face frame: forward, left, up, in scene axes.
+/// Axes of the face frame (forward, left, up) as unit vectors in scene axes.
 std::array<Vector3d, 3> face_axes(const Scene& scene)
 {
   const Vector3d forward = to_vector(scene.frame.forward).normalized(), upwards = to_vector(scene.frame.up);
@@ -82,7 +82,7 @@ void copy_presets(const Scene& scene, Model& model)
 void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
-  // both have the kinds none, uniform and selective in this order
+  // both enumerations are none, uniform, selective
   model.mass_scaling = { static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step };
   for (const std::string& name : from.materials)
     model.mass_scaling.materials.push_back(index_of(model.materials, name, scene.file + ": mass_scaling", "material"));

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-// standard headers that nearly every file of the bake needs
+// standard headers used by nearly every file of the bake
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

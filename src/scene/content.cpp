@@ -27,7 +27,7 @@ std::string hash_of_file(const std::string& path)
   return content_hash(bytes.str());
 }
 
-/// Lines of words, each after a blank. Texts carry their length, so that different scenes give different lines.
+/// Lines of values, each after a blank. Strings carry their length, so that different scenes give different lines.
 class Content
 {
 public:
@@ -38,7 +38,7 @@ public:
     text_ += kind;
     add(words...);
   }
-  /// Adds words to the last line.
+  /// Appends values to the last line.
   template <class... Words>
   void add(const Words&... words)
   {
@@ -82,7 +82,7 @@ void add_surface(const Surface& surface, Content& content)
   content.line("surface", surface.name);
   if (!surface.shape)
   {
-    // the extension decides which format the bytes are in
+    // the extension of the file name determines the mesh format
     content.add("file", std::filesystem::path(surface.file).extension().string(), surface.unit,
                 hash_of_file(surface.file));
     return;
@@ -168,8 +168,8 @@ std::string content_hash(const std::string& content)
   return fmt::format("{:016x}", hash);
 }
 
-// Canonical text: numbers in SI units, and in place of each mesh file's path the hash of its bytes. Names of files and
-// folders, line numbers and profiles not chosen are left out.
+// Numbers are in SI units. A hash of the file's bytes replaces the path of each mesh file. Line numbers and the
+// settings of profiles that are not chosen are left out.
 std::string content_of(const Scene& scene)
 {
   Content content;

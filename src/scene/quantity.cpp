@@ -19,7 +19,7 @@ struct Unit
 {
   Dimension dimension;
   std::string_view name;
-  double factor;  ///< in SI units
+  double factor;  ///< value of one unit in SI units
 };
 
 constexpr Unit units[] = {
@@ -31,7 +31,7 @@ constexpr Unit units[] = {
   { Dimension::density, "g/cm3", 1e3 }, { Dimension::acceleration, "m/s2", 1 },
 };
 
-/// Null: there is no such unit.
+/// Returns null if the unit does not exist.
 const Unit* find_unit(Dimension dimension, const std::string& name)
 {
   const auto same = [&](const Unit& unit) { return unit.dimension == dimension && unit.name == name; };
@@ -83,7 +83,7 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
     return Error("'" + found + "' " + fault + "; must be a number" +
                  (names.empty() ? " without a unit" : ", alone or with one of the units " + names));
   };
-  // the words of YAML and C
+  // spellings in YAML and C
   static const std::regex not_finite("[-+]?\\.?(inf|infinity|nan)", std::regex::icase);
   if (std::regex_match(found, not_finite))
     throw refusal("is not finite");

@@ -36,8 +36,8 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   const Node time_step = mapping.optional("time_step");
   if (node.is_mapping() && uniform.given() == (selective.given() || time_step.given()))
     node.fault(
-        "found {} of uniform, selective, time_step; must be 'none', have uniform alone, or selective, time_step or "
-        "both",
+        "found {} of uniform, selective, time_step; must be 'none', or have either uniform alone, or selective, "
+        "time_step or both",
         uniform.given() ? "uniform and another" : "none");
   if (uniform.given())
   {
@@ -90,7 +90,7 @@ bool is_profile_file(const std::string& accuracy)
   return extension == ".yaml" || extension == ".yml";
 }
 
-// a file with the one profile NAME: {...}, as it stands under `accuracy`
+// reads a file with one profile, NAME: {...}, in the format of the scene's section `accuracy`
 AccuracyProfile read_profile_file(const std::string& path, double length_unit, const SceneNames& names)
 {
   const YAML::Node yaml = load_yaml(path, "accuracy profile", "one profile, NAME: {voxel: ...}");
@@ -113,7 +113,7 @@ auto find_profile(Scene& scene, const std::string& name)
                       [&](const AccuracyProfile& profile) { return profile.name == name; });
 }
 
-// takes the voxel edge of the options in place of the profile's
+// replaces the voxel edge of the chosen profile by that of the options, if they have one
 void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
@@ -132,7 +132,7 @@ void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
   if (!(edge > 0))
     return;
   scene.accuracy.voxel = { edge, edge, edge };
-  // the measurement was made with other voxels
+  // the measured error and cost hold for the original voxels only
   scene.accuracy.measured = {};
   if (const auto profile = find_profile(scene, scene.accuracy.name); profile != scene.profiles.end())
     profile->measured = {};
@@ -168,7 +168,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
-    // it replaces a profile of the same name
+    // the profile of the file replaces that of the same name in the scene
     if (const auto same = find_profile(scene, scene.accuracy.name); same != scene.profiles.end())
       scene.profiles.erase(same);
     scene.profiles.push_back(scene.accuracy);

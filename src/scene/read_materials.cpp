@@ -16,7 +16,6 @@ std::vector<std::string> names_of_laws()
   return names;
 }
 
-// the directions of two families of fibres
 void read_families(const Node& node, std::array<Vector3, 2>& families)
 {
   const std::vector<Node> entries = node.entries();
@@ -26,7 +25,6 @@ void read_families(const Node& node, std::array<Vector3, 2>& families)
     families[f] = entries[f].direction({ 1, 0, 0 });
 }
 
-// the terms of a Prony series
 void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& terms)
 {
   const std::vector<Node> entries = node.entries();
@@ -44,7 +42,7 @@ void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& t
     terms.push_back(term);
   }
   if (!(sum < 1))
-    node.fault("the shares add up to {}; must stay below 1, or nothing is left of the stiffness", sum);
+    node.fault("the shares add up to {}; must stay below 1, because the rest is the stiffness at rest", sum);
 }
 
 double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
@@ -62,7 +60,7 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   return value;
 }
 
-// one fibre's direction, or those of two families, which may follow a surface
+// reads one fibre direction or those of two fibre families, which may follow a surface
 void read_directions(int count, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   if (count == 1)
@@ -80,7 +78,7 @@ void read_directions(int count, Mapping& mapping, const SceneNames& names, Scene
   }
 }
 
-// what the law asks for, in SI units
+// reads the parameters [SI units] and directions of the law
 void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   const physics::MaterialDescription& description = physics::description_of(law);

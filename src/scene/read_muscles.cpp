@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-/// A surface's name, a point, or a list of points.
+/// Reads the name of a surface, a point, or a list of points.
 MuscleEnd read_end(const Node& node, const SceneNames& names)
 {
   MuscleEnd end;
@@ -50,7 +50,7 @@ ControlNet read_net(const Node& node)
   return net;
 }
 
-/// The keys that say where the fibres run: at most one way may be used.
+/// Reads the keys that define the fibres. A muscle may use at most one of the four alternatives.
 void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
 {
   const Node fibre = mapping.optional("fibre"), net = mapping.optional("net"), ring = mapping.optional("ring"),
@@ -140,7 +140,7 @@ void read_demo(const Node& node, Scene& scene, const SceneNames& names)
     if (phase.ramp > phase.seconds)
     {
       if (ramp.given())
-        ramp.fault(ramp.found() + "; must be at most 'seconds', which holds the ramp");
+        ramp.fault(ramp.found() + "; must be at most 'seconds', which includes the ramp");
       else
         phase.ramp = phase.seconds;
     }

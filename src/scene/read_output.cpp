@@ -18,7 +18,7 @@ void read_frame(const Node& node, FaceFrame& frame)
   frame.forward = mapping.optional("forward").direction(frame.forward);
   frame.up = up.direction(frame.up);
 
-  // the part of `up` along `forward` is removed
+  // make `up` orthogonal to `forward`
   const Vector3& f = frame.forward;
   const double along = frame.up[0] * f[0] + frame.up[1] * f[1] + frame.up[2] * f[2];
   const Vector3 across{ frame.up[0] - along * f[0], frame.up[1] - along * f[1], frame.up[2] - along * f[2] };
@@ -69,9 +69,9 @@ void read_effects(const Node& node, Scene& scene)
     return;
   Mapping mapping(node);
   EffectSet present = EffectSet::all();
-  const bool rubs = std::any_of(scene.constraints.begin(), scene.constraints.end(),
-                                [](const SceneConstraint& constraint) { return constraint.friction > 0; });
-  present = present.with(Effect::friction, rubs);
+  const bool has_friction = std::any_of(scene.constraints.begin(), scene.constraints.end(),
+                                        [](const SceneConstraint& constraint) { return constraint.friction > 0; });
+  present = present.with(Effect::friction, has_friction);
   for (const Effect effect : every_effect())
     if (const Node entry = mapping.optional(name_of(effect)); entry.given())
       scene.switched_off = scene.switched_off.with(effect, entry.choice({ "on", "off" }) == "off");

@@ -27,7 +27,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 {
   Mapping mapping(root);
   SceneNames names;
-  // the unit comes first: every length needs it
+  // the unit is read first because all lengths depend on it
   scene.unit = read_length_unit(mapping.required("unit", "the length unit of plain numbers: m, cm, mm, um or in"), 1);
   root.context().length_unit = scene.unit;
   const Node mesh_directory = mapping.optional("mesh_dir");

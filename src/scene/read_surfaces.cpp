@@ -63,7 +63,7 @@ Shape read_shape(const Node& kind_node, Mapping& mapping)
   return shape;
 }
 
-// where mesh files are looked for; checked when the first file is read, since shapes need no folder
+// Folder of the mesh files. Its existence is checked when the first file is read, since shapes need no folder.
 class MeshFolder
 {
 public:
@@ -98,7 +98,7 @@ public:
     return path.string();
   }
 
-  /// Records the files that are missing: one fault per file, but one in all where the folder itself must be wrong.
+  /// Records one fault per missing file, or a single fault if all are missing, because then the folder is wrong.
   void report(const Node& surfaces) const
   {
     const std::string remedy = "; must be relative to the mesh directory '" + folder_.string() +
@@ -146,7 +146,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
   const auto read = [&](const Node& entry, Mapping& mapping, Surface& surface)
   {
     surface.unit = node.context().length_unit;
-    // only the key that is there is asked for, so that messages on unknown keys do not offer both
+    // ask only for the key that is present: messages about unknown keys list all keys that were asked for
     const bool shape = mapping.has("shape");
     if (shape == mapping.has("file"))
     {

@@ -25,7 +25,7 @@ bool contains(const std::vector<std::string>& texts, const std::string& text)
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-// Levenshtein distance: fewest letters inserted, deleted or replaced
+// Levenshtein distance: least number of letters to insert, delete or replace
 std::size_t edit_distance(const std::string& a, const std::string& b)
 {
   std::vector<std::size_t> row(b.size() + 1);
@@ -170,7 +170,7 @@ int Node::integer(int lower, int upper, int fallback) const
   }
   catch (const Error&)
   {
-    value = std::nan("");  // the fault below says what is expected
+    value = std::nan("");  // leads to the fault below
   }
   if (value >= lower && value <= upper && value == std::floor(value))
     return static_cast<int>(value);
@@ -232,7 +232,7 @@ std::array<double, 3> Node::direction(const std::array<double, 3>& fallback) con
     fault("found a zero vector; must have a direction");
     return fallback;
   }
-  // divided by its largest component first, so that no square overflows
+  // divide by the largest component first, so that no square overflows
   const double x = vector[0] / largest, y = vector[1] / largest, z = vector[2] / largest;
   const double length = std::sqrt(x * x + y * y + z * z);
   return { x / length, y / length, z / length };
@@ -257,7 +257,7 @@ std::vector<std::string> Node::references(const Names& names) const
   std::vector<std::string> result;
   if (!is_list())
   {
-    if (scalar("a name (" + names.kind + ") or a list of such"))
+    if (scalar("a name (" + names.kind + ") or a list of such names"))
       result.push_back(reference(names));
     return result;
   }
@@ -304,7 +304,7 @@ std::vector<std::pair<std::string, Node>> Node::pairs() const
     const int line = line_of(pair.first, line_);
     if (!pair.first.IsScalar())
     {
-      context_->faults.add(line, path_, "found a key that is no text; keys are texts");
+      context_->faults.add(line, path_, "found a key that is not a text; keys must be texts");
       continue;
     }
     const std::string& key = pair.first.Scalar();
@@ -332,7 +332,7 @@ Mapping::Mapping(const Node& node) : node_(node), pairs_(node.pairs()) {}
 
 Mapping::~Mapping()
 {
-  if (!judged_)
+  if (!reports_unknown_keys_)
     return;
   for (const auto& [key, node] : pairs_)
     if (!contains(asked_, key))
@@ -356,7 +356,7 @@ Node Mapping::optional(const std::string& key)
 Node Mapping::required(const std::string& key, const std::string& expected)
 {
   Node node = optional(key);
-  // a value that is no mapping at all has been reported already
+  // a value that is not a mapping has been reported already
   if (!node.given() && node_.is_mapping())
     node.fault("missing; must be " + expected);
   return node;

@@ -5,8 +5,7 @@
 namespace frontalis
 {
 
-/// Hash of a text as 16 hexadecimal digits: the short name of Scene::content. FNV-1a with 64 bits (Fowler, Noll and
-/// Vo).
+/// FNV-1a hash (Fowler, Noll and Vo) with 64 bits, as 16 hexadecimal digits. Models store that of Scene::content.
 std::string content_hash(const std::string& content);
 
 }  // namespace frontalis

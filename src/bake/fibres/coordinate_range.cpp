@@ -12,10 +12,10 @@ constexpr std::size_t bins = 32;
 std::size_t before(std::size_t b, bool closed) { return b > 0 ? b - 1 : (closed ? bins - 1 : 0); }
 std::size_t after(std::size_t b, bool closed) { return b + 1 < bins ? b + 1 : (closed ? 0 : b); }
 
-/// Limits of one coordinate on the muscle's surface, in bins of the other.
+/// Lower and upper limit of one coordinate on the muscle's surface, for each of `bins` intervals of the other.
 struct Limits
 {
-  std::array<double, bins> low{}, high{}, given{};  ///< given: 0 for a bin that has no limits yet, else 1
+  std::array<double, bins> low{}, high{}, given{};  ///< given: 1 if the bin has limits, else 0
 
   Limits(const MuscleGrid& grid, const std::vector<std::array<double, 2>>& samples, std::size_t stretched, double ends)
   {
@@ -27,7 +27,7 @@ struct Limits
         values[std::min(bins - 1, static_cast<std::size_t>(place))].emplace_back(samples[s][stretched],
                                                                                  grid.samples[s].area);
     }
-    // the limits leave out the outermost part of each bin's area
+    // proportion of a bin's area beyond each limit, so that single outliers do not determine the limits
     constexpr double outermost = 0.005;
     for (std::size_t b = 0; b < bins; ++b)
     {
@@ -56,7 +56,7 @@ struct Limits
     }
   }
 
-  /// Averages neighbouring bins.
+  /// Averages over neighbouring bins, with weights 1, 2, 1, and fills empty ones.
   void smooth(bool closed)
   {
     const Limits old = *this;
@@ -79,7 +79,7 @@ struct Limits
     }
   }
 
-  /// A value of the coordinate, stretched, where the other one has the value `across`.
+  /// Maps a value of the coordinate from its limits to 0..1, where the other coordinate has the value `across`.
   double stretched(double value, double across, bool closed) const
   {
     const double place = across * static_cast<double>(bins) - 0.5;
@@ -95,7 +95,7 @@ struct Limits
 
 DistanceTable::DistanceTable(const MuscleGrid& grid, const CornerField& field, bool periodic)
 {
-  std::vector<std::pair<double, double>> cells;  // value, steepness
+  std::vector<std::pair<double, double>> cells;  // value, norm of the gradient [1/m]
   double low = periodic ? 0 : 1e300, high = periodic ? 1 : -1e300;
   for (const auto& corners : field)
   {

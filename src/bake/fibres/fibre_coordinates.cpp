@@ -1,4 +1,3 @@
-
 #include "frontalis/error.hpp"
 #include "bake/fibres/grid_field.hpp"
 
@@ -22,7 +21,7 @@ CornerField corners_of(const MuscleGrid& grid, const Eigen::VectorXd& nodal)
   return field;
 }
 
-/// Harmonic field around the hole, in revolutions: the azimuth and its harmonic correction.
+/// Harmonic field around the hole, in revolutions: the azimuth plus a correction that minimises its energy.
 CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField& field)
 {
   const Vector3d aside = std::abs(hole.axis[0]) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
@@ -52,7 +51,7 @@ CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField
   return azimuth;
 }
 
-/// Nodes at an end of the muscle: those about as near to it as the nearest one.
+/// Nodes at an end of the muscle: those at most 0.75 cell edges farther from it than the nearest node.
 std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3d&)>& distance)
 {
   std::vector<double> distances;
@@ -72,7 +71,7 @@ Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, co
   std::vector<std::int32_t> shared;
   std::set_intersection(origin.begin(), origin.end(), insertion.begin(), insertion.end(), std::back_inserter(shared));
   if (!shared.empty())
-    throw Error("its origin and insertion are at the same place; they must be apart");
+    throw Error("its origin and insertion are at the same place; they must be different");
   std::vector<std::pair<std::int32_t, double>> fixed;
   fixed.reserve(origin.size() + insertion.size());
   for (const std::int32_t n : origin)
@@ -87,7 +86,7 @@ double at(const std::array<double, 8>& corners, const std::array<double, 8>& wei
   return std::inner_product(weights.begin(), weights.end(), corners.begin(), 0.0);
 }
 
-/// Starting fields for subspace iteration, which together are orthogonal to none of the slow modes.
+/// Starting fields for subspace iteration: functions of low order, which overlap with every slow mode.
 Eigen::MatrixXd starting_fields(const MuscleGrid& grid)
 {
   Eigen::MatrixXd fields(grid.nodes.size(), 6);
@@ -134,7 +133,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     trusted = blend(grid, reach, shown, gradients);
   }
 
-  // the field across is nearly constant along the fibres
+  // The small isotropic part lets the field across the muscle be nearly constant along the fibres.
   std::vector<Vector3d> fibres;
   fibres.reserve(trusted.size());
   for (const SurfaceDirection& fibre : trusted)
@@ -159,10 +158,10 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
   for (const MuscleGrid::Sample& sample : grid.samples)
     result.samples.push_back(sample.cell < 0 ? std::array<double, 2>{ none, none }
                                              : coordinates(sample.cell, grid.weights(sample.cell, sample.point)));
-  // stretched so that fibres end where the muscle ends and follow its sides
+  // stretch the coordinates so that fibres end where the muscle ends and follow its sides
   if (!guide.ring)
   {
-    // the part of the length that an obliquely cut end takes: about half a width
+    // near an end, which may be cut obliquely, use the limits found 1.5 widths away from it
     stretch(grid, 1, false, std::min(0.45, 1.5 * result.width / result.length), result);
     stretch(grid, 0, false, 0, result);
   }

@@ -7,7 +7,7 @@ namespace
 
 constexpr std::size_t grain = 1024;
 
-/// The shortest rotation from unit vector `from` to `to`; if they are opposite, about `axis`, normal to `from`.
+/// The shortest rotation from unit vector `from` to `to`. If they are opposite, rotates about `axis`, normal to `from`.
 Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, const Vector3d& axis)
 {
   if (from.dot(to) < -1 + 1e-9)
@@ -15,7 +15,7 @@ Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, c
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }
 
-/// Of the materials in voxel e whose fibres follow a surface, the one with the largest proportion; -1: there is none.
+/// The material with the largest proportion in voxel e among those whose fibres follow a surface; -1 if there is none.
 int main_material(const Scene& scene, const Model& model, std::size_t e)
 {
   int main = -1;
@@ -54,7 +54,7 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
                  normal[e] = surface.pseudonormal(surface.tree().closest(frame.voxel_centre(model, e)));
                });
 
-  // per material: normal of the plane of its fibre families; agreement > 0: it points along the surface's normals
+  // per material: normal of the plane of its fibre families; sum of its cosines with the surface's normals
   std::vector<Vector3d> across(scene.materials.size(), Vector3d::Zero());
   std::vector<double> agreement(across.size(), 0);
   for (std::size_t m = 0; m < across.size(); ++m)

@@ -8,12 +8,12 @@ namespace frontalis
 namespace
 {
 
-constexpr double wanted_cells = 1500;  // of the grid in a muscle
-// Below this ratio of length to width the shape alone does not decide along which of the two the fibres run.
+constexpr double wanted_cells = 1500;  // in the grid of a muscle
+// Below this ratio of length to width the shape alone does not determine the fibre direction.
 constexpr double least_distinctness = 1.1;
-constexpr double least_kept = 0.9;       // of a muscle, in its largest connected part
-constexpr double largest_misfit = 0.25;  // rms distance of a fitted volume, of the muscle's width
-constexpr double farthest_end = 0.5;     // of an origin or insertion from the muscle, of the muscle's length
+constexpr double least_kept = 0.9;       // least proportion of a muscle in its largest connected component
+constexpr double largest_misfit = 0.25;  // RMS distance of a fitted volume over the muscle's width
+constexpr double farthest_end = 0.5;     // distance of an origin or insertion over the muscle's length
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
@@ -26,7 +26,7 @@ NurbsVolume volume_of(const ControlNet& net)
   return NurbsVolume({ { axis(0), axis(1), axis(2) } }, points, net.weights);
 }
 
-/// Surfaces of a muscle's volume as one mesh.
+/// All surfaces that bound a muscle's volume, as one mesh.
 TriangleMesh mesh_of(const Volumes::Entry& entry, const Volumes& volumes)
 {
   std::vector<std::size_t> bodies = entry.inside;
@@ -40,7 +40,7 @@ TriangleMesh mesh_of(const Volumes::Entry& entry, const Volumes& volumes)
   return mesh;
 }
 
-/// Distance from an origin or insertion [m]. Throws Error for one that is as far away as the muscle is long.
+/// Distance from an origin or insertion [m]. Throws Error if it is more than half a muscle's length from the muscle.
 std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const char* name, const MuscleGrid& grid,
                                                      const PreparedSurfaces& surfaces)
 {
@@ -74,11 +74,11 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
   return distance;
 }
 
-/// A NURBS volume that fits a muscle's mesh. `finding` receives a sentence about the fit.
+/// Fits a NURBS volume to a muscle's mesh. `finding` receives a sentence about the quality of the fit.
 MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const PreparedSurfaces& surfaces,
                         std::string& finding)
 {
-  // coarser cells join strands that lie apart
+  // coarser cells connect separate strands
   MuscleGrid grid = make_muscle_grid(mesh, wanted_cells);
   for (double coarser = 1.5; grid.kept < least_kept && coarser < 4; coarser *= 1.5)
     grid = make_muscle_grid(mesh, wanted_cells, coarser);
@@ -168,7 +168,7 @@ void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, con
                    const Vector3d d = frame.turn(fibres[muscle].at(centre));
                    if (!(d.norm() > 0.5))
                      throw failure(
-                         "{}: its fibres have no direction at {}; control points of its net must not fall together",
+                         "{}: its fibres have no direction at {}; the control points of its net must not coincide",
                          place_in_scene(scene, "muscle", scene.muscles[muscle]), place_text(centre, scene.unit));
                    Eigen::Map<Eigen::Vector3f>(model.fibre_direction[m].data()) = d.cast<float>();
                  }

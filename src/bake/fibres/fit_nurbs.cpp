@@ -9,8 +9,8 @@ namespace frontalis
 namespace
 {
 
-/// Fits the control points of a tensor-product surface by least squares, with a little bending stiffness, which
-/// determines it where there are no data.
+/// Fits the control points of a tensor-product surface by least squares. A small bending stiffness determines the
+/// surface where there are no data.
 class SurfaceFit
 {
 public:
@@ -74,7 +74,7 @@ private:
   {
     return axis == 0 ? i * axes_[1].points() + j : j * axes_[1].points() + i;
   }
-  /// The control points on which a point of the surface depends, and how much.
+  /// The control points that influence a point of the surface, and their basis functions there.
   struct Terms
   {
     std::size_t count = 0;
@@ -99,7 +99,7 @@ private:
   std::vector<Vector3d> points_;
 };
 
-/// The sheet through the middle of the muscle, over (u, v): a fit to the centres of the cells.
+/// Surface through the middle of the muscle as a function of (u, v), fitted to the centres of the cells.
 SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordinates, const SplineAxis& along)
 {
   SurfaceFit sheet(along, SplineAxis(3, 6, false));
@@ -111,7 +111,7 @@ SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordina
 
 struct SheetFrame
 {
-  Vector3d tangent, normal;  ///< along u, and across the sheet; length 1
+  Vector3d tangent, normal;  ///< unit vectors along u and normal to the sheet
 };
 
 SheetFrame sheet_frame(const SurfaceFit& sheet, double u, double v)
@@ -131,8 +131,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   const SplineAxis around(3, 12, true);
   const SurfaceFit sheet = middle_sheet(grid, coordinates, along);
 
-  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, back from 1/2 to 1 on the
-  // other.
+  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, then to 1 on the other.
   struct Datum
   {
     std::array<double, 2> parameter;
@@ -148,7 +147,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       continue;
     const auto [u, v] = coordinates.samples[s];
     const SheetFrame frame = sheet_frame(sheet, u, v);
-    // surfaces across the fibres are ends of the muscle: leave them out
+    // leave out the ends of the muscle, where the surface is across the fibres
     if (std::abs(frame.tangent.dot(sample.normal)) > 0.7)
       continue;
     const Vector3d middle = sheet.at({ u, v });
@@ -173,7 +172,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
     surface.solve(0.01);
   }
 
-  // control points of the inner sheet: means of those that face each other across it
+  // inner control points: means of opposite control points of the outer surface
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
@@ -204,7 +203,7 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1) });
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1) });
     }
-  // caps: strips between the two sides
+  // caps at the ends: strips that connect opposite points of the outline
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
     for (const std::int32_t i : { 0, along })
     {

@@ -15,7 +15,7 @@ using Stiffness = Eigen::Matrix<double, 8, 8>;
 
 struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
 {
-  /// Throws Error with the name of the field if the matrix is singular.
+  /// Throws Error naming the field if the matrix is singular.
   Cholesky(const Eigen::SparseMatrix<double>& matrix, const char* field) : SimplicialLDLT(matrix)
   {
     if (info() != Eigen::Success)
@@ -23,12 +23,12 @@ struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
   }
 };
 
-/// Integrals over the unit cube of the products of shape function derivatives a (rows) and b (columns).
+/// [a][b]: integrals over the unit cube of dN_i/dx_a dN_j/dx_b for the trilinear shape functions N (i rows, j columns).
 std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
 {
   const double mass[2][2] = { { 1.0 / 3, 1.0 / 6 }, { 1.0 / 6, 1.0 / 3 } };
   const double stiff[2][2] = { { 1, -1 }, { -1, 1 } };
-  const double mixed[2][2] = { { -0.5, -0.5 }, { 0.5, 0.5 } };  // derivative of the first
+  const double mixed[2][2] = { { -0.5, -0.5 }, { 0.5, 0.5 } };  // derivative of the first shape function
   std::array<std::array<Stiffness, 3>, 3> result;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 3; ++b)
@@ -108,7 +108,7 @@ void GridField::assemble()
 
 Eigen::SparseMatrix<double> GridField::shifted() const
 {
-  // far below the eigenvalue of every mode but the constant one
+  // far below every eigenvalue except that of the constant mode, which is 0
   const double extent = std::cbrt(mass_.sum());
   Eigen::SparseMatrix<double> matrix = matrix_;
   matrix.diagonal() += 1e-7 / (extent * extent) * mass_;
@@ -125,7 +125,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
   {
     Eigen::MatrixXd& x = modes.fields;
     x.rowwise() -= (mass_.transpose() * x).eval() / mass_.sum();
-    // Rayleigh-Ritz: the best modes within what the columns span
+    // Rayleigh-Ritz: the best modes in the span of the columns
     const Eigen::MatrixXd gram = x.transpose() * (mass_.asDiagonal() * x);
     const Eigen::MatrixXd energy = x.transpose() * (matrix_ * x);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(energy, gram);
@@ -144,7 +144,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
 
 Eigen::VectorXd GridField::between(const std::vector<std::pair<std::int32_t, double>>& fixed) const
 {
-  // stiff springs hold the given values
+  // penalty method: stiff springs hold the given values
   Eigen::SparseMatrix<double> matrix = shifted();
   Eigen::VectorXd load = Eigen::VectorXd::Zero(mass_.size());
   const double spring = 1e6 * grid_.edge;

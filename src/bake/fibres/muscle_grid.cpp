@@ -9,7 +9,7 @@ namespace
 
 using Eigen::Vector3i;
 
-/// A number for each cell of a box of cells, -1 at first.
+/// One number per cell of a box of cells, initially -1.
 class CellBox
 {
 public:
@@ -26,7 +26,7 @@ private:
   std::vector<std::int32_t> values_;
 };
 
-/// The number of each cell of the grid at its place.
+/// Box with the index of each cell of the grid; -1 in all other cells.
 CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
 {
   CellBox numbers(size);
@@ -35,7 +35,7 @@ CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
   return numbers;
 }
 
-/// Steps to the neighbours of a cell across its faces.
+/// Offsets to the neighbours of a cell across its faces.
 std::vector<Vector3i> face_steps()
 {
   std::vector<Vector3i> steps;
@@ -44,7 +44,7 @@ std::vector<Vector3i> face_steps()
   return steps;
 }
 
-/// Samples of the surface, so dense that the cells that have one are a closed hull.
+/// Samples the surface so densely that the cells with a sample form a closed hull.
 void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
 {
   for (const Triangle& t : mesh.triangles)
@@ -67,10 +67,10 @@ void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
   }
 }
 
-// Marks in a CellBox; cells that are enclosed keep the -1.
+// Values in a CellBox while the cells are classified; enclosed cells keep -1.
 constexpr std::int32_t outside = 0, on_surface = 1, visited = -2;
 
-/// Marks the cells that can be reached from the box's border without passing a cell of the surface.
+/// Marks the cells that are connected to the box's border without passing a cell of the surface.
 void flood_outside(CellBox& box)
 {
   const auto take = [&box](const Vector3i& place)
@@ -83,8 +83,8 @@ void flood_outside(CellBox& box)
   flood<Vector3i>(Vector3i::Zero(), face_steps(), take);
 }
 
-/// The largest part of the cells that are not outside, connected through faces, edges or corners. `kept` receives its
-/// proportion of all.
+/// Largest connected component of the cells that are not outside; faces, edges and corners connect cells. `kept`
+/// receives the proportion of these cells that are in it.
 std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
   std::vector<Vector3i> steps;
@@ -166,12 +166,12 @@ MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coar
   MuscleGrid grid;
   const Box bounds = bounding_box(mesh);
   const double diagonal = bounds.diagonal().norm();
-  // the wanted number of cells by the muscle's volume, or by its area where it is thinner than a cell
+  // edge for the wanted number of cells: from the volume, or from the area if the muscle is thinner than a cell
   const double wanted_edge =
       std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * surface_area(mesh) / (1.5 * wanted)));
   grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, wanted_edge));
 
-  // the margin of one and a half cells puts surfaces along the axes into the middle of cells
+  // the margin of 1.5 cells puts surfaces that are normal to an axis into the middle of cells
   grid.lower = bounds.min() - Vector3d::Constant(1.5 * grid.edge);
   const Vector3i size =
       ((bounds.max() - grid.lower) / grid.edge).array().ceil().cast<int>().matrix() + Vector3i::Constant(2);

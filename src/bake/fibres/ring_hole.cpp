@@ -9,13 +9,13 @@ namespace
 
 using Pixel = Eigen::Vector2i;
 
-/// Projection of the cells along an axis onto an image with pixels as wide as cells and a border of two pixels.
+/// Projection of the cells along an axis. Pixels are as wide as cells; a border of two pixels surrounds the muscle.
 struct Image
 {
   Vector3d origin, x, y;
-  Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, from 2 on: number of a hole
+  Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, 2 or more: number of a hole
 
-  /// Marks an unknown pixel and those that are connected to it, and returns them.
+  /// Marks and returns an unknown pixel and all unknown pixels connected to it.
   std::vector<Pixel> fill(const Pixel& seed, int mark)
   {
     static const std::vector<Pixel> steps{ { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 } };
@@ -47,7 +47,7 @@ Image project(const MuscleGrid& grid, const Eigen::Matrix3d& axes, const Vector3
   image.origin = centre + (box.min()[0] - 2 * grid.edge) * image.x + (box.min()[1] - 2 * grid.edge) * image.y;
   const Pixel size = (box.sizes() / grid.edge).cast<int>() + Pixel::Constant(5);
   image.pixels.setZero(size[0], size[1]);
-  // the square that a cell covers is turned against the pixels: mark the four nearest
+  // a projected cell is rotated relative to the pixels: mark the four nearest
   for (const Eigen::Vector2d& place : places)
   {
     const Pixel corner = ((place - box.min()) / grid.edge + Eigen::Vector2d::Constant(1.5)).cast<int>();

@@ -41,16 +41,16 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
     append(scene, *node.mChildren[c], transform, unit, mesh);
 }
 
-// A closed surface passes through itself if it encloses more than this proportion twice or inside-out, or such a region
-// is deeper than this proportion of its size; an open one, if a group of crossing triangles extends over more than this
-// proportion of it. The limits lie between meshes segmented from images of a real head (at most 0.6 %, 1.7 % and 1.8 %)
-// and surfaces that really overlap, which have ten times as much (doc/baking.md).
+// A surface is refused as self-intersecting above these limits: proportion of the enclosed volume that is enclosed
+// twice or inside-out; depth of such a region over the surface's size; for an open surface, extent of a group of
+// crossing triangles over that of the surface. Meshes segmented from images of a head reach 0.6 %, 1.7 % and 1.8 %;
+// surfaces that really overlap reach ten times as much (doc/baking.md).
 constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// Whether an open mesh is inside-out: its winding number of largest magnitude, in its bounding box, is negative.
+/// Whether an open mesh is inside-out: the winding number with the largest magnitude in its bounding box is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);
@@ -62,14 +62,14 @@ bool open_and_inside_out(const TriangleMesh& mesh)
     if (std::abs(w) > std::abs(strongest))
       strongest = w;
   }
-  // a patch or a dome does not enclose enough to decide
+  // patches and domes, whose winding numbers are weaker, do not enclose enough to decide
   return strongest < -0.75;
 }
 
-/// The regions that crossing pieces of a mesh enclose twice or inside-out.
+/// The regions that a mesh's components with crossing triangles enclose twice or inside-out.
 struct Overlap
 {
-  double share = 0;  ///< volume of these regions over all enclosed volume
+  double share = 0;  ///< volume of these regions over the whole enclosed volume
   double depth = 0;  ///< largest distance of a point of these regions from the surface [m]
   double size = 0;   ///< cube root of the volume that the pieces enclose [m]
   Vector3d deepest{ 0, 0, 0 };
@@ -104,13 +104,13 @@ Overlap find_overlap(const TriangleMesh& mesh, const MeshFaults& faults)
   return overlap;
 }
 
-/// Throws if a fault makes it unclear what the surface encloses.
+/// Throws Error if a fault makes it unclear what the surface encloses.
 void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool closed, double unit)
 {
   if (faults.fins.count > 0)
     throw failure(
-        "at {} an odd number of triangles meet (non-manifold), the first at {}: nothing says which side is inside; "
-        "take the surplus triangles away in a modelling tool",
+        "at {} an odd number of triangles meet (non-manifold), the first at {}: it is undefined which side is inside; "
+        "delete the surplus triangles in a modelling tool",
         count_text(faults.fins.count, "edge", "edges"), place_text(faults.fins.place, unit));
   if (closed && std::abs(signed_volume(mesh)) < 1e-7 * std::pow(surface_area(mesh), 1.5))
     throw failure(
@@ -130,7 +130,7 @@ void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool clos
         crossing, 100 * overlap.share, length_text(overlap.depth, unit), place_text(overlap.deepest, unit));
   if (!closed && faults.crossing_extent > widest_crossing * bounding_box(mesh).diagonal().norm())
     throw failure(
-        "{}over {} around {}; take one of the sheets away in a modelling tool, or give each a file and a surface of "
+        "{}over {} around {}; delete one of the sheets in a modelling tool, or give each a file and a surface of "
         "its own",
         crossing, length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit));
 }
@@ -145,7 +145,7 @@ void describe(const MeshRepairs& repairs, const Found& found)
       found(count_text(count, one, many));
   };
   add(repairs.collapsed, "triangle with a corner twice left out", "triangles with a corner twice left out");
-  add(repairs.repeated, "triangle that was there already left out", "triangles that were there already left out");
+  add(repairs.repeated, "repeated triangle left out", "repeated triangles left out");
   add(repairs.back_to_back, "pair of triangles back to back left out", "pairs of triangles back to back left out");
   add(repairs.flat, "triangle without area left out", "triangles without area left out");
   add(repairs.turned, "triangle turned to agree with its neighbours",
@@ -195,7 +195,9 @@ TriangleMesh import_mesh(const std::string& file, double unit)
     throw Error("mesh file " + file + no_triangles);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (!to_vector(mesh.vertices[v]).allFinite())
-      throw failure("mesh file {}: vertex {} is not a number or infinite; every coordinate must be finite", file, v);
+      throw failure(
+          "mesh file {}: vertex {} has a coordinate that is infinite or not a number; every coordinate must be finite",
+          file, v);
   return mesh;
 }
 

@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-/// A triangle's edge from its lower to its higher vertex number.
+/// An edge of a triangle, stored from its lower to its higher vertex number.
 struct HalfEdge
 {
   std::int32_t low, high, triangle;
@@ -48,7 +48,7 @@ void for_each_edge(const std::vector<HalfEdge>& half_edges, const Body& body)
   }
 }
 
-/// Keeps the part on one side of a plane: below `limit` along the axis for sign +1, above it for -1.
+/// Keeps the part of a mesh below `limit` along an axis (sign +1) or above it (sign -1).
 TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
 {
   const auto height = [&](std::int32_t v) { return sign * (limit - mesh.vertices[v][axis]); };
@@ -58,7 +58,7 @@ TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
     const auto found = crossings.insert({ { std::min(a, b), std::max(a, b) }, 0 });
     if (found.second)
     {
-      // from the lower vertex number to the higher, so that both triangles of an edge get the same point to the bit
+      // interpolate from the lower vertex number, so that both triangles of an edge get bitwise the same point
       const auto [p, q] = std::minmax(a, b);
       const double along = height(p) / (height(p) - height(q));
       const Vector3d from = vertex(mesh, p), to = vertex(mesh, q);
@@ -178,7 +178,7 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
   struct Neighbour
   {
     std::int32_t triangle = -1;
-    bool disagrees = false;  // both triangles run along the edge the same way
+    bool disagrees = false;  // both triangles run along the edge in the same direction
   };
   std::vector<std::array<Neighbour, 3>> neighbours(mesh.triangles.size());
   bool any_wrong = false;
@@ -295,7 +295,7 @@ void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
       const std::int32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
       const double bd = (vertex(mesh, d) - vertex(mesh, b)).squaredNorm();
       const double ac = (vertex(mesh, c) - vertex(mesh, a)).squaredNorm();
-      // the shorter diagonal; where both are equal, mirrored about the middle
+      // the shorter diagonal; if both are equal, the diagonals are mirrored about the middle column
       if (std::abs(ac - bd) < 1e-9 * ac ? n % 2 == 0 && i < n / 2 : ac > bd)
       {
         mesh.triangles.push_back({ a, b, d });

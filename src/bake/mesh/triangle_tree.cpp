@@ -7,9 +7,9 @@ namespace frontalis
 namespace
 {
 
-constexpr std::int32_t leaf_size = 4;  // triangles
+constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf
 
-/// Closest point of a triangle (Ericson, Real-Time Collision Detection 2005, 5.1.5), with the feature that it lies on.
+/// Closest point of a triangle (Ericson, Real-Time Collision Detection 2005, 5.1.5). `feature`: see ClosestPoint.
 Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c,
                              std::int8_t& feature)
 {
@@ -43,7 +43,7 @@ Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3
   return found(0, a + (vb * scale) * ab + (vc * scale) * ac);
 }
 
-/// Whether a box and a triangle overlap: by separating axes (Akenine-Moeller 2001).
+/// Whether a box and a triangle overlap, by the separating axis theorem (Akenine-Moeller 2001).
 bool overlap(const std::array<Vector3d, 3>& corners, const Box& box)
 {
   const Vector3d centre = box.center();
@@ -71,9 +71,9 @@ bool overlap(const std::array<Vector3d, 3>& corners, const Box& box)
   return true;
 }
 
-/// Whether the line from p along `direction` passes the edge from a to b on its left. The two triangles of an edge,
-/// which run along it in opposite ways, always get opposite answers, even where the line meets the edge: the edge is
-/// taken from the vertex of the lower number.
+/// Whether the line from p along `direction` passes the edge from a to b on its left. The computation starts at the
+/// vertex of the lower number. So the two triangles of an edge, which run along it in opposite directions, get opposite
+/// answers even if the line meets the edge.
 bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, const Vector3d& b, std::int32_t number_a,
              std::int32_t number_b)
 {
@@ -82,8 +82,8 @@ bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, co
   return (direction.dot(first.cross(second)) >= 0) == ordered;
 }
 
-/// A group is far where its centre is at least this many times as far away as its farthest corner is from the centre.
-/// The error of the winding number is then about 1e-3 (winding_number_test).
+/// A group of triangles is far from a point if the distance to its centre is at least this many times the distance from
+/// its centre to its farthest corner. The error of the winding number is about 1e-3 (winding_number_test).
 constexpr double far_ratio = 2.3;
 
 }  // namespace
@@ -127,7 +127,7 @@ std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std
   }
   if (end - begin > leaf_size)
   {
-    // two halves along the longest side; equal centroids are ordered by number, so that the tree is always the same
+    // halve along the longest side; equal centroids are ordered by index, so that the tree is reproducible
     Eigen::Index axis = 0;
     centres.sizes().maxCoeff(&axis);
     const std::int32_t middle = (begin + end) / 2;
@@ -250,7 +250,7 @@ double winding_of_triangle(const Vector3d& p, const Vector3d& a, const Vector3d&
   const double lu = u.norm(), lv = v.norm(), lw = w.norm();
   const double numerator = u.dot(v.cross(w));
   const double denominator = lu * lv * lw + u.dot(v) * lw + v.dot(w) * lu + w.dot(u) * lv;
-  // a point in the plane of the triangle sees nothing of it
+  // the solid angle is 0 for a point in the plane of the triangle
   if (numerator == 0)
     return 0;
   return std::atan2(numerator, denominator) / (2 * pi);
@@ -276,7 +276,7 @@ TriangleTree::Expansion TriangleTree::expand(const Node& range) const
     const Vector3d normal = 0.5 * (b - a).cross(c - a);
     const Vector3d middle = (1.0 / 3) * (a + b + c);
     node.dipole += normal;
-    // mean of offset j times offset k over the triangle
+    // mean over the triangle of offsets j and k from the centre, multiplied
     const auto moment = [&](std::size_t j, std::size_t k)
     { return (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + 9 * middle[j] * middle[k]) / 12; };
     const double moments[6] = { moment(0, 0), moment(1, 1), moment(2, 2), moment(0, 1), moment(1, 2), moment(2, 0) };

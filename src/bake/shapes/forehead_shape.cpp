@@ -28,7 +28,7 @@ public:
         // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
         depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
   {
-    // the skin lies along the normal from the bone, so that its height 0 is not the bone's: iterate
+    // the normal from bone to skin is not horizontal: find by iteration the height of the bone below the sellion
     double z = 0;
     for (int i = 0; i < 20; ++i)
       z -= at(0, z, 0)[2];
@@ -45,7 +45,7 @@ public:
     return bone(s, z) + ((1 - depth) * thickness(z)) * across.cross(up).normalized();
   }
 
-  /// Of the soft tissue [m].
+  /// Thickness of the soft tissue [m].
   double thickness(double z) const
   {
     const double over = z - dimensions_.brow_height;
@@ -53,12 +53,12 @@ public:
            (dimensions_.brow_thickness - dimensions_.hairline_thickness) * bell(over, 28e-3);
   }
 
-  /// Heights of the edges: the orbital rim, lower at the nasal root, and the hairline, lower at the temples [m].
+  /// Heights [m] of the orbital rim, which is lower at the nasal root, and of the hairline, lower at the temples.
   double lower_edge(double s) const
   {
     const double arc = std::abs(s);
     const double brow = dimensions_.brow_height;
-    // nasal root, then the orbital rim, then down towards the cheek bone
+    // height of the nasal root, plus the rise to the orbital rim, minus the fall towards the cheek bone
     return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 4e-3) / 20e-3) -
            0.35 * brow * smooth_step((arc - 42e-3) / 30e-3);
   }
@@ -76,7 +76,7 @@ private:
     const double angle = s / d.half_breadth;
     const double lean = std::tan(5 * pi / 180);
     const double above = z - d.brow_height;
-    // the profile leans and curves backwards above the brow; below it, it is straight
+    // the profile leans and curves backwards above the brow and is straight below
     const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
 
     // relief along the horizontal normal: the brow ridge, strongest above the medial half of the orbit; the glabella;
@@ -99,8 +99,8 @@ private:
   double shift_ = 0;   ///< along x, puts the sellion on the skin at the origin [m]
 };
 
-/// Middle surface of a flat muscle: arc length and height of its point (a, b), both from 0 to 1, and its depth as a
-/// proportion of the soft tissue. a runs to the subject's left, b upwards or along the fibres.
+/// Middle surface of a flat muscle. `place` gives arc length and height [m], `depth` the depth as a proportion of the
+/// soft tissue. a runs from 0 to 1 to the subject's left, b from 0 to 1 upwards or along the fibres.
 struct Sheet
 {
   std::function<std::array<double, 2>(double, double)> place;
@@ -133,12 +133,12 @@ TriangleMesh thicken(const ForeheadMap& map, const Sheet& sheet, double edge)
 
 double mix(double a, double b, double t) { return a + (b - a) * t; }
 
-/// Inner edge of the frontalis: a few millimetres from the midline at the brow, diverging upwards.
+/// Distance of the frontalis from the midline [m]: 3 mm at the brow (share 0), 12 mm at the upper end (share 1).
 double frontalis_inner(double share) { return mix(3e-3, 12e-3, share * share); }
 
-constexpr double frontalis_width = 38e-3;
+constexpr double frontalis_width = 38e-3;  // [m]
 
-/// From the skin of the brow, where it is superficial, up to the galea at two thirds of the height.
+/// The frontalis runs from the skin of the brow, where it is superficial, up to the galea at two thirds of the height.
 Sheet frontalis(const ForeheadMap& map, double side)
 {
   const ForeheadDimensions& d = map.dimensions();
@@ -155,7 +155,7 @@ Sheet frontalis(const ForeheadMap& map, double side)
   return { place, depth, d.muscle_thickness, frontalis_width, 2.0 / 3 * d.height };
 }
 
-/// From the bone at the medial end of the brow obliquely upwards and outwards to the skin over the middle of the brow.
+/// The corrugator runs from the bone at the medial end of the brow obliquely up and out to the skin over the mid brow.
 Sheet corrugator(const ForeheadMap& map, double side)
 {
   const ForeheadDimensions& d = map.dimensions();
@@ -174,7 +174,7 @@ Sheet corrugator(const ForeheadMap& map, double side)
   return { place, depth, d.muscle_thickness, length, 12e-3 };
 }
 
-/// From the nasal bone up in the midline to the skin between the brows.
+/// The procerus runs in the midline from the nasal bone up to the skin between the brows.
 Sheet procerus(const ForeheadMap& map)
 {
   const ForeheadDimensions& d = map.dimensions();
@@ -185,7 +185,7 @@ Sheet procerus(const ForeheadMap& map)
   return { place, depth, d.muscle_thickness, 10e-3, 25e-3 };
 }
 
-/// Tendon sheet from the upper edge of the frontales, and the gap between them, to the hairline.
+/// Tendon sheet from the upper edge of the frontales, and from the gap between them, to the hairline.
 Sheet galea(const ForeheadMap& map)
 {
   const ForeheadDimensions& d = map.dimensions();
@@ -194,19 +194,18 @@ Sheet galea(const ForeheadMap& map)
     const double half = std::min(52e-3, map.half_width());
     const double s = mix(-half, half, a);
     const double arc = std::abs(s);
-    // down between the frontales as far as they leave room, else to their upper edge
+    // the lower edge follows the upper edge of the frontales and extends down into the gap between them
     const double top = d.brow_height + 2.0 / 3 * d.height - 3e-3;
     const double gap = std::max(0.0, 1 - arc / 12e-3);
     const double outer = std::max(0.0, (arc - 12e-3) / frontalis_width);
     const double low = top - 0.4 * d.height * gap * gap * (3 - 2 * gap) - 6e-3 * std::min(1.0, outer * outer);
-    // beyond the upper edge of the tissue, so that no slit is left there
+    // the sheet extends 1 mm beyond the upper edge of the tissue, so that no gap is left there
     return std::array<double, 2>{ s, mix(low, map.upper_edge(s) + 1e-3, b) };
   };
   const auto depth = [](double, double) { return 0.55; };
   return { place, depth, d.galea_thickness, 104e-3, 0.75 * d.height };
 }
 
-/// Middle surface of a muscle, or of the galea.
 Sheet muscle_sheet(const ForeheadMap& map, const std::string& part)
 {
   const auto is = [&part](const char* muscle) { return part.rfind(muscle, 0) == 0; };
@@ -266,7 +265,7 @@ struct SkinGrid
 {
   const ForeheadMap& map;
   std::int32_t across, up, through;
-  double beyond;  ///< by which it reaches beyond the edges [m]
+  double beyond;  ///< distance by which the grid extends beyond the edges of the skin [m]
 
   SkinGrid(const ForeheadMap& forehead, double edge, double margin) : map(forehead), beyond(margin)
   {

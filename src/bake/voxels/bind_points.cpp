@@ -9,9 +9,9 @@ namespace
 {
 
 constexpr std::size_t grain = 1024;
-constexpr double farthest_landmark = 20e-3;  // from the skin [m]
+constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
-/// Finds the voxel that a point follows: the one that contains it, or the nearest within the extrapolation distance.
+/// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
 {
 public:
@@ -20,7 +20,7 @@ public:
   {
   }
 
-  /// False where no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
+  /// Returns false if no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
   bool bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
   {
     VoxelPlace cell{};
@@ -76,9 +76,9 @@ struct BoundMesh
 {
   TriangleMesh mesh;
   Binding binding;
-  std::size_t triangles = 0;    ///< inside the crop
-  std::size_t too_far = 0;      ///< of these, with a vertex too far from every voxel
-  Vector3d unbound{ 0, 0, 0 };  ///< such a vertex, scene coordinates [m]
+  std::size_t triangles = 0;    ///< number of triangles inside the crop
+  std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
+  Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
 };
 
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
@@ -124,7 +124,7 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
     const std::string place = place_in_scene(scene, "landmark", landmark);
     const ClosestPoint closest = tree.closest(frame.to_local(to_vector(landmark.position)));
     if (closest.triangle < 0)
-      throw Error(place + ": there is no published skin that it could lie on");
+      throw Error(place + ": there is no published skin on which it could lie");
     if (closest.distance > farthest_landmark)
       throw failure(
           "{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the skin's crop",

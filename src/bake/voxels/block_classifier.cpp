@@ -16,7 +16,7 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  // the middle of the voxel is the first
+  // the first sample is the middle of the voxel
   for (int s = 0; s < samples * samples * samples; ++s)
     offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
   voxels_.volume_size.assign(volumes.entries().size(), 0);
@@ -82,7 +82,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     return;
   }
 
-  // halves along each side that is longer than a voxel
+  // halve the block along each side that is longer than a voxel
   for (int part = 0; part < 8; ++part)
   {
     VoxelPlace from{}, to{};
@@ -117,7 +117,7 @@ void BlockClassifier::decide_volume(std::size_t volume, const Box& box, BlockSta
   if (answer != Answer::unknown)
     return;
   answer = volume_answer(volume, box, state);
-  // the cheapest question first; each only while the answer is not known
+  // evaluate cheap conditions first, and others only while the answer is unknown
   const auto ask = [&](bool known, const auto& decide)
   {
     if (known || answer != Answer::unknown)
@@ -139,7 +139,7 @@ void BlockClassifier::decide_volume(std::size_t volume, const Box& box, BlockSta
 
 bool BlockClassifier::decide(const Box& box, BlockState& state)
 {
-  // tissue first: where there is none, nothing else needs to be known
+  // decide tissue volumes first: without tissue nothing else needs to be known
   bool tissue = false;
   for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
   {
@@ -195,13 +195,13 @@ void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState
   const ClosestPoint closest = surface->tree().closest(centre, farthest + radius);
   if (closest.triangle < 0)
   {
-    // beyond all thresholds
+    // the surface is farther from the whole block than the largest threshold
     state.depth[field] = { true, std::numeric_limits<double>::infinity() };
     return;
   }
   const double depth = -surface->signed_distance(centre, closest);
   double low = depth - radius, high = depth + radius;
-  // near the rim of an open surface the sign may change at a distance from it
+  // near the border of an open surface the depth may change sign without passing 0
   if (!surface->closed() && surface->rim_within(centre, closest.distance + 2 * radius))
   {
     high = closest.distance + radius;
@@ -213,7 +213,7 @@ void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState
 
 void BlockClassifier::decide_sight(std::size_t volume, const Box& box, BlockState& state) const
 {
-  // a block that no hiding surface passes through lies on one side of all of them
+  // undecided as long as a hiding surface may pass through the block
   const Volumes::Entry& entry = volumes_.entries()[volume];
   if (entry.any_hiding([&](std::size_t b) { return state.inside_body[b] == Answer::unknown; }))
     return;
@@ -240,7 +240,7 @@ bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3d& p, d
 
 Answer BlockClassifier::volume_answer(std::size_t volume, const Box& box, const BlockState& state) const
 {
-  // a volume is what all its conditions have in common
+  // a volume is the intersection of its conditions
   const Volumes::Entry& entry = volumes_.entries()[volume];
   Answer all = Answer::yes;
   const auto require = [&all](Answer condition)

@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// Number of the connected part that each voxel belongs to. `sizes` receives the numbers of voxels of the parts.
+/// Index of each voxel's component, connected by faces. `sizes` receives the number of voxels in each component.
 std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
 {
   const VoxelIndex index(model.voxels, model.size);
@@ -38,7 +38,7 @@ std::vector<std::int32_t> face_components(const Model& model, std::vector<std::s
   return component;
 }
 
-/// Gives the restricted nodes their new numbers and removes those that are gone.
+/// Renumbers restricted nodes and removes those without a new number (-1).
 template <class Restricted>
 void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& number)
 {
@@ -52,7 +52,7 @@ void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& nu
   list.resize(kept);
 }
 
-/// Keeps the entries of the voxels that stay, in lists that `begin` divides up by voxels.
+/// Keeps the entries of the voxels that stay. In each list, those of voxel e are begin[e] .. begin[e + 1].
 template <class... Lists>
 void keep_entries(const std::vector<bool>& keep, std::vector<std::int32_t>& begin, Lists&... lists)
 {
@@ -85,7 +85,7 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
   model.voxels.resize(kept);
   model.fill.resize(kept);
 
-  // the nodes that stay are in the same order as before
+  // the nodes that stay keep their order
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);
   build_nodes(model);
   std::vector<std::int32_t> number(old.size(), -1);
@@ -129,7 +129,7 @@ void remove_islands(Model& model, BakeMonitor& monitor)
     stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
     if (stays[c])
       continue;
-    (held[c] ? crumbs : islands) += 1;  // a crumb has restricted nodes but is small
+    (held[c] ? crumbs : islands) += 1;  // crumb: a small component with restricted nodes
     voxels += sizes[c];
   }
   if (voxels == 0)
@@ -139,8 +139,8 @@ void remove_islands(Model& model, BakeMonitor& monitor)
     keep[e] = stays[component[e]];
   keep_voxels(model, keep);
   monitor.found(
-      "{} voxels removed: {} islands that nothing holds and {} small parts that hang on by an edge or a corner or not "
-      "at all",
+      "{} voxels removed: {} islands that nothing holds and {} small parts that are connected to the rest by no face "
+      "of a voxel",
       voxels, islands, crumbs);
 }
 

@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-/// Scene axis along which rows of voxels are longest, because there are the fewest of them.
+/// Scene axis along which the voxels form the fewest rows, which are therefore the longest.
 int longest_rows(const Grid& grid, const Voxels& voxels)
 {
   const VoxelIndex index(voxels.place, grid.size);

@@ -5,10 +5,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double points_per_muscle = 10000;
+constexpr double points_per_muscle = 10000;  // about, for the integration
 
-/// Adds the places on the line along x through (y, z) where it passes the surface of a mesh: +1 into the mesh, -1 out
-/// of it.
+/// Appends the coordinates x [m] at which the line along x through (y, z) enters (+1) or leaves (-1) a mesh.
 void add_crossings(const TriangleTree& tree, const Box& box, double y, double z, double step,
                    std::vector<std::pair<double, int>>& crossings)
 {
@@ -33,7 +32,7 @@ void add_crossings(const TriangleTree& tree, const Box& box, double y, double z,
   }
 }
 
-/// Whether a point of a muscle lies in the tissue and within the muscle's limits, or which condition fails.
+/// Whether a point of a muscle lies in the tissue and within the muscle's limits, or the condition that fails.
 Membership in_tissue(const Volumes& volumes, const Volumes::Entry& muscle, const Vector3d& p)
 {
   Membership best = Membership::cropped;
@@ -83,8 +82,7 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
       for (const std::size_t b : entry.inside)
         add_crossings(volumes.body(b).tree(), box, y, z, step, crossings);
       std::sort(crossings.begin(), crossings.end());
-      // what lies in several bodies counts once: from where the line enters the first of them to where it leaves the
-      // last
+      // overlapping bodies count once: from the entry into the first of them to the exit from the last
       double from = 0;
       int bodies = 0;
       for (const auto& [x, change] : crossings)

@@ -62,8 +62,8 @@ public:
   {
     auto& sheet = sheet_[&surface];
     if (!sheet)
-      sheet = std::make_unique<PreparedSurface>(
-          surface.name(), tissue_sheet(surface, tissue_side(surface), frame_, model_), surface.line());
+      sheet = std::make_unique<PreparedSurface>(surface.name(),
+                                                tissue_sheet(surface, tissue_side(surface), frame_, model_));
     return *sheet;
   }
 

@@ -9,7 +9,7 @@ namespace
 
 using Polygon = std::vector<Vector3d>;
 
-constexpr double most_of_voxel = 0.9;  // the largest proportion of a voxel that thin layers may take
+constexpr double most_of_voxel = 0.9;  // largest proportion of a voxel that a thin layer may fill
 
 /// Keeps the part of a polygon from `low` to `high` along an axis.
 void clip(Polygon& polygon, Polygon& scratch, int axis, double low, double high)
@@ -61,8 +61,8 @@ public:
   const std::vector<double>& area() const { return area_; }
 
 private:
-  /// Cuts a polygon up by the grid's planes across `axis`, then by those across the axes that follow. `place` has the
-  /// indices along the axes before.
+  /// Cuts a polygon at the grid planes normal to `axis` and to the following axes, and adds the area of each piece to
+  /// its voxel. `place` has the voxel's indices along the preceding axes.
   void add_along(const Polygon& polygon, int axis, const Vector3d& normal, VoxelPlace place)
   {
     if (polygon.size() < 3)
@@ -74,7 +74,7 @@ private:
       box.extend(p);
     const double low = box.min()[axis], high = box.max()[axis];
     const double edge = model_.spacing[axis];
-    // a part of the surface in the plane between two voxels belongs to the one below it
+    // a polygon in the plane between two voxels belongs to the voxel on its inner side
     const double below = high - low < 1e-9 * edge ? (normal[axis] > 0 ? -1e-6 : (normal[axis] < 0 ? 1e-6 : 0)) : 0;
     const auto first = static_cast<std::int32_t>(std::max(-1.0, std::floor(low / edge + below)));
     const auto last = static_cast<std::int32_t>(std::min(model_.size[axis] + 0.0, std::floor(high / edge + below)));
@@ -90,8 +90,7 @@ private:
     }
   }
 
-  /// Adds area to a voxel. Where it was left out of the model, the one below it carries the layer, or the next below
-  /// that.
+  /// Adds area to a voxel or, if the model has no such voxel, to the first of the next two inwards that exists.
   void give(VoxelPlace place, const Vector3d& normal, double amount)
   {
     Eigen::Index axis = 0;
@@ -117,7 +116,7 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
 {
   if (volumes.thin_layers().empty())
     return;
-  // share of each thin layer in each voxel
+  // proportion of each thin layer in each voxel
   std::vector<std::vector<float>> shares;
   const double voxel_volume = model.spacing[0] * model.spacing[1] * model.spacing[2];
   for (const Volumes::ThinLayer& layer : volumes.thin_layers())
@@ -141,7 +140,7 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     for (std::size_t e = 0; e < share.size(); ++e)
       share[e] = areas.area()[e] > 0 ? static_cast<float>(given) : 0;
     monitor.found("layer '{}': too thin to sample; mixed into {} outer voxels, {:.4g} mm3{}", layer.name, voxels,
-                  1e9 * given * tissue, given * tissue < 0.99 * wanted ? " (no more, because it would fill them)" : "");
+                  1e9 * given * tissue, given * tissue < 0.99 * wanted ? " (limited, because it would fill them)" : "");
     shares.push_back(std::move(share));
   }
 

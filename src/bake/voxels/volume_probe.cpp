@@ -9,8 +9,8 @@ namespace
 {
 
 constexpr int samples = 2000;
-constexpr double clear_winding = 0.75;
-constexpr double most_unclear = 0.1;  // of the points inside
+constexpr double clear_winding = 0.75;  // least winding number of a point that is clearly inside
+constexpr double most_unclear = 0.1;    // largest proportion of other points among those inside
 
 bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {
@@ -52,7 +52,6 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
       volumes.place(*entry.volume), body.name(), inside > 0 ? 100.0 * unclear / inside : 100.0, where);
 }
 
-/// Whether a body contains the point.
 bool contains(const PreparedSurface& body, const Vector3d& p)
 {
   if (body.closed() && !body.box().contains(p))

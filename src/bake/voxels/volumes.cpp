@@ -43,7 +43,7 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
     const std::string& volume = muscle.volume.empty() ? muscle.name : muscle.volume;
     int& taken = entries_[index_of(scene.volumes, volume, place, "volume")].muscle;
     if (taken >= 0)
-      throw failure("{}: volume '{}' is muscle '{}' already; give each its own", place, volume,
+      throw failure("{}: volume '{}' already belongs to muscle '{}'; give each muscle its own volume", place, volume,
                     scene.muscles[taken].name);
     taken = static_cast<int>(m);
   }
@@ -54,8 +54,8 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
 
 void Volumes::add_layers(const Scene& scene, double sample_spacing)
 {
-  // Layers of one volume and surface lie one below the other. A thin one is left out of the stack of bands: the next
-  // band begins where the band above ended.
+  // Layers of one volume and surface lie one below the other. A thin layer forms no band: the next band begins at the
+  // bottom of the last one.
   struct Stack
   {
     double bottom = 0, next_band = 0;
@@ -133,7 +133,7 @@ Box Volumes::bounds_of(const Entry& entry) const
   for (int a = 0; a < 3; ++a)
     if (bounds.min()[a] >= bounds.max()[a])
       throw failure(
-          "{}: is empty: its surfaces, depths and crop have no place in common along {}; a surface is flat there, or a "
+          "{}: is empty: its surfaces, depths and crop share no point along {}; a surface is flat there, or a "
           "crop or a length unit is wrong",
           place(*entry.volume), "xyz"[a]);
   return bounds;
@@ -146,7 +146,7 @@ Box Volumes::tissue_box() const
     if (entry.volume->tissue)
       all.extend(bounds_of(entry));
   if (all.isEmpty())
-    throw Error(scene_->file + ": no volume is tissue; say 'tissue: true' in one");
+    throw Error(scene_->file + ": no volume is tissue; set 'tissue: true' in one");
   return all;
 }
 

@@ -9,7 +9,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
-  // a little beside the centre, where scenes that are symmetric to the grid have edges and corners
+  // not exactly the centre, because scenes symmetric to the grid have edges and corners of surfaces there
   middle_ = box.center() + Vector3d(0.0131, 0.0073, -0.0113).cwiseProduct(grid_.spacing);
 
   const double share = 1.0 / static_cast<double>(offsets_.size());
@@ -90,7 +90,7 @@ bool BlockClassifier::sample_body(std::size_t body, const Vector3d& p, const Blo
     nearby.variation = surface.closed() ? 0 : surface.winding_variation(middle_, 1.1 * reach_);
     nearby.known = true;
   }
-  // the winding number at p differs from that at the middle by the triangles that lie between
+  // the winding number at p differs from that at the middle by the crossings of the triangles in between
   double winding = nearby.winding;
   for (const std::int32_t triangle : nearby.triangles)
     winding += crossing(surface.mesh(), triangle, middle_, p);
@@ -118,7 +118,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
     nearby.depth = -surface->signed_distance(middle_, closest);
     nearby.steady = surface->closed() || !surface->rim_within(middle_, closest.distance + 2.2 * reach_);
   }
-  // A depth changes by at most the distance moved. If that reaches no threshold, the middle's depth serves for p too.
+  // Depths at two points differ by at most their distance. If no threshold is that near, the middle's depth will do.
   const double way = (p - middle_).norm();
   const auto next = std::lower_bound(thresholds.begin(), thresholds.end(), nearby.depth - way);
   if (nearby.steady && (next == thresholds.end() || *next > nearby.depth + way))
@@ -130,7 +130,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
 
 void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
 {
-  // the volumes of the highest priority share the place among those that bring a material
+  // the volumes with the highest priority among those with a material share the sample equally
   int highest = std::numeric_limits<int>::min();
   int sharers = 0;
   for (std::size_t v = 0; v < inside.size(); ++v)

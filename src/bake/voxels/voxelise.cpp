@@ -1,4 +1,3 @@
-
 #include "bake/voxels/block_classifier.hpp"
 
 #include <iterator>
@@ -58,7 +57,7 @@ Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fi
   std::array<std::size_t, 3> blocks{};
   for (std::size_t a = 0; a < 3; ++a)
     blocks[a] = (grid.size[a] + block - 1) / block;
-  // each block gives its own list; they are joined in order, whichever thread made them
+  // one list per block, joined in order, so that the result does not depend on the threads
   std::vector<Voxels> parts(blocks[0] * blocks[1] * blocks[2]);
   parallel_for(monitor, parts.size(), 1,
                [&](std::size_t number)
