@@ -62,7 +62,7 @@ struct SkinError
 /// The cost of one setting on one machine, measured in one run.
 struct VariantCost
 {
-  std::string machine;      ///< empty: not measured yet
+  std::string machine;      ///< processor or device, number of threads; empty: not measured
   double step = NAN;        ///< wall seconds per step, median of repeated timings
   double spread = NAN;      ///< interquartile range of these timings over their median
   double processors = NAN;  ///< processor time that the solver got while timed, over the most possible
@@ -79,7 +79,7 @@ struct AccuracyRow : VariantCost
 {
   std::string name;  ///< differences from the standard setting in words
   AccuracySetting setting;
-  std::string fault;      ///< why there are no figures (unstable, no model); empty: there are
+  std::string fault;      ///< why there are no figures (unstable, no model); empty if there are figures
   SkinError error;        ///< largest over all phases of the history and the settled state
   SkinError settled;      ///< in the settled state
   double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]

@@ -27,7 +27,7 @@ struct Trial
   std::int64_t rollbacks = 0;  ///< how often the guard returned to an earlier state
   Checks checks;               ///< all must pass
   std::string stopped;         ///< the guard's report if it stopped the motion, which is no failure
-  std::string failure;         ///< why the case failed apart from its checks; empty: it did not
+  std::string failure;         ///< an error that ended the case or a fault of its file; empty: none
   std::string skipped;         ///< why the case was not run; empty: it ran
   Plots plots;
   double seconds = 0;  ///< wall time
@@ -64,10 +64,10 @@ struct StabilityCase
 };
 
 /// All cases, in the order of the document; descriptions, sizes, times and bounds are read from FOLDER/NAME.yaml.
-/// Throws Error if a file is missing or wrong.
+/// Throws Error if a file is missing or invalid.
 std::vector<StabilityCase> stability_cases(const std::string& folder);
 
-/// Runs a case. An Error that it throws becomes a failure.
+/// Runs a case. If it throws Error, the trial has its text as `failure`.
 Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings);
 
 /// The heading of trial_line(), and one line per case.

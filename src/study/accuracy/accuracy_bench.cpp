@@ -179,7 +179,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   std::optional<VariantMotion> motion = read<VariantMotion>(key_of(setting, measured.played_by));
   std::optional<VariantCost> cost = read<VariantCost>(key);
   const bool kept = motion.has_value();
-  if (!kept)  // its file may be incomplete
+  if (!kept)  // kept_backend() does not notice an incomplete file
     measured.played_by = setting.backend;
   if (!kept || (!is_timed(setting, cost) && motion->fault.empty()))
   {

@@ -17,7 +17,7 @@ struct SkinPhase
   std::vector<std::array<float, 3>> landmarks;
 };
 
-/// The motion of one variant, which is the same on every run.
+/// The motion of one variant (a setting of the study), which is bitwise the same in every run.
 struct VariantMotion
 {
   std::string fault;              ///< why the motion cannot be used; empty: it can
@@ -31,7 +31,7 @@ struct VariantMotion
   void archive(ByteArchive& archive);
 };
 
-/// An unfinished motion.
+/// An interrupted motion.
 struct VariantCheckpoint
 {
   VariantMotion motion;     ///< until now; its `steps` is the total number of steps

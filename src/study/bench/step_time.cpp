@@ -41,7 +41,7 @@ double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
   }
 }
 
-// moves to the controls and calms down, or as far as `seconds` of wall time allow
+// Moves to the controls and calms down. After `seconds` of wall time it stops at the controls reached.
 void approach_controls(TimedSolver& timed, double seconds)
 {
   Solver& solver = *timed.solver;

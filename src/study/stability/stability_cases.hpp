@@ -28,7 +28,7 @@ struct CaseRun : CaseFile
                       const std::string& key);
 };
 
-// name and function of each case of a family; stability.cpp adds the files of the cases
+// name and function of each case of a family; stability.cpp reads the files of the cases
 using CaseFunctions = std::vector<std::pair<std::string, void (*)(CaseRun&)>>;
 CaseFunctions hard_materials();
 CaseFunctions hard_shapes();
@@ -36,7 +36,7 @@ CaseFunctions hard_muscles();
 CaseFunctions hard_constraints();
 CaseFunctions hard_times();
 
-/// A motion under the guard whose energies, worst voxel and hourglass share are recorded in the case's trial.
+/// A motion under the guard. Its energies, smallest J and hourglass energy are recorded in the case's trial.
 class GuardedTrial
 {
 public:

@@ -91,7 +91,7 @@ void drag(
 
 void sharp_ridge(CaseRun& run)
 {
-  // a ridge with an angle of 53° at its top, over which a soft block lies with its front
+  // A ridge with an angle of 53° at its top obstructs a soft block, which starts above the left slope and the top.
   Model model = damped_block(run);
   model.materials = { neo_hookean(10e3, 0.49) };
   const double ridge = 1e-3 * run.number("ridge", "mm");
