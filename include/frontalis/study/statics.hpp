@@ -11,10 +11,10 @@ namespace frontalis
 struct EquilibriumSettings
 {
   Backend backend = "cpu";
-  double period = 0;        ///< of the slowest vibration, about [s]
+  double period = 0;        ///< approximate period of the slowest vibration [s]
   double tolerance = 1e-4;  ///< of Solver::settle
-  float activation = 0;     ///< of every muscle
-  double ramp = 1;          ///< periods over which loads and activations grow
+  float activation = 0;     ///< activation of every muscle, 0..1
+  double ramp = 1;          ///< number of periods over which loads and activations grow
 };
 
 /// Model at rest under its loads.
@@ -24,18 +24,17 @@ struct RestState
   Vectors displacements;  ///< [m]
 };
 
-/// Brings the model to rest under slowly growing loads, critically damped for the period, and then by Solver::settle.
-/// Throws Error if it is not at rest within 60 periods.
+/// Lets loads and activations grow, with damping that is critical for the period, and then calls Solver::settle().
+/// Throws Error if the model is not at rest within 60 periods.
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 
-/// Mean displacement [m] of nodes, and the internal force [N] on them.
+/// Mean displacement [m] of nodes, and the sum of internal forces [N] on them.
 Point mean_displacement(const Vectors& displacements, const std::vector<std::int32_t>& nodes);
 Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes);
 
 /// Small displacements about a homogeneous deformation. The stiffness is the tangent of the solver's own internal
-/// forces, assembled and factorised directly, so that an error of the result is one of the element and not of a motion
-/// that has not come to rest. Element matrices are central differences of the reference solver's forces; equal voxels
-/// share one.
+/// forces, assembled and factorised directly, so that errors come from the elements alone and not from incomplete
+/// settling. Element matrices are central differences of the reference solver's forces.
 class LinearStatics
 {
 public:
@@ -47,8 +46,7 @@ public:
   /// Whether the state is stable: all pivots of the factorisation were positive.
   bool positive_definite() const;
 
-  /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error if the state is
-  /// unstable.
+  /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error in an unstable state.
   Vectors solve(const Vectors& forces) const;
 
 private:

@@ -24,7 +24,7 @@ struct VerificationCase
 {
   std::string name;
   bool quick;  ///< takes at most some seconds and belongs to the short set
-  /// `backend`: of the motions; figures of single elements come from the reference backend.
+  /// `backend` computes the motions; figures of single elements come from the reference backend.
   void (*run)(const Backend& backend, Finding& finding);
 };
 
@@ -34,8 +34,8 @@ std::vector<VerificationCase> verification_cases();
 /// Findings, each with the name of its case.
 using Findings = std::vector<std::pair<std::string, Finding>>;
 std::string findings_json(const Findings& findings);
-/// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/, from where it takes the texts of all
-/// cases (text.md). Throws Error if a file cannot be read or written, or gnuplot is missing.
+/// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/. The texts of the cases are read from
+/// FOLDER/NAME/text.md. Throws Error if a file cannot be read or written, or gnuplot is missing.
 void write_manual(const Findings& findings, const std::string& path);
 
 }  // namespace frontalis

@@ -17,12 +17,12 @@ namespace frontalis
 namespace
 {
 
-constexpr double with_settling = 1.5;  // wall time of history and settling over that of the history, for estimates
+constexpr double with_settling = 1.5;  // rough ratio of wall times: history and settling over history alone
 
-// A file has a signature with the generation of the solver's motions, a hash of its content, and the content as bytes.
+// A file consists of this signature, a hash of its content, and the content as bytes.
 const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
 
-// of the files of each type
+// file extension of each type of result
 template <class T>
 constexpr const char* extension = ".motion";
 template <>
@@ -30,7 +30,7 @@ constexpr const char* extension<VariantCost> = ".cost";
 template <>
 constexpr const char* extension<VariantCheckpoint> = ".checkpoint";
 
-// nothing if the file is missing or incomplete
+// returns nothing if the file is missing, incomplete or of another generation
 template <class T>
 std::optional<T> read(const std::string& key)
 {
@@ -48,7 +48,7 @@ std::optional<T> read(const std::string& key)
   return in.ended() ? std::optional<T>(std::move(value)) : std::nullopt;
 }
 
-// a checkpoint is removed once its motion is kept
+// Stores a result. A finished motion makes its checkpoint obsolete.
 template <class T>
 void keep(const std::string& key, T value)
 {
@@ -106,8 +106,8 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
          content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// Motions that another backend computed serve too, so that a folder may come from a faster machine. A GPU computes in
-// single precision whatever the setting says, so that only settings in single precision have such motions.
+// The backend of a stored motion. Single-precision motions of other backends are accepted too, so that a folder may
+// come from a faster machine; a GPU always computes in single precision.
 std::optional<Backend> VariantBench::kept_backend(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
@@ -124,13 +124,13 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
-// the reference is not timed: it is no setting to choose, and takes long
+// Whether no timing is missing. The reference is never timed: it is slow and not offered as a choice.
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
 }
 
-// takes the wall time of a variant into the estimate for further ones
+// updates the estimates for later variants with the wall seconds of one
 void VariantBench::learn(const AccuracySetting& setting, double wall)
 {
   const double relative = relative_time(setting);
@@ -179,7 +179,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   std::optional<VariantMotion> motion = read<VariantMotion>(key_of(setting, measured.played_by));
   std::optional<VariantCost> cost = read<VariantCost>(key);
   const bool kept = motion.has_value();
-  if (!kept)  // a file may be there but incomplete
+  if (!kept)  // kept_backend() does not notice an incomplete file
     measured.played_by = setting.backend;
   if (!kept || (!is_timed(setting, cost) && motion->fault.empty()))
   {
@@ -196,8 +196,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      // without a ledger for the reference, whose balance of energies is not reported: a GPU takes twice as long with
-      // one
+      // The reference keeps no ledger, which would double its time on a GPU: its energy balance is not reported.
       motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
                             { read<VariantCheckpoint>(key), [&](const VariantCheckpoint& c) { keep(key, c); } }, go_on);
       if (!motion)

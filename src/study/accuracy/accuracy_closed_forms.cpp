@@ -1,9 +1,9 @@
-// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever": a square bar in plane strain
-// whose ends are displaced like those of a beam under a force at its end: Timoshenko & Goodier, Theory of Elasticity,
-// article 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block":
-// neo-Hookean, drawn to 1.3 of its length with free sides. "active_bar": the same, free, contracted by a muscle without
-// tension-length relation. The stretches of both follow from the derivatives of mu/2 (J^(-2/3) I1 - 3) + kappa/2
-// (J - 1)^2; they are uniform, so that voxels represent them exactly.
+// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever": a bar in plane strain whose
+// ends get the displacements of a beam under a force at its end: Timoshenko & Goodier, Theory of Elasticity, article
+// 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block":
+// neo-Hookean, stretched to 1.3 times its length with free sides. "active_bar": the same block without loads,
+// contracted by a muscle without tension-length relation. The stretches of both follow from the derivatives of the
+// strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2; they are uniform, so that voxels represent them exactly.
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
@@ -16,12 +16,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;
+constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;                      // young in Pa
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
 constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
 
-// A box of whole voxels. Its skin is the upper face and the side y = size, with vertices that do not depend on the
-// edge.
+// A box of full voxels. The vertices of its skin (faces y = size and z = size) are the same for every voxel edge.
 Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 {
   const AccuracyProfile& profile = setting.profile;
@@ -55,7 +54,7 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
   return model;
 }
 
-// first Piola-Kirchhoff stress [Pa] along the axis of stretch `a`, the others being `b` and `c`
+// first Piola-Kirchhoff stress [Pa] along the principal axis with stretch `a`; `b` and `c` are the other stretches
 double principal_stress(double a, double b, double c)
 {
   const double mu = shear_modulus(young, block_poisson), kappa = bulk_modulus(young, block_poisson);
@@ -68,8 +67,9 @@ double lateral_stretch(double along)
   return zero_between(0.3, 3, [=](double side) { return principal_stress(side, along, side); });
 }
 
-ClosedForm of(const std::string& name, std::vector<double> edges,
-              const std::function<Model(const AccuracySetting&)>& make, const std::function<Point(const Point&)>& exact)
+ClosedForm closed_form(const std::string& name, std::vector<double> edges,
+                       const std::function<Model(const AccuracySetting&)>& make,
+                       const std::function<Point(const Point&)>& exact)
 {
   ClosedForm form{ name, {}, {} };
   AccuracyPlan& plan = form.plan;
@@ -89,7 +89,7 @@ ClosedForm of(const std::string& name, std::vector<double> edges,
   return form;
 }
 
-// a block that is stretched to a share of its length
+// a block that `drive` stretches uniformly along x; `along`: length over length at rest
 ClosedForm uniform(const std::string& name, double along, const std::function<void(Model&)>& drive)
 {
   const auto make = [drive](const AccuracySetting& setting)
@@ -102,11 +102,10 @@ ClosedForm uniform(const std::string& name, double along, const std::function<vo
   const auto exact = [=, side = lateral_stretch(along)](const Point& p) {
     return Point{ { (along - 1) * p[0], (side - 1) * p[1], (side - 1) * p[2] } };
   };
-  return of(name, { 4e-3, 2e-3, 1e-3 }, make, exact);
+  return closed_form(name, { 4e-3, 2e-3, 1e-3 }, make, exact);
 }
 
-// displacement of a beam in plane strain (x, z) under a shear force that takes its end down by a thousandth of its
-// length
+// displacement [m] of a beam in plane strain (x, z) whose end a shear force lowers by a thousandth of the length
 Point beam(const Point& p)
 {
   const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);
@@ -143,8 +142,8 @@ std::vector<ClosedForm> closed_forms()
     prescribe(model, nodes_where(model, end), { { true, false, false } }, { { (drawn - 1) * block_size[0], 0, 0 } },
               ramp);
   };
-  return { of("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam), uniform("stretched_block", drawn, draw),
-           bar };
+  return { closed_form("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
+           uniform("stretched_block", drawn, draw), bar };
 }
 
 }  // namespace frontalis

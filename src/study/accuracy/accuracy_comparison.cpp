@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// below this ratio of error and motion only settling and rounding are left, and no order can be observed
+// ratio of error to displacement below which incomplete settling and rounding dominate, so that no order is observed
 constexpr double exactly_represented = 1e-3;
 
 const AccuracyRow& last_of_front(const AccuracyFindings& findings)
@@ -62,25 +62,25 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings)
 {
-  // the finest three levels that were measured
+  // solutions with the reference's settings, coarse to fine
   std::vector<const MeasuredVariant*> levels;
   for (const double edge : plan.edges)
     if (const MeasuredVariant* known = bench.find(reference_setting(plan.standard, edge));
         known != nullptr && known->motion.fault.empty())
       levels.push_back(known);
   if (levels.size() < 2)
-    throw Error("only the reference's voxels, " + millimetres(plan.edges.back()) +
-                ", gave a motion; at least one coarser level must give one to compare it with");
+    throw Error("only the reference, with voxels of " + millimetres(plan.edges.back()) +
+                ", gave a motion; its error cannot be estimated without that of a larger voxel edge");
   const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
   const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
-  const auto apart = [&](std::size_t back)
+  const auto difference = [&](std::size_t back)
   { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
-  findings.reference_error = apart(1);
+  findings.reference_error = difference(1);
   if (levels.size() > 2)
   {
-    findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
+    findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, difference(2), difference(1));
     if (is_credible(findings.order))
-      findings.reference_error = richardson(edge(2), edge(1), apart(1), findings.order);
+      findings.reference_error = richardson(edge(2), edge(1), difference(1), findings.order);
   }
   findings.motion = motion_size(level(1)->motion);
   std::string plain, averaged;
@@ -88,11 +88,11 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
   {
     const VariantMotion &coarse = level(back + 1)->motion, &fine = level(back)->motion;
     const std::string comma = plain.empty() ? "" : ", ";
-    plain += comma + readable(1e3 * apart(back), 3);
+    plain += comma + readable(1e3 * difference(back), 3);
     averaged += comma + readable(1e3 * worst(skin_errors(average.of(coarse), average.of(fine))).rms, 3);
   }
   findings.notes.push_back(
-      fmt::format("From each level of voxels to the next the skin of the reference's form moves by {} mm "
+      fmt::format("With the reference's settings, each finer voxel edge changes the skin by {} mm "
                   "RMS, the averaged skin by {} mm.",
                   plain, averaged));
 }
@@ -123,7 +123,7 @@ void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
     const double most = *std::max_element(errors.begin(), errors.end());
     if (most < exactly_represented * findings.motion)
       findings.notes.push_back(
-          fmt::format("{}: the error is at most {:.2g} µm at any edge, which settling and rounding leave: "
+          fmt::format("{}: the error is at most {:.2g} µm at any edge and comes from settling and rounding: "
                       "voxels represent this deformation exactly.",
                       form, 1e6 * most));
     else

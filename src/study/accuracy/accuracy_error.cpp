@@ -1,4 +1,4 @@
-// distances between skins, and how they fall with the voxel edge
+// differences between skins, and their order of convergence in the voxel edge
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -15,11 +15,12 @@ namespace frontalis
 namespace
 {
 
-using Place = std::array<float, 3>;
-using Points = std::vector<Place>;
+using Position = std::array<float, 3>;
+using Points = std::vector<Position>;
 
-// distance between the displacements of two points from their rest
-double apart(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest, std::size_t p)
+// difference between the displacements of point p in two motions [m]
+double displacement_difference(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest,
+                               std::size_t p)
 {
   double square = 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -31,11 +32,11 @@ double apart(const Points& a, const Points& a_rest, const Points& b, const Point
   return std::sqrt(square);
 }
 
-constexpr double reach = 3;  // standard deviations
+constexpr double reach = 3;  // radius at which the Gaussian is cut off, in standard deviations
 
 using Cube = std::array<std::int64_t, 3>;
 
-Cube cube_of(const Place& p, double edge)
+Cube cube_of(const Position& p, double edge)
 {
   const auto along = [=](float x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
   return { { along(p[0]), along(p[1]), along(p[2]) } };
@@ -56,8 +57,8 @@ std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMoti
     double sum = 0, area = 0, largest = 0;
     for (std::size_t v = 0; v < found.area.size(); ++v)
     {
-      const double d = apart(found.phases[p].vertices, found.phases[0].vertices, exact.phases[p].vertices,
-                             exact.phases[0].vertices, v);
+      const double d = displacement_difference(found.phases[p].vertices, found.phases[0].vertices,
+                                               exact.phases[p].vertices, exact.phases[0].vertices, v);
       sum += exact.area[v] * d * d;
       area += exact.area[v];
       largest = std::max(largest, d);
@@ -82,8 +83,8 @@ double landmark_error(const VariantMotion& found, const VariantMotion& exact)
   double largest = 0;
   for (std::size_t p = 0; p < found.phases.size(); ++p)
     for (std::size_t l = 0; l < found.phases[p].landmarks.size(); ++l)
-      largest = std::max(largest, apart(found.phases[p].landmarks, found.phases[0].landmarks, exact.phases[p].landmarks,
-                                        exact.phases[0].landmarks, l));
+      largest = std::max(largest, displacement_difference(found.phases[p].landmarks, found.phases[0].landmarks,
+                                                          exact.phases[p].landmarks, exact.phases[0].landmarks, l));
   return largest;
 }
 
@@ -117,7 +118,7 @@ VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector
 
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine)
 {
-  // (h1^p - h2^p) / (h2^p - h3^p) grows with p
+  // coarse / fine = (h1^p - h2^p) / (h2^p - h3^p); the right side increases with p
   const auto excess = [&](double p)
   {
     return (std::pow(edges[0], p) - std::pow(edges[1], p)) * fine -
@@ -135,7 +136,7 @@ double richardson(double before, double finest, double difference, double order)
 SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
 {
   const auto& rest = reference.phases.at(0).vertices;
-  // the vertices sorted into cubes, so that all neighbours of one are in its cube and the 26 around that
+  // cubes as large as the cut-off radius: all neighbours of a vertex are in its cube or the 26 around it
   std::map<Cube, std::vector<std::size_t>> cubes;
   for (std::size_t v = 0; v < weights_.size(); ++v)
     cubes[cube_of(rest[v], reach * deviation)].push_back(v);

@@ -40,7 +40,7 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // number of voxel edges for variants: all but the reference's
+  // number of voxel edges of variants, which exclude the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
@@ -55,8 +55,8 @@ private:
   AccuracyFindings findings_;
 };
 
-// Measures the reference's form from coarse to fine. The time of each level tells how long the next one takes; levels
-// that the budget does not allow are left out.
+// Measures the reference's settings from the largest to the smallest voxel edge. Times of earlier edges predict those
+// of later ones, which are left out if the budget does not suffice.
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
@@ -71,9 +71,9 @@ void Study::choose_reference()
     const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
     if (level > 2 && share > 0.4)
     {
-      findings_.notes.push_back(fmt::format("Voxels of {}{} were left out: about {:.2g} s do not fit the budget.",
-                                            millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "",
-                                            takes));
+      findings_.notes.push_back(
+          fmt::format("Voxels of {}{} were left out: they would take about {:.2g} s, too much of the budget.",
+                      millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "", takes));
       edges.resize(level);
       break;
     }
@@ -90,7 +90,8 @@ void Study::choose_reference()
   bench_.set_reference(findings_.reference);
   reference_ = bench_.measure(findings_.reference);
   if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
-    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", has no motion to compare with: " + fault);
+    throw Error("the reference, with voxels of " + millimetres(edges.back()) +
+                ", has no motion to compare with: " + fault);
   findings_.averaged_over = averaged_voxels * plan_.standard.profile.voxel[0];
   average_.emplace(motion_of(reference_), findings_.averaged_over);
 }
@@ -126,7 +127,7 @@ void Study::measure_knobs()
   }
 }
 
-// measures, at each voxel edge, the combinations that were not clearly beaten at the previous edge
+// measures at each voxel edge the combinations that were not clearly worse than another at the previous edge
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -176,9 +177,9 @@ void Study::check_reference()
       continue;
     const VariantMotion& other = motion_of(bench_.measure(setting));
     if (other.fault.empty())
-      findings_.notes.push_back(fmt::format("The reference's form with voxels of {}: {} moves the skin by {:.3g} µm.",
-                                            millimetres(plan_.edges[0]), words,
-                                            1e6 * worst(skin_errors(motion_of(base), other)).rms));
+      findings_.notes.push_back(
+          fmt::format("The reference's settings with voxels of {}: {} changes the skin by {:.3g} µm.",
+                      millimetres(plan_.edges[0]), words, 1e6 * worst(skin_errors(motion_of(base), other)).rms));
   }
 }
 
@@ -225,11 +226,11 @@ AccuracyFindings Study::run()
       ++elsewhere[measured.played_by];
   }
   for (const auto& [backend, count] : elsewhere)
-    findings_.notes.push_back(
-        fmt::format("{} settings have motions of backend {}, which the folder had.", count, backend));
+    findings_.notes.push_back(fmt::format(
+        "Motions of {} settings were computed earlier by backend {} and read from the folder.", count, backend));
   if (!plan_.exact)
   {
-    // the reference is no setting to choose: it has no error of its own
+    // the reference has no error against itself and is not offered as a choice
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// rounded to three digits, enough for a target of the time step
+// three significant digits, enough for the target of a time step
 double rounded(double value)
 {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -75,9 +75,9 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   const bool quick = plan.quick;
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
-  // without a closed form, the last edge is the reference's: no variant has it
+  // without a closed form, the last edge is only for the reference
   const Numbers edges(plan.edges.begin(), plan.edges.end() - (plan.exact || plan.edges.empty() ? 0 : 1));
-  // the GPU computes in single precision whatever the setting says
+  // the GPU always computes in single precision
   const Names precisions = s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" };
   std::vector<Backend> backends = available_backends();
   if (quick)
@@ -128,7 +128,7 @@ std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge,
   std::vector<AccuracySetting> all;
   for (const bool assumed_strain : { false, true })
     for (const char* const form : { "element", "assembled" })
-      for (const double factor : { 0, 4, 8 })  // 0: mass as the standard setting has it
+      for (const double factor : { 0, 4, 8 })  // 0: the standard setting's mass scaling
       {
         AccuracySetting setting = plan.standard;
         setting.profile.voxel.fill(edge);
@@ -180,6 +180,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
 double relative_time(const AccuracySetting& setting)
 {
   const AccuracyProfile& p = setting.profile;
+  // rough factors that only predict how long a study takes
   double time = 1 / (p.voxel[0] * p.voxel[1] * p.voxel[2] * std::min({ p.voxel[0], p.voxel[1], p.voxel[2] }));
   time *= 0.9 / p.time_step_share / setting.time_scaling;
   time *= p.integration == "selective_reduced" ? 2.5 : p.assumed_strain ? 1.4 : 1;

@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-// only steps are compared, so the search for the length of steps is left out
+// the time step that needs the least computation, since only the cost of steps is compared and not their length
 Model with_cheap_time_step(Model model)
 {
   model.time_step_estimate = TimeStepEstimate::element;
@@ -37,9 +37,9 @@ Controls active_controls(const Solver& solver)
   return controls;
 }
 
-constexpr std::int32_t length = 64, depth = 40;
+constexpr std::int32_t length = 64, depth = 40;  // voxels of the block of measure_presence()
 
-// gives an effect to a share of the voxels, or of the nodes of the face z = 0
+// gives an effect to a fraction of the voxels, or of the nodes of the face z = 0
 void give(Model& model, Effect effect, double share)
 {
   const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
@@ -61,7 +61,7 @@ void give(Model& model, Effect effect, double share)
   }
   if (effect == Effect::sliding || effect == Effect::friction)
   {
-    // the cost of friction is what it adds to sliding, so that all nodes of the face slide
+    // the cost of friction is what it adds to sliding, so all nodes of the face slide
     const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
     const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
     const auto slide_between = [&](const char* floor, std::int32_t first, std::int32_t last)
@@ -108,7 +108,7 @@ Model plain_model(const Model& model)
   Model plain = without(model, all);
   for (Material& material : plain.materials)
   {
-    // 3 kappa (1 - 2 nu) = 2 mu (1 + nu): any shear modulus at rest costs the same
+    // keeps the bulk modulus; Poisson's ratio becomes 0.49, which does not affect the cost
     if (material.law != Law::neo_hookean)
       material.parameters[0] = material.parameters[1] / 50;
     material.law = Law::neo_hookean;
@@ -126,8 +126,8 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
                                 plain = solver_of(plain_model(*model), settings);
   const Controls rest = whole->controls(), active = active_controls(*whole);
 
-  // what a step takes without an effect; nodes that nothing holds would fly away, so that rigid nodes are compared at
-  // rest, and without the effects that would move the others
+  // Time per step that an effect adds. A model without rigid nodes would fly away, so their cost is measured at rest
+  // and without the effects that cause motion.
   const auto cost_of = [&](Effect effect) -> Spread
   {
     if (effect == Effect::elasticity)
@@ -172,7 +172,7 @@ std::vector<double> presence_shares() { return { 0, 0.1, 0.5, 1 }; }
 
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
 {
-  // where the arrays of a solver lie in memory changes its step by a percent, so solvers are made anew a few times
+  // the addresses of a solver's arrays change its time per step by about 1 %, so each is created several times
   constexpr int rounds = 4;
   const StepTimer timer = step_timer(settings, seconds / rounds);
   const std::vector<double> shares = presence_shares();

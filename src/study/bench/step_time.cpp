@@ -17,7 +17,7 @@ namespace frontalis
 namespace
 {
 
-// seconds per step, over about so many steps; a GPU solver queues steps, so its skin is read to wait for them
+// seconds per step over about `steps` steps; a GPU solver queues steps, and reading its skin waits for them
 double time_steps(Solver& solver, const Controls& controls, double steps, bool processor_time)
 {
   SkinState skin;
@@ -30,8 +30,7 @@ double time_steps(Solver& solver, const Controls& controls, double steps, bool p
   return (now() - start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
-// steps that take about `seconds`; as many as the clock needs to show half of that are tried, since a coarse clock
-// shows no time at all for a few
+// number of steps that take about `seconds`; trials become longer, since a coarse clock may show 0 for a few steps
 double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
 {
   for (double steps = 64;; steps *= 2)
@@ -42,11 +41,11 @@ double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
   }
 }
 
-// goes to the controls, or as far as it comes in so many wall seconds
+// Moves to the controls and calms down. After `seconds` of wall time it stops at the controls reached.
 void approach_controls(TimedSolver& timed, double seconds)
 {
   Solver& solver = *timed.solver;
-  constexpr double ramp = 0.1;
+  constexpr double ramp = 0.1;  // simulated time [s]
   const Controls from = solver.controls();
   const double start = wall_seconds();
   for (double time = 0; time < 2 * ramp && wall_seconds() - start < seconds;)
@@ -95,7 +94,7 @@ double processor_seconds()
 
 StepTimes time_in_turn(const std::vector<TimedSolver>& wanted, double seconds, bool processor_time, double patience)
 {
-  constexpr double burst = 0.02;  // [s] of each solver in a turn
+  constexpr double burst = 0.02;  // wall time of each solver per turn [s]
   std::vector<TimedSolver> solvers = wanted;
   std::vector<double> steps;
   for (TimedSolver& timed : solvers)
@@ -188,7 +187,7 @@ double bare_loop(int edge, int threads, double seconds)
   const float shear = young / (2 * (1 + nu)), bulk = young / (3 * (1 - 2 * nu));
   const std::vector<float> mu(voxels + 64, shear), kappa(voxels + 64, bulk);
   BareLoop loop{};
-  loop.nodes_an_edge = n;
+  loop.nodes_per_edge = n;
   loop.mu = mu.data();
   loop.kappa = kappa.data();
   loop.spacing = spacing;
@@ -200,7 +199,7 @@ double bare_loop(int edge, int threads, double seconds)
   for (auto& s : scratch)
     s.assign(6 * (static_cast<std::size_t>(n) * n + 64), 0);
 
-  // like the solver's threads, these wait for each other in a spinning barrier after every step
+  // after every step, threads wait for each other in a spinning barrier, as the solver's do
   const auto run = [&](int steps)
   {
     std::atomic<int> arrived{ 0 };

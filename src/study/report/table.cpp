@@ -108,7 +108,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
   {
-    // rows of tables, headings, pictures and code must stay whole; further lines of a list's entry are indented
+    // rows of tables, headings, pictures and code must stay whole; continuation lines of a list item are indented
     const bool is_whole = line.find_first_of("|#!< ") == 0, is_entry = line.rfind("- ", 0) == 0;
     std::size_t used = 0;
     std::istringstream words(is_whole ? "" : line);
@@ -126,7 +126,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
 
 std::string json_text(const nlohmann::ordered_json& json)
 {
-  // names come from files: bytes that are no UTF-8 must not end the program
+  // names from files may be invalid UTF-8, which must not cause an exception
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
@@ -135,13 +135,13 @@ void make_folder(const std::string& path)
   std::error_code failed;
   fs::create_directories(path, failed);
   if (failed)
-    throw Error(path + ": cannot be made: " + failed.message());
+    throw Error(path + ": cannot be created: " + failed.message());
 }
 
 void write_text(const std::string& path, const std::string& text)
 {
   std::error_code failed;
-  // a device or a pipe cannot be replaced
+  // unlike a regular file, a device or a pipe cannot be replaced by renaming
   const bool is_replaceable = !fs::exists(path, failed) || fs::is_regular_file(path, failed);
   const std::string place = is_replaceable ? path + ".partial" : path;
   std::ofstream file(place, std::ios::binary);
@@ -230,7 +230,7 @@ std::string Table::json() const
       if (number == nullptr)
         object[columns_[c]] = std::get<std::string>(row[c]);
       else if (*number == std::floor(*number) && std::abs(*number) < 1e15)
-        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 and not 5.0
+        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 instead of 5.0
       else
         object[columns_[c]] = *number;
     }

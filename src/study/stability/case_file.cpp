@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// splits "0.9", "20 ms", "2 %"; false if the text does not begin with a finite number
+// splits "0.9", "20 ms" or "2 %" into number and unit; returns false if it does not begin with a finite number
 bool split(const std::string& text, double& number, std::string& unit)
 {
   const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -77,7 +77,7 @@ CaseFile::CaseFile(std::string path) : path_(std::move(path))
       fault("text", "has a { without a }");
     const auto found = values_.find(text_.substr(open + 1, close - open - 1));
     if (found == values_.end() || found->second.size() != 1)
-      fault("text", text_.substr(open, close - open + 1) + " is no key with one value");
+      fault("text", text_.substr(open, close - open + 1) + " is not a key with a single value");
     text_.replace(open, close - open + 1, found->second[0]);
   }
 }
@@ -101,8 +101,8 @@ std::vector<double> CaseFile::numbers(const std::string& key, const std::string&
   std::vector<double> numbers;
   for (const std::string& text : values(key))
   {
-    std::string behind;
-    if (!split(text, numbers.emplace_back(), behind) || behind != unit)
+    std::string found_unit;
+    if (!split(text, numbers.emplace_back(), found_unit) || found_unit != unit)
       fault(key, "'" + text + "'; must be a number " + (unit.empty() ? "without a unit" : "in " + unit));
   }
   if (numbers.empty() || (count > 0 && numbers.size() != count))

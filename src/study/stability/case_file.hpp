@@ -11,15 +11,15 @@ namespace frontalis
 {
 
 /// The file of a hard case (test/stability/NAME.yaml): a description, sizes, times and bounds. A value is a number with
-/// its unit, or a list of these; keys inside a mapping are named with a dot ("bounds.energy"). Every function throws
-/// Error with file and key if a value is missing or does not have the requested unit.
+/// its unit, or a list of them; a dot names keys inside a mapping ("bounds.energy"). Every function throws Error with
+/// file and key if a value is missing or does not have the requested unit.
 class CaseFile
 {
 public:
   explicit CaseFile(std::string path);
 
   const std::string& hard() const { return hard_; }  ///< what makes the case hard, in a few words
-  const std::string& text() const { return text_; }  ///< markdown, with the values of its keys in place of {KEY}
+  const std::string& text() const { return text_; }  ///< markdown, with {KEY} replaced by the value of the key
 
   /// `count`: required number of values; 0: one or more.
   std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
@@ -27,7 +27,7 @@ public:
   double seconds(const std::string& key) const;                             ///< given in ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels
 
-  /// Keys that have not been read: the case does not use them.
+  /// Keys of the file that no function has read.
   std::vector<std::string> unused() const;
 
 private:

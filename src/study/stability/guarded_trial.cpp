@@ -32,7 +32,7 @@ GuardedTrial::GuardedTrial(CaseRun& run, std::shared_ptr<const Model> model, boo
     : run_(run), model_(std::move(model)), wants_ledger_(ledger)
 {
   run.settings.model(*model_);
-  // with few voxels threads would wait for each other longer than they work
+  // with few voxels, several threads would wait for each other longer than they work
   const int threads = model_->voxels.size() < 2000 ? 1 : 0;
   SolverSettings own{ run.settings.backend, threads, 0 };
   own.ledger = ledger;
@@ -55,13 +55,13 @@ Controls GuardedTrial::controls(float activation, const RigidTransform& pose) co
 
 void GuardedTrial::advance(const Phase& phase)
 {
-  for (int i = 0; i < phase.looks; ++i)
+  for (int i = 0; i < phase.parts; ++i)
   {
-    // each part takes its share of the way from the present controls
-    guard_->advance(phase.seconds / phase.looks,
-                    interpolate(solver_->controls(), phase.target, 1.0 / (phase.looks - i)));
+    // linear in time: a part covers 1 / (number of parts left) of the remaining change of the controls
+    guard_->advance(phase.seconds / phase.parts,
+                    interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)));
     record();
-    run_.settings.watch((i + 1.0) / phase.looks);
+    run_.settings.watch((i + 1.0) / phase.parts);
   }
 }
 
@@ -73,7 +73,7 @@ void GuardedTrial::play_and_release(const std::vector<Phase>& phases, const std:
   plot(picture, title);
   advance({ run_.seconds("in_the_end"), controls(), 20 });
   check_balance(of);
-  run_.check("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), "left");
+  run_.check("remaining displacement, " + of, "mm", 0, 1e3 * farthest(displacements()), "left");
 }
 
 void GuardedTrial::settle(const Controls& target, double factor)

@@ -33,7 +33,7 @@ std::string verdict_of(const Trial& trial)
   std::string failed;
   for (const Check& check : trial.checks)
     if (!check.passed())
-      failed += fmt::format("{}{}: {:.4g} {} and not {:.4g} within {}{}", failed.empty() ? "" : "; ", check.name,
+      failed += fmt::format("{}{}: is {:.4g} {}; must be {:.4g} within {}{}", failed.empty() ? "" : "; ", check.name,
                             check.found, check.unit, check.expected, check.error_text(check.bound),
                             check.relative ? "" : " " + check.unit);
   if (!failed.empty())
@@ -146,7 +146,7 @@ void write_stability(const Trials& trials, const std::string& folder)
       "--all --mesh-dir DIR --markdown doc`, and all figures but those of a GPU are from one run of it. `--models DIR` "
       "writes the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
-  // a text about runs on other machines, written by hand
+  // a hand-written text about runs on other machines
   std::ifstream elsewhere(pictures / "elsewhere.md");
   if (elsewhere)
     out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});

@@ -19,16 +19,16 @@ struct CaseRun : CaseFile
   const StabilitySettings& settings;
   Trial& trial;
 
-  /// A count that the file has for short runs and, as KEY_in_full, for long ones.
+  /// The file's count KEY, or KEY_in_full in long runs.
   double count(const std::string& key) const;
-  /// Checks a figure against the bound of the file's bounds.KEY, which has the unit of the figure.
+  /// Checks a figure `found` (`what`: its name) within bounds.KEY of the file, which has the same unit.
   void check(const std::string& what, const std::string& unit, double expected, double found, const std::string& key);
-  /// The same with a bound in percent of the expected figure.
+  /// The same, with the bound in percent of the expected figure.
   void check_relative(const std::string& what, const std::string& unit, double expected, double found,
                       const std::string& key);
 };
 
-// one function per family of cases, by name; stability.cpp combines them with their files
+// name and function of each case of a family; stability.cpp reads the files of the cases
 using CaseFunctions = std::vector<std::pair<std::string, void (*)(CaseRun&)>>;
 CaseFunctions hard_materials();
 CaseFunctions hard_shapes();
@@ -36,7 +36,7 @@ CaseFunctions hard_muscles();
 CaseFunctions hard_constraints();
 CaseFunctions hard_times();
 
-/// A motion under the guard whose energies, worst voxel and hourglass share are recorded in the case's trial.
+/// A motion under the guard. Its energies, smallest J and hourglass energy are recorded in the case's trial.
 class GuardedTrial
 {
 public:
@@ -59,31 +59,30 @@ public:
   {
     double seconds;
     Controls target;
-    int looks = 1;
+    int parts = 1;
   };
-  /// Advances in equal parts, as many as there are looks, and records energies after each.
+  /// Changes the controls linearly to the target in equal parts and records energies after each.
   void advance(const Phase& phase);
-  /// Plays phases, plots them and then releases the model for a while (the case's in_the_end). Checks that energy was
-  /// explained throughout to a share (bounds.energy) and that no node is farther from its rest than bounds.left.
+  /// Advances through phases, plots them and then releases the model for the case's in_the_end [s]. Checks the energy
+  /// balance and that no node remains farther than bounds.left from its rest position. `of` names the motion in checks.
   void play_and_release(const std::vector<Phase>& phases, const std::string& of, const std::string& picture,
                         const std::string& title);
-  /// Like Solver::settle() with a tolerance of 1e-4. Throws Error if no equilibrium is reached within the case's
-  /// longest_settling, times a factor, of simulated time.
+  /// Like Solver::settle() with a tolerance of 1e-4. Throws Error if no equilibrium is reached within `factor`
+  /// times the case's longest_settling [s of simulated time].
   void settle(const Controls& target, double factor = 1);
-  /// Plays a motion that the guard may stop. Where it does, the trial gets the report, and the state is checked to be
-  /// good.
+  /// Calls `play`. If the guard stops the motion, it must name a voxel in its report and leave a finite state.
   void hold_or_stop(const std::function<void()>& play);
-  /// Sets displacements [m] and, unless empty, velocities [m/s]; the ledger opens anew.
+  /// Sets displacements [m] and, unless empty, velocities [m/s]; the ledger starts again.
   void set(const Vectors& displacements, const Vectors& velocities = {});
 
   Vectors displacements() const;
-  const Monitor& monitor() const { return monitor_; }       ///< when they were recorded last
-  const EnergyLedger& energies() const { return ledger_; }  ///< when they were recorded last
+  const Monitor& monitor() const { return monitor_; }       ///< as last recorded
+  const EnergyLedger& energies() const { return ledger_; }  ///< as last recorded
 
   /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
   /// motion to `picture` if that is not empty.
   void check_balance(const std::string& of, const std::string& picture = {}, const std::string& title = {});
-  /// Energies over time and the smallest J, as a picture.
+  /// Plots energies and the smallest J over time.
   void plot(const std::string& file, const std::string& title);
 
 private:
@@ -101,29 +100,28 @@ private:
   bool wants_ledger_;
   Monitor monitor_;
   EnergyLedger ledger_;
-  // [J]; kept here, since the guard may take the ledger back to an earlier state
+  // extremes over time [J]; not in the ledger, since the guard may return it to an earlier state
   double worst_imbalance_ = 0, most_hourglass_ = 0, largest_ = 0;
   std::vector<Moment> moments_;
 };
 
-/// The hypodermis of the published forehead, at the density of tissue.
+/// Hypodermis of Warburton & Maddock (Young's modulus 34 kPa), with the density 1000 kg/m3.
 Material soft_tissue(double poisson = 0.49);
-/// A box of voxels of soft tissue, edge 1 mm, of the size and damping that a case's file gives.
+/// A box of soft tissue with voxels of edge 1 mm; size and damping come from the case's file.
 Model damped_block(const CaseFile& file);
-/// Makes the lowest or the highest plane of nodes along an axis rigid, as hold(); and both, of which the bone moves the
-/// highest.
+/// Makes the lowest or highest plane of nodes along an axis rigid, like hold(), or both; the bone moves the highest.
 void hold_face(Model& model, int axis, bool upper, const std::string& bone = {});
 void hold_ends(Model& model, int axis, const std::string& bone = {});
 
 inline physics::Vec3<double> vector(const Point& p) { return { p[0], p[1], p[2] }; }
-/// Largest of |a - b| [m] over all nodes; without `b` of |a|.
+/// Largest |a - b| [m] of all nodes; without `b`, largest |a|.
 double farthest(const Vectors& a, const Vectors& b = {});
 
 /// Rigid motion by a rotation vector [rad] about a point [m], and by a shift [m].
 RigidTransform turned_about(const Point& rotation, const Point& point);
 RigidTransform shifted(const Point& shift);
 
-/// A number from -1 to 1.
+/// A random number from -1 to 1 of a 32-bit generator.
 template <class Random>
 double drawn_from(Random& random)
 {

@@ -43,11 +43,11 @@ void slide(Model& model, const Profile& profile, const Condition& condition)
       [&](const Point& p) { return distance_to(profile, false, p); }, nodes_where(model, condition), 0.5e-3, 100e-3);
 }
 
-// largest error of the level that sliding nodes keep in the field of their surface, and the longest way of one along x
-// [m]
+// largest error of the level that sliding nodes keep in the field of their surface, and their largest displacement
+// along x [m]
 std::pair<double, double> slid(const GuardedTrial& motion)
 {
-  double worst = 0, way = 0;
+  double worst = 0, travel = 0;
   const Vectors u = motion.displacements();
   for (const auto& node : motion.model().sliding)
   {
@@ -57,38 +57,38 @@ std::pair<double, double> slid(const GuardedTrial& motion)
     const double error = level_at(motion.model().constraint_surfaces[node.surface].field, p) - node.distance;
     // where the field ends there is no level
     worst = std::isnan(error) ? 1 : std::max(worst, std::abs(error));
-    way = std::max(way, std::abs(u[node.node][0]));
+    travel = std::max(travel, std::abs(u[node.node][0]));
   }
-  return { worst, way };
+  return { worst, travel };
 }
 
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
-// drags the model for the case's `drag` and looks after each of forty equal parts; `activation` gives that of each
-// part
+// Advances by the case's `drag` [s] in forty parts, activation(i) being that of part i. Checks the sliding distances
+// after each, and finally that nodes have travelled `least_travel` [mm] along x.
 void drag(
-    CaseRun& run, GuardedTrial& motion, const std::string& of, double least_way,
+    CaseRun& run, GuardedTrial& motion, const std::string& of, double least_travel,
     const std::function<float(int)>& activation = [](int) { return 0.0F; })
 {
-  constexpr int looks = 40;
-  const double part = run.seconds("drag") / looks;
-  double worst = 0, way = 0;
-  for (int i = 0; i < looks; ++i)
+  constexpr int parts = 40;
+  const double seconds = run.seconds("drag") / parts;
+  double worst = 0, travel = 0;
+  for (int i = 0; i < parts; ++i)
   {
-    motion.advance({ part, motion.controls(activation(i)) });
-    const auto [error, come] = slid(motion);
+    motion.advance({ seconds, motion.controls(activation(i)) });
+    const auto [error, moved] = slid(motion);
     worst = std::max(worst, error);
-    way = std::max(way, come);
+    travel = std::max(travel, moved);
   }
   motion.check_balance(of);
   run.check("error of kept levels, " + of, "um", 0, 1e6 * worst, "kept_level");
-  run.trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
-                            std::max(0.0, least_way - 1e3 * way), 0);
+  run.trial.checks.absolute("shortfall from " + readable(least_travel) + " mm of travel", "mm", 0,
+                            std::max(0.0, least_travel - 1e3 * travel), 0);
 }
 
 void sharp_ridge(CaseRun& run)
 {
-  // a ridge of 53° in the way of a soft block whose nodes start over the left slope and the ridge
+  // A ridge with an angle of 53° at its top obstructs a soft block, which starts above the left slope and the top.
   Model model = damped_block(run);
   model.materials = { neo_hookean(10e3, 0.49) };
   const double ridge = 1e-3 * run.number("ridge", "mm");
@@ -130,7 +130,7 @@ void two_surfaces(CaseRun& run)
   model.gravity = { { run.number("pull", "m/s2"), 0, -9.81 } };
   GuardedTrial motion(run, model);
   drag(run, motion, "between two surfaces", run.number("least_way", "mm"),
-       [](int look) { return look % 10 < 5 ? 1.0F : 0.0F; });
+       [](int part) { return part % 10 < 5 ? 1.0F : 0.0F; });
   motion.plot("two_surfaces", "A sheet of one voxel is drawn between surfaces 0.6 mm apart");
 }
 
@@ -147,7 +147,7 @@ void bone_jump(CaseRun& run)
     const std::string& name = time.first;
     const double seconds = time.second;
     GuardedTrial motion(run, model);
-    // the bone moves ten times as fast as sound in the tissue
+    // within a time step, the bone moves ten times faster than sound in the tissue
     const bool violent = seconds < 1e-4;
     const auto play = [&]
     {
@@ -164,12 +164,12 @@ void bone_jump(CaseRun& run)
       continue;
     motion.advance({ run.seconds("rest"), motion.controls(0, jumped), 10 });
     const Vectors moved(model.nodes.size(), jumped.translation);
-    run.check("off its place after a jump within a " + name, "um", 0, 1e6 * farthest(motion.displacements(), moved),
-              "place");
+    run.check("distance from the goal after a jump within a " + name, "um", 0,
+              1e6 * farthest(motion.displacements(), moved), "place");
   }
 }
 
-// turning a bone turns gravity for the tissue that hangs on it
+// turning the bone changes the direction of gravity relative to the tissue that is attached to it
 void turning_gravity(CaseRun& run)
 {
   Model model = damped_block(run);

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// the shift that the file gives in mm
+// the translation that the file gives as drawn_by [mm]
 RigidTransform drawn_by(const CaseRun& run)
 {
   const std::vector<double> by = run.numbers("drawn_by", "mm", 3);
@@ -29,7 +29,7 @@ Model cantilever(const CaseRun& run, double poisson)
   return model;
 }
 
-// a block of these materials whose first face is held and whose last one is moved by a bone
+// a block whose face x = 0 is fixed and whose opposite face is moved by the bone "grip"
 Model gripped_block(const CaseRun& run, const std::vector<Material>& materials)
 {
   Model model = damped_block(run);
@@ -38,6 +38,7 @@ Model gripped_block(const CaseRun& run, const std::vector<Material>& materials)
   return model;
 }
 
+// mean vertical displacement of the free end at equilibrium [mm]
 double settled_tip(GuardedTrial& motion)
 {
   motion.settle(motion.controls());
@@ -143,8 +144,8 @@ void mass_scaling(CaseRun& run)
       motion.plot("mass_scaling", "Masses scaled by 10⁴: a muscle is switched on under gravity");
     motion.settle(motion.controls(1), std::sqrt(factor));
     if (factor > 1)
-      run.check("off the equilibrium without scaling", "um", 0, 1e6 * farthest(motion.displacements(), expected),
-                "equilibrium");
+      run.check("distance from the equilibrium without scaling", "um", 0,
+                1e6 * farthest(motion.displacements(), expected), "equilibrium");
     expected = motion.displacements();
   }
 }

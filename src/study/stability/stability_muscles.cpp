@@ -1,4 +1,4 @@
-// hard cases of muscles: held neighbours, opposed muscles, strong muscles in soft tissue, faces that are switched
+// hard cases of muscles: neighbours of passive tissue, opposed and strong muscles, faces activated at once
 
 #include "study/stability/stability_cases.hpp"
 
@@ -15,8 +15,8 @@ namespace
 
 using Fibres = std::vector<Fibre>;
 
-// Half of a bar that is held at both ends contracts and stretches the other half. Under a moderate stress it comes back
-// to rest; under a high one it crushes itself.
+// Half of a bar contracts and stretches the other half, with both ends fixed. With a moderate active stress the bar
+// must return to rest; with a high one it crushes itself, and the guard may stop it.
 void held_neighbours(CaseRun& run)
 {
   const auto activation = static_cast<float>(run.number("activation"));
@@ -39,7 +39,7 @@ void held_neighbours(CaseRun& run)
       motion.advance({ switched, motion.controls(0), 10 });
       motion.advance({ run.seconds("rest"), motion.controls(0), 20 });
       motion.check_balance(name);
-      run.check("left in the end, " + name, "mm", 0, 1e3 * farthest(motion.displacements()), "left");
+      run.check("remaining displacement, " + name, "mm", 0, 1e3 * farthest(motion.displacements()), "left");
     };
     if (stress == held)
       play();
@@ -56,7 +56,7 @@ void opposed_muscles(CaseRun& run)
   model.materials.push_back(neo_hookean(0.5e6, 0.49));
   const float s = std::sqrt(0.5F);
   const double stress = 1e6 * run.number("stress", "MPa");
-  // three muscles overlap in the middle, one of them across the two others
+  // three muscles overlap in the middle; the third is perpendicular to the others
   add_muscles(model,
               { Muscle{ "left", stress, true, true }, Muscle{ "right", stress, true, true },
                 Muscle{ "across", stress, true, true } },
@@ -108,17 +108,17 @@ void strong_muscle(CaseRun& run)
                           "A muscle of 5 MPa in fat of 34 kPa, released at full contraction");
 }
 
-// every muscle of a face from rest to full activation at once
+// activates every muscle of a face fully within one time step, and deactivates them likewise
 void switch_on(CaseRun& run, const std::string& scene)
 {
-  // checked often, since the motion after a switch takes some hundred steps
+  // the guard checks every 128 steps, since the motion after a switch lasts only some hundred
   GuardedTrial motion(run, run.settings.scene(scene), true, { 128 });
   motion.advance({ motion.solver().time_step(), motion.controls(1), 1 });
   motion.advance({ run.seconds("on"), motion.controls(1), 40 });
   motion.advance({ motion.solver().time_step(), motion.controls(0), 1 });
   motion.advance({ run.seconds("off"), motion.controls(0), 40 });
   motion.check_balance("every muscle on and off at once");
-  // a picture of the real head's motion would tell whose head it is
+  // no plot of the real head, whose data are private
   if (scene == "forehead")
     motion.plot(scene + "_switched", "Every muscle switched on in one step, and off");
 }

@@ -14,22 +14,22 @@ namespace
 
 const double pi = std::acos(-1.0);
 
-// checks that the stored energy is gone and the voxels have their volumes again
+// checks that the stored energy has been released and voxels have regained their volumes
 void expect_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, double stored_before)
 {
   const Monitor& m = motion.monitor();
   run.check("stored energy left, " + of, "1", 0, (m.internal + m.hourglass) / stored_before, "stored_left");
-  run.check("smallest J in the end, " + of, "1", 1, m.worst_jacobian, "smallest_J");
+  run.check("final smallest J, " + of, "1", 1, m.worst_jacobian, "smallest_J");
 }
 
-// lets a block go that starts in a deformation that is forced on it
-void let_go(CaseRun& run, const Model& model, const Vectors& displacements, int looks, const std::string& of,
+// releases a block from imposed displacements [m]
+void let_go(CaseRun& run, const Model& model, const Vectors& displacements, int parts, const std::string& of,
             const std::string& picture, const std::string& title)
 {
   GuardedTrial motion(run, model);
   motion.set(displacements);
   const double stored = motion.energies().initial;
-  motion.advance({ run.seconds("watched"), motion.controls(), looks });
+  motion.advance({ run.seconds("watched"), motion.controls(), parts });
   motion.check_balance(of, picture, title);
   motion.advance({ run.seconds("rest"), motion.controls(), 10 });
   expect_rest(run, motion, of, stored);
@@ -113,7 +113,7 @@ void scrambled(CaseRun& run)
     model.hourglass = form.hourglass;
     model.integration = form.integration;
     std::mt19937 random(7);
-    // half a voxel in a random direction
+    // displacements of equal length in random directions
     Vectors u(model.nodes.size());
     for (auto& p : u)
     {
@@ -151,7 +151,7 @@ void rigid_rotation(CaseRun& run)
   motion.check_balance("ten turns", "rigid_rotation", "A free block turns ten times");
   run.check_relative("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies().kinetic,
                      "kinetic_energy");
-  // the shape is kept where the diagonals keep their lengths
+  // a rigid motion keeps the distance between opposite nodes
   const auto now = motion.displacements();
   double worst = 0;
   for (std::size_t n = 0; n < now.size(); ++n)
@@ -168,7 +168,7 @@ void rigid_rotation(CaseRun& run)
 void dangling(CaseRun& run)
 {
   VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
-  // a held slab with a sheet, a strip, a voxel by its edge and a voxel by its corner on it; and one voxel that is free
+  // a fixed slab, to which a sheet, a strip, a voxel at its edge and one at its corner are attached; and a free voxel
   box.fill = [](const Voxel& v) -> double
   {
     const bool top = v[2] == 6;

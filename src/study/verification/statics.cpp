@@ -17,7 +17,6 @@ namespace
 
 using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
 
-// the materials of a voxel with their proportions
 Mixture mixture_of(const Model& model, std::size_t e)
 {
   Mixture mixture;
@@ -26,7 +25,6 @@ Mixture mixture_of(const Model& model, std::size_t e)
   return mixture;
 }
 
-// a model of only voxel e
 Model lone_voxel(const Model& model, std::size_t e)
 {
   Model one =
@@ -40,14 +38,14 @@ Model lone_voxel(const Model& model, std::size_t e)
 }
 
 // the properties of a voxel that determine its stiffness
-std::vector<float> make_of(const Model& model, std::size_t e)
+std::vector<float> stiffness_key(const Model& model, std::size_t e)
 {
-  std::vector<float> make{ model.fill[e] };
+  std::vector<float> key{ model.fill[e] };
   for (const auto& [material, proportion] : mixture_of(model, e))
-    make.insert(make.end(), { static_cast<float>(material), proportion });
+    key.insert(key.end(), { static_cast<float>(material), proportion });
   if (!model.material_directions.empty())
-    make.insert(make.end(), model.material_directions[e].begin(), model.material_directions[e].end());
-  return make;
+    key.insert(key.end(), model.material_directions[e].begin(), model.material_directions[e].end());
+  return key;
 }
 
 ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::array<double, 9>& gradient)
@@ -71,7 +69,7 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
     for (int row = 0; row < 24; ++row)
       k(row, column) = (after[row / 3][row % 3] - before[row / 3][row % 3]) / (2 * step);
   }
-  // symmetric but for rounding
+  // removes the asymmetry of rounding errors
   return 0.5 * (k + k.transpose());
 }
 
@@ -83,7 +81,7 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   model.damping = 4 * std::acos(-1.0) / settings.period;
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
-  // with few voxels threads would wait for each other longer than they work
+  // with few voxels, several threads would wait for each other longer than they work
   const int threads = model.voxels.size() < 2000 ? 1 : 0;
   const auto shared = std::make_shared<const Model>(std::move(model));
   RestState result{ make_solver(shared, { settings.backend, threads, 0 }), {} };
@@ -119,17 +117,17 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
   return sum;
 }
 
-// Voxels join only neighbouring planes of nodes, so the stiffness is block tridiagonal in the planes across the longest
-// axis of the grid. Its Cholesky factors are those of the dense blocks of planes.
+// Voxels couple only neighbouring planes of nodes. With planes across the longest axis of the grid the stiffness is
+// therefore block tridiagonal, and its Cholesky factor consists of dense blocks.
 struct LinearStatics::System
 {
   struct Unknown
   {
-    int plane = 0, row = -1;  // row in the plane's block; -1: the component is fixed
+    int plane = 0, row = -1;  // row in the plane's block; -1: fixed component
   };
   std::vector<std::array<Unknown, 3>> unknowns;    // one per node and component
-  Vectors fixed;                                   // prescribed displacements
-  std::vector<Eigen::VectorXd> forces;             // per plane: forces exerted by the prescribed displacements
+  Vectors fixed;                                   // prescribed displacements [m]
+  std::vector<Eigen::VectorXd> forces;             // per plane: forces that prescribed displacements cause [N]
   std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // per plane: factor of its own block
   std::vector<Eigen::MatrixXd> next;               // per plane: factor of the block that couples it to the next
   bool positive_definite = true;
@@ -202,7 +200,7 @@ LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gr
   std::map<std::vector<float>, ElementMatrix> known;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
-    const auto [entry, is_new] = known.try_emplace(make_of(model, e));
+    const auto [entry, is_new] = known.try_emplace(stiffness_key(model, e));
     if (is_new)
       entry->second = element_stiffness(model, e, gradient);
     const ElementMatrix& k = entry->second;
@@ -255,7 +253,7 @@ Vectors face_forces(const Model& model, int axis, std::int32_t index, const Poin
     for (const int side : { 0, 1 })
     {
       const auto first = corners[static_cast<std::size_t>(side) << axis];
-      // a face that two voxels share is counted only by the lower one; plane 0 has no lower one
+      // count a face once: for the voxel below it, or in plane 0, which has none, for the voxel above it
       if (model.nodes[first][axis] != index || (side == 0 && index != 0))
         continue;
       for (std::size_t b = 0; b < 8; ++b)

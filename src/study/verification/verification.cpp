@@ -70,12 +70,12 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// the sections of a file of texts, by name of their case; none if there is no such file
+// the sections of text.md by the names of their cases; none if the file is missing
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);
   std::map<std::string, CaseText> texts;
-  CaseText ignored;  // what stands above the first section
+  CaseText ignored;  // text above the first section
   CaseText* text = &ignored;
   std::string* part = &ignored.before;
   for (std::string line; std::getline(file, line);)

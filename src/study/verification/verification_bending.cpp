@@ -12,16 +12,16 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 1e5, height = 1, length = 10;
+constexpr double young = 1e5, height = 1, length = 10;  // [Pa], [m], [m]
 
-using Ratio = std::array<int, 3>;  // of a voxel's edges
+using Ratio = std::array<int, 3>;  // proportions of a voxel's edges
 
 struct Deflection
 {
-  double tip_force, own_weight;
+  double tip_force, own_weight;  // mean over the end [m], for each of the two loads
 };
 
-// deflections of a square cantilever of `n` voxels through its height; forces are small, since only ratios matter
+// linear deflections of a square cantilever with `n` voxels through its height; only their ratios are used
 Deflection deflection(double poisson, int n, HourglassControl form, const Ratio& ratio,
                       Integration integration = Integration::one_point)
 {
@@ -65,7 +65,7 @@ void verify_cantilever(const Backend&, Finding& finding)
     const auto fine = deflection(poisson, 8, HourglassControl::assumed_strain, ratios[0]);
     const Deflection converged{ fine.tip_force + (fine.tip_force - coarse.tip_force) / 3,
                                 fine.own_weight + (fine.own_weight - coarse.own_weight) / 3 };
-    double worst[2][2] = {};  // scalar, assumed strain; cubes, boxes
+    double worst[2][2] = {};  // [scalar or assumed strain][cubes or boxes]
     for (const auto& ratio : ratios)
       for (const int n : { 1, 2, 4 })
       {
@@ -108,8 +108,8 @@ void verify_cantilever(const Backend&, Finding& finding)
 namespace
 {
 
-// period of a bar whose nodes start with velocities [m/s] along an axis that depend on their x over its length, 0.2 m;
-// from the zero crossings of its end
+// Period [s] of a bar of length 0.2 m, from the zero crossings of its end's displacement. Its nodes start with
+// velocities velocity(x / length) [m/s] along the axis; `guess` is the expected period.
 double measured_period(const Model& model, const Backend& backend, int axis, double guess,
                        const std::function<double(double)>& velocity)
 {
@@ -122,7 +122,7 @@ double measured_period(const Model& model, const Backend& backend, int axis, dou
   const double interval = guess / 200;
   double before = 0, first = 0;
   int crossings = 0;
-  constexpr int wanted = 7;  // zero crossings of three periods
+  constexpr int wanted = 7;  // zero crossings, which span three periods
   for (int sample = 1; sample < 200 * 8; ++sample)
   {
     solver->advance(interval, solver->controls());
@@ -167,7 +167,7 @@ void verify_vibration(const Backend& backend, Finding& finding)
   const double expected = 4 * 0.2 * std::sqrt(1000 / 2e6);
   const double period =
       measured_period(model, backend, 0, expected, [&](double x) { return 1e-3 * std::sin(0.5 * pi * x); });
-  finding.checks.relative("bar along itself", "s", expected, period, 0.003);
+  finding.checks.relative("bar, axial vibration", "s", expected, period, 0.003);
 }
 
 }  // namespace frontalis

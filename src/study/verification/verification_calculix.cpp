@@ -1,4 +1,4 @@
-// solids solved by voxels and by CalculiX with quadratic hexahedra
+// compares solutions of voxels with those of CalculiX with quadratic hexahedra
 
 #include "frontalis/error.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -18,7 +18,7 @@ namespace frontalis
 namespace
 {
 
-using Lattice = std::array<int, 3>;  // half elements from the origin
+using Lattice = std::array<int, 3>;  // position of a node in half elements, or number of elements per axis
 
 constexpr std::array<bool, 3> everything{ { true, true, true } };
 
@@ -27,7 +27,7 @@ Point still(const Point&) { return {}; }
 // A problem that both this solver and CalculiX can solve: a box of neo-Hookean materials, held and loaded.
 struct SolidProblem
 {
-  // Nodes for which `where` holds (position at rest [m]) get `displacement` [m] in the named components.
+  // Nodes whose rest position [m] fulfils `where` get `displacement` [m] in the selected components.
   struct Hold
   {
     Condition where;
@@ -36,24 +36,24 @@ struct SolidProblem
   };
   Point size;  // [m]
   std::vector<Material> materials;
-  std::function<int(const Point&)> material;  // at a point; empty: the first
+  std::function<int(const Point&)> material;  // index at a position [m]; not set: 0
   std::vector<Hold> holds;
   Point gravity{};  // [m/s2]
 };
 
-// Nodes of a solution: positions at rest [m], displacements [m], forces that hold them [N].
+// A solution per node: rest positions [m], displacements [m], forces of the supports [N].
 struct SolidState
 {
   Vectors positions, displacements, forces;
 };
 
-// corners and midpoints of the edges of the element at the origin, in CalculiX's order
+// corners and edge midpoints of the element at the origin in half elements, in CalculiX's order
 constexpr int element_nodes[20][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 },
                                        { 2, 0, 2 }, { 2, 2, 2 }, { 0, 2, 2 }, { 1, 0, 0 }, { 2, 1, 0 },
                                        { 1, 2, 0 }, { 0, 1, 0 }, { 1, 0, 2 }, { 2, 1, 2 }, { 1, 2, 2 },
                                        { 0, 1, 2 }, { 0, 0, 1 }, { 2, 0, 1 }, { 2, 2, 1 }, { 0, 2, 1 } };
 
-// lengths in mm, forces in N, stresses in MPa, masses in t
+// The input file of CalculiX, in mm, N, MPa and t. `positions` gets its nodes [m].
 std::string deck(const SolidProblem& problem, const Lattice& elements, Vectors& positions)
 {
   std::map<Lattice, int> number;
@@ -129,12 +129,12 @@ std::string text_of(const std::filesystem::path& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// the last table of that name in the output; `unit` converts its numbers to SI units
+// the last table `name` of CalculiX's output, of `count` nodes; `unit` converts its numbers to SI units
 Vectors last_block(const std::string& output, const std::string& name, std::size_t count, double unit)
 {
   const std::size_t at = output.rfind(name);
   if (at == std::string::npos)
-    throw Error("CalculiX: its output has no table of " + name);
+    throw Error("CalculiX: the output has no table of " + name);
   std::istringstream in(output.substr(output.find('\n', at)));
   Vectors values(count);
   std::size_t node = 0;
@@ -142,7 +142,7 @@ Vectors last_block(const std::string& output, const std::string& name, std::size
   {
     in >> node;
     if (!in || node < 1 || node > count)
-      throw Error(fmt::format("CalculiX: its table of {} ends after {} of {} nodes", name, n, count));
+      throw Error(fmt::format("CalculiX: the table of {} ends after {} of {} nodes", name, n, count));
     for (double& c : values[node - 1])
     {
       in >> c;
@@ -154,14 +154,14 @@ Vectors last_block(const std::string& output, const std::string& name, std::size
 
 // Solves the problem by CalculiX (program ccx) with elements[0] x [1] x [2] quadratic hexahedra (C3D20R), hyperelastic,
 // large deformation. Its neo-Hookean solid is ours with C10 = mu / 2 and D1 = 2 / kappa (CalculiX manual,
-// *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Deck and output are in a temporary folder that
-// is removed afterwards. Throws Error with the end of its log if it fails.
+// *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Input and output are in a temporary folder
+// that is removed afterwards. Throws Error with the end of CalculiX's log if it fails.
 SolidState solve_by_calculix(const SolidProblem& problem, const Lattice& elements)
 {
   SolidState state;
   std::string folder = (std::filesystem::temp_directory_path() / "frontalis_ccx_XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr)
-    throw Error(folder + ": cannot be made");
+    throw Error(folder + ": cannot be created");
   const std::filesystem::path base(folder);
   write_text((base / "deck.inp").string(), deck(problem, elements, state.positions));
   const int status = std::system(("cd '" + folder + "' && ccx -i deck >log 2>&1").c_str());
@@ -174,7 +174,7 @@ SolidState solve_by_calculix(const SolidProblem& problem, const Lattice& element
   return state;
 }
 
-// the same by voxels of edge `edge` [m], which divides the box; `period` as in EquilibriumSettings
+// the same with voxels of edge `edge` [m], which must divide the box's; `period` as in EquilibriumSettings
 SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, const Backend& backend)
 {
   VoxelBox box{ {}, { { edge, edge, edge } }, problem.materials };
@@ -201,9 +201,9 @@ SolidState solve_by_voxels(const SolidProblem& problem, double edge, double peri
   return state;
 }
 
-constexpr double tiny = 1e-7;  // [m], between equal positions
+constexpr double tiny = 1e-7;  // [m], tolerance for equal positions
 
-// sums the forces on the nodes for which the condition holds
+// sum of the forces on the nodes that fulfil a condition [N]
 Point force_on(const SolidState& state, const Condition& where)
 {
   Point sum{};
@@ -214,7 +214,7 @@ Point force_on(const SolidState& state, const Condition& where)
   return sum;
 }
 
-// displacement of the node at a point
+// displacement [m] of the node at a position; NaN if there is none
 Point displacement_at(const SolidState& state, const Point& point)
 {
   for (std::size_t n = 0; n < state.positions.size(); ++n)
@@ -229,11 +229,11 @@ struct Comparison
   std::string name;
   SolidProblem problem;
   Lattice elements;
-  std::vector<double> edges;  // of voxels [m]
-  double period;              // [s]
+  std::vector<double> edges;  // voxel edges [m]
+  double period;              // of the slowest vibration [s]
   std::array<std::string, 2> what, unit;
   std::function<std::array<double, 2>(const SolidState&)> figures;
-  bool second_is_small = false;  // the second figure is a small difference of stresses, and has no bound
+  bool second_is_small = false;  // the second figure is a small difference of large stresses and has no bound
 };
 
 bool start(const Point& p) { return p[0] < tiny; }

@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-// the functions of the cases, which verification.cpp lists
+// the cases, listed in verification.cpp
 using VerificationFunction = void(const Backend& backend, Finding& finding);
 VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gradient, verify_uniaxial_stretch,
     verify_simple_shear, verify_active_bar, verify_published_bar, verify_cantilever, verify_vibration,
@@ -25,7 +25,7 @@ inline std::unique_ptr<Solver> solver_of(const Model& model, const Backend& back
   return make_solver(std::make_shared<const Model>(model), { backend, 1, 0 });
 }
 
-/// A plot with a logarithmic axis of voxel edges, or numbers of voxels, and its legend below.
+/// A plot with a logarithmic x axis, for voxel edges or numbers of voxels, and the legend below.
 Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
                       const std::vector<double>& x_ticks, const std::array<double, 2>& x_range, bool y_log = true);
 

@@ -1,4 +1,4 @@
-// the order of convergence in the voxel edge, and the error of staircases of voxels
+// the order of convergence in the voxel edge, and the error of boundaries that are staircases of voxels
 
 #include "study/verification/verification_cases.hpp"
 
@@ -10,8 +10,8 @@ namespace frontalis
 namespace
 {
 
-// Relative root mean square error of the displacements of a unit cube. Its surface is displaced by the gradient of a
-// harmonic function, which solves Navier's equation for any Poisson ratio.
+// Relative root mean square error of displacements in a cube of n^3 voxels. Its surface is displaced by the gradient of
+// a harmonic function, which solves Navier's equation for any Poisson's ratio.
 double cube_error(int n, HourglassControl form)
 {
   Model model = voxel_model({ { n, n, n } }, 1.0 / n, neo_hookean(1e5, 0.45));
@@ -42,8 +42,8 @@ double cube_error(int n, HourglassControl form)
   return std::sqrt(error / size);
 }
 
-// Rise of the middle of the right side of Cook's membrane with voxels of edge h. Voxels with less than fill_min inside
-// are dropped; the others are weighted, or all `whole`.
+// Vertical displacement of the middle of the right side of Cook's membrane with voxels of edge h. Voxels with a fill
+// below fill_min are left out; the others have stiffness in proportion to their fill, or full stiffness if `whole`.
 double cook(double h, HourglassControl form, double fill_min, bool whole)
 {
   VoxelBox box{ { { static_cast<std::int32_t>(48 / h), static_cast<std::int32_t>(60 / h), 1 } },
@@ -56,7 +56,7 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
   model.hourglass = form;
   prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0; }), { { true, true, false } });
   prescribe(model, nodes_where(model, [](const auto& p) { return p[2] == 0; }), { { false, false, true } });
-  // the force is 1 per unit of thickness, however large the faces of the voxels at the end are
+  // scale the force to 1 per unit of thickness, since voxel faces at the end differ in total area
   Vectors forces = face_forces(model, 0, box.size[0], { { 0, 1, 0 } });
   double sum = 0;
   for (const auto& f : forces)
@@ -70,10 +70,10 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
 
 struct Surface
 {
-  double mean = 0, spread = 0;  // of the radial displacement over Lame's: mean and standard deviation over the surface
+  double mean = 0, spread = 0;  // mean and standard deviation of radial displacement over Lame's
 };
 
-// both surfaces of an eighth of a hollow sphere, radii 1 and 2, under a small pressure inside
+// inner and outer surface of an eighth of a hollow sphere, radii 1 cm and 2 cm, under a small pressure inside
 std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend& backend)
 {
   const double a = 1e-2, b = 2e-2, young = 1e4, poisson = 0.45, pressure = 20, pi = std::acos(-1.0);
@@ -87,7 +87,7 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
   Model model = voxel_model(box);
   model.hourglass = form;
   hold_mirror_planes(model);
-  // normals point to the middle, out of the tissue
+  // normals point to the centre, out of the tissue
   const auto sphere = [&](double radius)
   {
     return grid_mesh(2 * n, 2 * n,
@@ -104,9 +104,9 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
   model.skin.vertices.insert(model.skin.vertices.end(), outside.vertices.begin(), outside.vertices.end());
   model.skin.triangles = inside.triangles;
   model.skin_binding = bind_points(model, model.skin.vertices);
-  // the tolerance is above the noise of single precision, 1e-4 at such small strains
+  // tolerance above the rounding errors of single precision, 1e-4 at such small strains
   const EquilibriumSettings relax{ backend, 4 * b / std::sqrt(young / 3 / 1000), 5e-4 };
-  // half the difference of pressure and suction has no terms of second order
+  // half the difference between the solutions with pressure and with suction has no second-order terms
   SkinState skin[2];
   for (const int side : { 0, 1 })
   {
@@ -142,7 +142,7 @@ void verify_convergence(const Backend&, Finding& finding)
                                "relative error [1]", {}, {});
   plot.key = "bottom right";
   plot.curves = { { name_of(hourglass_forms[0]) }, { name_of(hourglass_forms[1]) } };
-  Table table({ "voxels an edge", "scalar", "assumed strain" });
+  Table table({ "voxels per edge", "scalar", "assumed strain" });
   for (const int n : { 3, 6, 12 })
   {
     for (const int form : { 0, 1 })
@@ -159,31 +159,31 @@ void verify_convergence(const Backend&, Finding& finding)
 
 void verify_cook(const Backend&, Finding& finding)
 {
-  struct Way
+  struct Variant
   {
     const char* name;
     HourglassControl form;
     double fill_min;
     bool whole;
   };
-  const Way ways[] = { { "weighted, below 0.2 dropped, scalar", HourglassControl::scalar, 0.2, false },
-                       { "weighted, below 0.2 dropped", HourglassControl::assumed_strain, 0.2, false },
-                       { "weighted, none dropped", HourglassControl::assumed_strain, 0.01, false },
-                       { "whole from a half on", HourglassControl::assumed_strain, 0.5, true } };
+  const Variant variants[] = { { "weighted, below 0.2 dropped, scalar", HourglassControl::scalar, 0.2, false },
+                               { "weighted, below 0.2 dropped", HourglassControl::assumed_strain, 0.2, false },
+                               { "weighted, none dropped", HourglassControl::assumed_strain, 0.01, false },
+                               { "whole from a half on", HourglassControl::assumed_strain, 0.5, true } };
   Plot plot = convergence_plot("Cook's membrane: rise of the middle of its right side", "voxel edge [1]",
                                "relative error [1]", { 1, 2, 4 }, { { 0.9, 5 } });
   Table table({ "voxels", "edge 4", "edge 2", "edge 1" });
-  for (const auto& way : ways)
+  for (const auto& variant : variants)
   {
-    Plot::Curve curve{ way.name };
-    std::vector<Table::Cell> row{ way.name };
+    Plot::Curve curve{ variant.name };
+    std::vector<Table::Cell> row{ variant.name };
     for (const double h : { 4.0, 2.0, 1.0 })
     {
-      const double found = cook(h, way.form, way.fill_min, way.whole);
+      const double found = cook(h, variant.form, variant.fill_min, variant.whole);
       curve.add(h, std::abs(found / 23.96 - 1));
       row.emplace_back(found);
       if (h == 1)
-        finding.checks.relative(way.name, "1", 23.96, found, way.fill_min == 0.2 ? 0.03 : std::nan(""));
+        finding.checks.relative(variant.name, "1", 23.96, found, variant.fill_min == 0.2 ? 0.03 : std::nan(""));
     }
     table.add(row);
     plot.curves.push_back(curve);
@@ -199,7 +199,8 @@ void verify_staircase(const Backend& backend, Finding& finding)
                                "voxel edge over the wall's thickness [1]", "relative error [1]",
                                { 0.0625, 0.125, 0.25 }, { { 0.05, 0.3 } });
   plot.y_range = { 5e-4, 0.1 };
-  Table table({ "form", "voxels through the wall", "inner surface", "its scatter", "outer surface", "its scatter" });
+  Table table(
+      { "form", "voxels through the wall", "inner surface", "inner scatter", "outer surface", "outer scatter" });
   for (const auto form : hourglass_forms)
   {
     const std::string name = name_of(form);

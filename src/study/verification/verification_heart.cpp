@@ -21,11 +21,12 @@ Material heart(double kappa)
   material.name = "heart";
   material.law = law_of<physics::Guccione>;
   material.density = 1000;
+  // c, kappa [Pa], bf, bt, bfs; the last three are the direction of the fibre in the beam
   material.parameters = { { 2e3, kappa, 8, 2, 4, 1, 0, 0 } };
   return material;
 }
 
-// height [mm] of the upper edge of the beam's end; n voxels through its height
+// final height [mm] of the upper edge of the beam's end; n voxels through its height
 double beam(int n, double kappa, const Backend& backend)
 {
   Model model = voxel_model({ { 10 * n, n, n } }, 1e-3 / n, heart(kappa));
@@ -37,7 +38,7 @@ double beam(int n, double kappa, const Backend& backend)
   return 1 + 1e3 * mean_displacement(find_equilibrium(model, { backend, 0.14, 1e-3 }).displacements, end)[2];
 }
 
-// direction of the fibre at a point of the wall [m from the centre of the ellipsoids]
+// direction of the fibre at a position in the wall, relative to the centre of the ellipsoids [m]
 std::array<float, 3> wall_fibre(double x, double y, double z)
 {
   const double radius = std::hypot(x, y);
@@ -61,7 +62,7 @@ struct Apex
   double inner, outer;  // distance from the ellipsoids' centre [mm]
 };
 
-// apices of the contracted ellipsoid with voxels of edge h [m]
+// apices of the inflated and contracted ellipsoid, with voxels of edge h [m]
 Apex ellipsoid(double h, double kappa, const Backend& backend)
 {
   const Point centre{ { 10e-3, 10e-3, 20e-3 } };
@@ -87,7 +88,7 @@ Apex ellipsoid(double h, double kappa, const Backend& backend)
   hold(model, [&](const auto& p) { return p[2] > 25e-3 - 0.1 * h; });
   const int rows = static_cast<int>(std::lround(30e-3 / h));
   const double edge = std::acos(5.0 / 17);
-  // from the apex up; normals point into the cavity
+  // rows run from the apex upwards; normals point into the cavity
   add_pressure(model, 15e3,
                grid_mesh(rows, 2 * rows,
                          [&](double s, double t) -> Point

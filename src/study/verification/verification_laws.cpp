@@ -1,4 +1,4 @@
-// forces of the element and the laws, which must be exact but for rounding, and contraction of free bars
+// forces of elements and stresses of laws, which must be exact except for rounding, and contraction of free bars
 
 #include "frontalis/physics/materials/lookup.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -12,9 +12,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 34e3, poisson = 0.49, edge = 1e-3;
+constexpr double young = 34e3, poisson = 0.49, edge = 1e-3;  // young [Pa], edge [m]
 
-using Gradient = std::array<double, 9>;  // row by row
+using Gradient = std::array<double, 9>;  // 3 x 3, row-major
 
 Model small_block(const Material& material, std::int32_t n, HourglassControl hourglass = HourglassControl::scalar)
 {
@@ -70,7 +70,7 @@ std::vector<std::pair<std::string, Material>> every_law()
   return laws;
 }
 
-// stretch along x of a free bar of 4 x 2 x 2 voxels at rest
+// equilibrium stretch along x of a free bar of 4 x 2 x 2 voxels
 double contracted(const Material& material, const Muscle& muscle, float activation, const Backend& backend)
 {
   Model model = voxel_model({ { 4, 2, 2 } }, edge, material);
@@ -86,7 +86,7 @@ double contracted(const Material& material, const Muscle& muscle, float activati
 
 void verify_rigid_motion(const Backend& other, Finding& finding)
 {
-  // Rodrigues' formula
+  // rotation by 1.2 rad about (1, 2, 3) by Rodrigues' formula
   const double length = std::sqrt(14.0), a[3] = { 1 / length, 2 / length, 3 / length };
   const double c = std::cos(1.2), s = std::sin(1.2);
   const double cross[9] = { 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0 };

@@ -15,7 +15,7 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// stress-free stretch across the layers at a given stretch along them, in plane strain
+// stretch across the layers that leaves no stress in this direction, in plane strain
 double free_stretch(double along)
 {
   const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
@@ -27,16 +27,15 @@ double free_stretch(double along)
                       });
 }
 
-// a film on a base: the spacing of voxels, the number of planes of the base, and for each plane of the film, the lowest
-// first, its stiffness over that of the base
+// a film on a base
 struct Layers
 {
-  std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // [m]
-  int base = 0;
-  std::vector<double> film;
+  std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // edges of voxels [m]
+  int base = 0;                                           // planes of voxels
+  std::vector<double> film;  // per plane of voxels, lowest first: Young's modulus over the base's
 };
 
-// compression at which a cell of half a wavelength, `half` voxels, becomes unstable
+// compression (0..1) at which a cell of half a wavelength, `half` voxels long, becomes unstable
 double critical_compression(const Layers& layers, int half)
 {
   VoxelBox box{ { { half, 1, layers.base + static_cast<int>(layers.film.size()) } },
@@ -66,14 +65,14 @@ struct Wrinkles
   double compression = 0;  ///< [%]
 };
 
-// the wrinkles of plate theory
+// wrinkles by plate theory; `contrast`: Young's modulus of the film over the base's
 Wrinkles expected_wrinkles(double contrast)
 {
   return { 2 * std::acos(-1.0) * std::cbrt(contrast / 3), 25 * std::pow(3 / contrast, 2.0 / 3) };
 }
 
-// The wrinkles that need the least compression among half wavelengths from `first` to `last` voxels. `curve` gets the
-// compression of each wavelength; wavelengths are in units of `unit` voxels.
+// The wrinkles that need the least compression, with half wavelengths from `first` to `last` voxels. `curve` gets the
+// critical compression [%] over the wavelength in units of `unit` voxels.
 Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int last, int step, double unit,
                        Plot::Curve& curve)
 {
@@ -98,9 +97,9 @@ Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
   return find_wrinkles(layers, (expected - 4) * film, (expected + 4) * film, film, film, curve);
 }
 
-// Wrinkles of the published skin on hypodermis over bone. Corneum (48 MPa, 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) are
-// replaced by one plate of equal stretching and bending stiffness, so that the corneum cannot wrinkle alone.
-// Wavelengths are in mm; that of the result is measured after the compression.
+// Wrinkles of skin on hypodermis of a depth [m] over bone, for wavelengths around `expected` [m]. Corneum (48 MPa,
+// 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) are replaced by one plate of equal stretching and bending stiffness, so that
+// the corneum cannot wrinkle alone. The resulting wavelength [mm] is measured after the compression.
 Wrinkles skin_wrinkles(double depth, double expected)
 {
   constexpr double young[2] = { 48e6, 81.4e3 }, thickness[2] = { 0.02e-3, 1.8e-3 }, hypodermis = 34e3;
@@ -155,8 +154,8 @@ void verify_wrinkling(const Backend&, Finding& finding)
   finding.checks.relative("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1);
   finding.checks.relative("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1);
   finding.plots.emplace_back("wrinkling", plot);
-  // hypodermis over bone: depth [mm]; wavelength [mm] and compression [%] by plate theory on an elastic layer that is
-  // bonded to bone, ν = 0.49 and free to shear at the plate, and ν = 0.5 and held there
+  // Depth of hypodermis over bone [mm]; wavelength [mm] and compression [%] by plate theory on an elastic layer bonded
+  // to bone: with ν = 0.49 and free tangential motion at the plate, and with ν = 0.5 and none.
   constexpr double plates[][5] = { { 5, 12.46, 7.13, 12.1, 7.3 },
                                    { 3, 10.44, 9.12, 9.7, 9.7 },
                                    { 2, 9.04, 11.61, 8.1, 13 } };
