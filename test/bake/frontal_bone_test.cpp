@@ -188,6 +188,21 @@ struct Walker
   }
 };
 
+// Where the nearest point jumps from the rim of the sheet to another part of it, the field must not: its gradient is
+// longer than 1 only where it does.
+void check_slopes(const CoveredBone& bone)
+{
+  const physics::DistanceField field = view(bone.field());
+  int steep = 0;
+  for (const SlidingNode& node : bone.model.sliding)
+  {
+    physics::FieldValue<double> value{};
+    ASSERT_TRUE(sample(field, field_point(field, point(rest_position(bone.model, node.node))), value));
+    steep += norm(value.gradient) > 1.3 ? 1 : 0;
+  }
+  EXPECT_LE(steep, static_cast<int>(bone.model.sliding.size() / 1000));
+}
+
 void check_paths(const CoveredBone& bone)
 {
   const Model& model = bone.model;
@@ -304,6 +319,7 @@ TEST(FrontalBone, NodesKeepToTheOuterTableOfAMadeBone)
     inside += node.distance < 0 ? 1 : 0;
   }
   EXPECT_GT(inside, 300);
+  check_slopes(bone);
   check_distances(bone);
   check_paths(bone);
 }
@@ -315,6 +331,7 @@ TEST(FrontalBone, NodesKeepToTheOuterTableOfARealBone)
     GTEST_SKIP() << "skipped: the meshes of the head are not here";
   const CoveredBone bone(mesh, { 0, -1, 0 }, 3e-3);
   EXPECT_GT(bone.model.sliding.size(), 500U);
+  check_slopes(bone);
   check_distances(bone);
   check_paths(bone);
 }

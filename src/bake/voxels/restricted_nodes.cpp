@@ -200,7 +200,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                   });
   }
 
-  std::vector<const PreparedSurface*> sheets;  // of the model's constraint surfaces
+  // surface and sheet of each of the model's constraint surfaces
+  std::vector<std::pair<const PreparedSurface*, const PreparedSurface*>> sheets;
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
     const SceneConstraint& constraint = scene.constraints[c];
@@ -217,7 +218,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
       if (index == list.size())
       {
         list.push_back({ sheet.name(), bone, constraint.friction, {} });
-        sheets.push_back(&sheet);
+        sheets.emplace_back(&named_surface(surfaces, sheet.name(), ""), &sheet);
       }
       return static_cast<std::int32_t>(index);
     };
@@ -238,7 +239,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (restrictions[n].kind == Kind::sliding)
       rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
   for (std::size_t s = 0; s < sheets.size(); ++s)
-    model.constraint_surfaces[s].field = distance_field(*sheets[s], rest[s], frame, model, monitor);
+    model.constraint_surfaces[s].field =
+        distance_field(*sheets[s].first, *sheets[s].second, rest[s], frame, model, monitor);
 
   for (std::size_t n = 0; n < nodes; ++n)
   {

@@ -173,10 +173,11 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const Loc
   return keep_triangles(mesh, facing);
 }
 
-SampledField distance_field(const PreparedSurface& sheet, const std::vector<std::array<double, 3>>& rest,
-                            const LocalFrame& frame, const Model& model, BakeMonitor& monitor)
+SampledField distance_field(const PreparedSurface& surface, const PreparedSurface& sheet,
+                            const std::vector<std::array<double, 3>>& rest, const LocalFrame& frame, const Model& model,
+                            BakeMonitor& monitor)
 {
-  if (const auto sphere = sphere_of(sheet))
+  if (const auto sphere = sphere_of(surface))
     return sphere_field(to_array(frame.to_local(sphere->first)), sphere->second);
   const std::vector<std::array<bool, 7>> on_rim = rim_features(sheet.mesh());
   const auto distance = [&](const std::array<double, 3>& local)
@@ -187,8 +188,15 @@ SampledField distance_field(const PreparedSurface& sheet, const std::vector<std:
     const auto triangles = static_cast<std::int32_t>(sheet.mesh().triangles.size());
     const ClosestPoint closest = sheet.tree().closest(p, 1e300, hint < triangles ? hint : -1);
     hint = closest.triangle;
-    if (!on_rim[closest.triangle][closest.feature])
-      return SurfaceDistance(sheet.signed_distance(p, closest));
+    const double signed_distance = sheet.signed_distance(p, closest);
+    const bool at_rim = on_rim[closest.triangle][closest.feature];
+    if (!at_rim && signed_distance < 0)
+      return SurfaceDistance(signed_distance);
+    // Nothing in a closed surface lies above its sheet, though the sheet alone may seem to say so.
+    if (surface.closed() && surface.signed_distance(p, surface.tree().closest(p, closest.distance + 1e-9)) < 0)
+      return SurfaceDistance(-closest.distance);
+    if (!at_rim)
+      return SurfaceDistance(signed_distance);
     const Vector3d away = p - closest.point, &normal = sheet.pseudonormal(closest);
     const double height = away.dot(normal);
     return SurfaceDistance(height, (away - height * normal).norm());

@@ -12,9 +12,10 @@ namespace frontalis
 /// the outward normals, -1: on the other, 0: on both.
 TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const LocalFrame& frame, const Model& model);
 
-/// Field of the distance from a sheet (see SampledField) around nodes at `rest`, in local coordinates. Closed spheres
-/// get their closed form.
-SampledField distance_field(const PreparedSurface& sheet, const std::vector<std::array<double, 3>>& rest,
-                            const LocalFrame& frame, const Model& model, BakeMonitor& monitor);
+/// Field of the distance from a surface's sheet (see SampledField) around nodes at `rest`, in local coordinates. Closed
+/// spheres get their closed form.
+SampledField distance_field(const PreparedSurface& surface, const PreparedSurface& sheet,
+                            const std::vector<std::array<double, 3>>& rest, const LocalFrame& frame, const Model& model,
+                            BakeMonitor& monitor);
 
 }  // namespace frontalis
