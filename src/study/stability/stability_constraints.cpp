@@ -64,7 +64,7 @@ std::pair<double, double> slid(const GuardedTrial& motion)
 
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
-// Advances by the case's `drag` [s] in forty parts, activation(i) being that of part i. Checks the sliding distances
+// Advances by the case's `drag` [s] in forty parts, activation(i) being that of part i. Checks the kept levels
 // after each, and finally that nodes have travelled `least_travel` [mm] along x.
 void drag(
     CaseRun& run, GuardedTrial& motion, const std::string& of, double least_travel,
