@@ -1,98 +1,86 @@
 #include "cuda/backend/highest_frequency.hpp"
-#include "cuda/backend/device_archive.hpp"
 
 namespace frontalis
 {
 namespace cuda
 {
 
-// The frequency bounds that the latest plans reported limit the steps of later plans, so they belong to the state.
+// The state arrays one after the other in device memory, and what the host knows of the motion.
 struct CudaSolver::State : BackendState
 {
   cudaStream_t stream = nullptr;  // stream on which the copy is queued
-  DeviceArray<float4> u;
-  DeviceArray<float> v[3];
-  DeviceModel::Contacts contacts;
-  DeviceViscosity::Kept viscosity;
-  DeviceBook book;
-  DeviceArray<std::uint32_t> seen{ 1 };
-  bool has_mode = false;
-  DeviceArray<float4> mode;
-  double mode_largest = 0, mode_length = 0;
-  std::int64_t plans = 0;
-  bool still_moved = false;
+  DeviceArray<char> bytes;
+  std::size_t mode_bytes = 0;  // those of a mode of the highest frequency, which not every state has
+  struct
+  {
+    std::int64_t plans = 0;
+    double mode_largest = 0, mode_length = 0;
+    bool has_mode = false, still_moved = false;
+  } host;
 
   void archive(ByteArchive& archive) override
   {
     require(cudaStreamSynchronize(stream), "waiting for a snapshot");
-    to_host(u, archive);
-    for (auto& component : v)
-      to_host(component, archive);
-    contacts.archive(archive);
-    viscosity.archive(archive);
-    book.archive(archive);
-    to_host(seen, archive);
-    archive(has_mode);
-    to_host(mode, archive);
-    archive(mode_largest)(mode_length)(plans)(still_moved);
+    const std::size_t without_mode = bytes.size() - (host.has_mode ? mode_bytes : 0);
+    archive(host.plans)(host.mode_largest)(host.mode_length)(host.has_mode)(host.still_moved);
+    std::vector<char> values;
+    if (!archive.reads())
+      bytes.download(values);
+    archive(values);
+    const std::size_t size = without_mode + (host.has_mode ? mode_bytes : 0);
+    if (values.size() != size)
+      throw Error("a state of " + std::to_string(values.size()) + " bytes; allowed are " + std::to_string(size));
+    if (archive.reads())
+      bytes = DeviceArray<char>(values);
   }
 };
 
-void CudaSolver::save(std::unique_ptr<BackendState>& to) const
+// Copies between the state arrays, some of which are in host memory, and `state`. `back`: to the arrays.
+void CudaSolver::copy_state(const State& state, bool back)
+{
+  ArrayList list;
+  list_arrays(list);
+  char* at = state.bytes.data();
+  for (const auto& array : list.state())
+  {
+    require(cudaMemcpyAsync(back ? array.data : at, back ? at : array.data, array.bytes, cudaMemcpyDefault, stream_),
+            "copying the state");
+    at += array.bytes;
+  }
+}
+
+void CudaSolver::save(std::unique_ptr<BackendState>& to)
 {
   if (!to)
     to = std::make_unique<State>();
-  State& state = static_cast<State&>(*to);
+  auto& state = static_cast<State&>(*to);
+  ArrayList list;
+  list_arrays(list);
+  if (state.bytes.size() != list.state_bytes())
+    state.bytes = DeviceArray<char>(list.state_bytes());
   state.stream = stream_;
-  state.u.assign(u_[present_], stream_);
-  for (int axis = 0; axis < 3; ++axis)
-    state.v[axis].assign(v_[axis], stream_);
-  device_.save(state.contacts, stream_);
-  device_.viscosity().save(state.viscosity, stream_);
-  if (account_)
-    state.book.assign(account_->book(), stream_);
-  if (plans_ > 0)
-    require(cudaMemcpyAsync(state.seen.data(), slots_[(plans_ - 1) % plan_slots].controls.data(), sizeof(std::uint32_t),
-                            cudaMemcpyDeviceToDevice, stream_),
-            "copying the frequency bound");
-  state.has_mode = mode_ != nullptr;
-  if (mode_)
-  {
-    state.mode.assign(mode_->mode, stream_);
-    state.mode_largest = mode_->largest;
-    state.mode_length = mode_->length;
-  }
-  state.plans = plans_;
-  state.still_moved = still_moved_;
+  state.mode_bytes = u_[0].bytes();
+  state.host = { plans_, mode_ ? mode_->largest : 0, mode_ ? mode_->length : 0, mode_ != nullptr, still_moved_ };
+  copy_state(state, false);
 }
 
 void CudaSolver::restore(const BackendState& from)
 {
-  const State& state = static_cast<const State&>(from);
-  u_[present_].assign(state.u, stream_);
-  for (int axis = 0; axis < 3; ++axis)
-    v_[axis].assign(state.v[axis], stream_);
-  device_.restore(state.contacts, stream_);
-  device_.viscosity().restore(state.viscosity, stream_);
-  if (account_)
-    account_->restore(state.book, stream_);
-  if (!state.has_mode)
+  const auto& state = static_cast<const State&>(from);
+  if (!state.host.has_mode)
     mode_.reset();
-  else
+  else if (!mode_)
+    mode_.reset(new Mode(device_.nodes()));
+  if (mode_)
   {
-    if (!mode_)
-      mode_.reset(new Mode(device_.nodes()));
-    mode_->mode.assign(state.mode, stream_);
-    mode_->largest = state.mode_largest;
-    mode_->length = state.mode_length;
+    mode_->largest = state.host.mode_largest;
+    mode_->length = state.host.mode_length;
   }
-  plans_ = state.plans;
-  still_moved_ = state.still_moved;
+  plans_ = state.host.plans;
+  still_moved_ = state.host.still_moved;
+  copy_state(state, true);
+  // the host reads the frequency bound that was copied
   synchronise();
-  if (plans_ > 0)
-    require(cudaMemcpy(slots_[(plans_ - 1) % plan_slots].seen.data(), state.seen.data(), sizeof(std::uint32_t),
-                       cudaMemcpyDeviceToHost),
-            "copying the frequency bound");
 }
 
 }  // namespace cuda

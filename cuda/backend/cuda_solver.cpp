@@ -37,9 +37,6 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
   still_ = DeviceArray<std::uint32_t>(still);
   // A stream that synchronises with the default stream, so that events recorded there enclose this solver's work.
   require(cudaStreamCreate(&stream_), "making a stream");
-  require(cudaStreamCreateWithFlags(&beside_, cudaStreamNonBlocking), "making a stream");
-  for (cudaEvent_t* const event : { &asked_, &found_ })
-    require(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "making an event");
   const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2) +
                                (discretisation_.viscous_terms > 0 ? 128 * sizeof(float) : 0);
   for (auto& slot : slots_)
@@ -65,12 +62,8 @@ CudaSolver::~CudaSolver()
   for (auto& slot : slots_)
     if (slot.done != nullptr)
       cudaEventDestroy(slot.done);
-  for (const auto event : { asked_, found_ })
-    if (event != nullptr)
-      cudaEventDestroy(event);
-  for (const auto stream : { stream_, beside_ })
-    if (stream != nullptr)
-      cudaStreamDestroy(stream);
+  if (stream_ != nullptr)
+    cudaStreamDestroy(stream_);
 }
 
 void CudaSolver::upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const
@@ -96,43 +89,44 @@ void CudaSolver::rest()
   upload_displacements({}, u_[0]);
   require(cudaMemcpy(u_[1].data(), u_[0].data(), u_[0].bytes(), cudaMemcpyDeviceToDevice), "copying on the device");
   for (auto& component : v_)
-    require(cudaMemset(component.data(), 0, component.bytes()), "clearing velocities");
-  device_.reset_contacts();
-  device_.viscosity().reset();
+    component.clear();
+  device_.reset();
   mode_.reset();
   require(cudaDeviceSynchronize(), "coming to rest");
 }
 
-void CudaSolver::effect_switched(Effect effect)
+void CudaSolver::effects_switched()
 {
   synchronise();
   device_.run(*model_, discretisation_, conditions_.running);
   launch_ = choose_launch(device_);
-  if (effect == Effect::viscosity)
-    device_.viscosity().reset();
-  if (effect == Effect::sliding || effect == Effect::friction)
-    device_.reset_contacts();
   // The bounds of the plans under way belong to other effects, so they are not used.
   plans_ = 0;
 }
 
-void CudaSolver::list_arrays(ArrayList& list) const
+void CudaSolver::list_arrays(ArrayList& list)
 {
   device_.list_arrays(effect_of_fibres(*model_), list);
   for (const auto& u : u_)
     list.add(Effect::elasticity, "motion", u.bytes());
+  list.add_state(u_[present_].data(), u_[present_].bytes());
   for (const auto& v : v_)
-    list.add(Effect::elasticity, "motion", v.bytes());
+    list_state(list, Effect::elasticity, "motion", v);
   list.add(Effect::elasticity, "skin", skin_.bytes() + landmarks_.bytes() + skin_output_.bytes());
   list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
+  // the frequency bound of the latest plan limits the steps of later ones
+  list.add_state(slots_[(plans_ + plan_slots - 1) % plan_slots].seen.data(), sizeof(std::uint32_t));
   if (account_)
     account_->list_arrays(effect_of_fibres(*model_), list);
   if (monitor_)
     list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
   if (mode_)
+  {
     list.add(Effect::elasticity, "mode of the highest frequency", mode_->bytes());
+    list.add_state(mode_->mode.data(), mode_->mode.bytes());
+  }
 }
 
 void CudaSolver::set(NodalField field, const NodalVectors& in)
@@ -208,8 +202,7 @@ void CudaSolver::skin(SkinState& out)
 }
 
 // Long plans hide the host's work between them, but the time step must follow a tissue that stiffens: plans of 0.5 ms
-// are short enough for that. Searches for tangent planes run beside a plan and take about 64 steps. Checks, and looks
-// at all displacements, wait for the device and are therefore rare.
+// are short enough for that. Checks, and looks at all displacements, wait for the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
@@ -221,7 +214,7 @@ BackendTraits CudaSolver::traits() const
   traits.description = fmt::format("cuda (float, {}, {}{})", device.name, cut, remark_);
   traits.seconds_per_plan = 0.5e-3;
   traits.fewest_steps_per_plan = 32;
-  traits.most_steps_per_plan = device_.contacts() > 0 ? 64 : 128;
+  traits.most_steps_per_plan = 128;
   traits.steps_per_look = model_->nodes.size() > 1000000 ? 2048 : 512;
   traits.steps_per_check = 2048;
   return traits;

@@ -32,12 +32,12 @@ public:
   ~CudaSolver() override;
 
   BackendTraits traits() const override;
-  void list_arrays(ArrayList& list) const override;
+  void list_arrays(ArrayList& list) override;
   double run(const StepPlan& plan) override;
-  void effect_switched(Effect effect) override;
+  void effects_switched() override;
   void get(NodalField field, NodalVectors& out) const override;
   void set(NodalField field, const NodalVectors& in) override;
-  void save(std::unique_ptr<BackendState>& to) const override;
+  void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
   void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
   std::optional<double> highest_frequency_squared(int most_iterations) override;
@@ -61,6 +61,7 @@ private:
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   struct State;
+  void copy_state(const State& state, bool back);
   struct Mode;
   struct ModeDeleter
   {
@@ -77,8 +78,6 @@ private:
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
   std::uint32_t steps_before_ = 0;    // steps queued since the solver was made
   cudaStream_t stream_ = nullptr;
-  cudaStream_t beside_ = nullptr;  // stream of the searches that run beside a plan's steps, between these events
-  cudaEvent_t asked_ = nullptr, found_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;
   int present_ = 0;           // index of the buffer that holds the present displacements

@@ -11,10 +11,6 @@ namespace frontalis
 namespace cuda
 {
 
-// A node requests its next tangent plane this many steps before it leaves the present one, because a search takes about
-// as long as that. A longer lead makes the predicted position less accurate.
-constexpr double steps_of_lead = 10;
-
 void CudaSolver::kick(StepArguments& g, double seconds) const
 {
   g.kick = seconds;
@@ -37,7 +33,6 @@ StepArguments CudaSolver::arguments(double dt) const
   g.dt_exact = dt;
   g.rate = 1 / dt;
   g.friction_response = physics::friction_response(dt);
-  g.lead = g.searches == 0 ? static_cast<float>(steps_of_lead * dt) : 0;
   kick(g, dt);
   return g;
 }
@@ -133,17 +128,6 @@ double CudaSolver::run(const StepPlan& plan)
     if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
-  const bool from_plan_to_plan = g.searches > 0;
-  // Patches need this only before the first plan: they find later planes within their launches.
-  if (from_plan_to_plan || plans_ == 0)
-    require(launch_renewals(g, stream_), "renewing contacts");
-  if (from_plan_to_plan)
-  {
-    require(cudaEventRecord(asked_, stream_), "recording an event");
-    require(cudaStreamWaitEvent(beside_, asked_), "waiting for an event");
-    require(launch_renewals_ahead(g, beside_), "renewing contacts ahead");
-    require(cudaEventRecord(found_, beside_), "recording an event");
-  }
   int done = 0;
   if (still_moved_ || plan.first_kick != plan.dt)
   {
@@ -167,8 +151,6 @@ double CudaSolver::run(const StepPlan& plan)
     relax_after(end - 1);
     done = end;
   }
-  if (from_plan_to_plan)
-    require(cudaStreamWaitEvent(stream_, found_), "waiting for an event");
   require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
           "copying the frequency bound");
   require(cudaEventRecord(slot.done, stream_), "recording an event");

@@ -9,16 +9,6 @@ namespace frontalis
 namespace cuda
 {
 
-/// Work on nodes and work of fibres since the account was opened.
-struct DeviceBook
-{
-  DeviceArray<double> damping, constraint, beside, friction, load, fibre_work;
-  DeviceArray<float2> memory;
-
-  void assign(const DeviceBook& from, cudaStream_t stream);
-  void archive(ByteArchive& archive);
-};
-
 /// Sums of work in device memory. The host adds up the partial sums on request.
 class DeviceAccount
 {
@@ -34,16 +24,15 @@ public:
   /// To be called before and after each step. g.first selects the displacements before the step, then after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
-  const DeviceBook& book() const { return book_; }
-  void restore(const DeviceBook& book, cudaStream_t stream) { book_.assign(book, stream); }
   /// Returns all work except that of viscous stresses. The stream must be idle.
   Work work() const;
-  void list_arrays(Effect of_fibres, ArrayList& list) const;
+  void list_arrays(Effect of_fibres, ArrayList& list);
 
 private:
   FibreVoxels fibres() const;
 
-  DeviceBook book_;
+  DeviceArray<double> damping_, constraint_, beside_, friction_, load_, fibre_work_;
+  DeviceArray<float2> memory_;
   DeviceArray<float> before_[3], free_[3];
   DeviceArray<std::uint32_t> loaded_;
   DeviceArray<FibreVoxel> fibre_voxels_;

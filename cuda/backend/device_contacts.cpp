@@ -1,92 +1,128 @@
-#include "solver/contact/archive_contacts.hpp"
-#include "cuda/backend/device_archive.hpp"
 #include "cuda/backend/device_model.hpp"
-#include "frontalis/error.hpp"
 
-#include <string>
+#include "frontalis/model/sample_field.hpp"
+
+#include <algorithm>
+#include <cstring>
 
 namespace frontalis
 {
 namespace cuda
 {
 
-void DeviceModel::Contacts::archive(ByteArchive& archive)
+DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32_t>& device_node)
 {
-  const auto contacts_to_host = [&archive](auto& contacts, auto entries)
+  add_fields(model);
+  const auto surface_of = [&model](const SlidingNode& node) -> const ConstraintSurface&
+  { return model.constraint_surfaces[node.surface]; };
+  // nodes with friction come first, then the order in which warps process them
+  std::vector<SlidingNode> nodes = model.sliding;
+  std::sort(nodes.begin(), nodes.end(),
+            [&](const SlidingNode& a, const SlidingNode& b)
+            {
+              const bool rubs = surface_of(a).friction > 0;
+              return rubs != (surface_of(b).friction > 0) ? rubs : device_node[a.node] < device_node[b.node];
+            });
+  const std::size_t count = nodes.size();
+  std::vector<SlidingNodeField> sliding;
+  std::vector<float4> at, samples(sample_words * count, float4{ 0, 0, 0, 0 });
+  std::vector<float> friction;
+  std::vector<GlidingNode> glides;
+  float none = 0;
+  std::memcpy(&none, &no_cell, sizeof none);
+  for (const SlidingNode& node : nodes)
   {
-    contacts.download(entries);
-    archive_contacts(entries, archive);
-    contacts.upload(entries.data(), entries.size());
-  };
-  // kernels keep pointers to these arrays, so their addresses and sizes must not change
-  const auto same_count_to_host = [&archive](auto& array, const char* what)
-  {
-    const std::size_t count = array.size();
-    to_host(array, archive);
-    if (array.size() != count)
-      throw Error("a motion with " + std::to_string(array.size()) + " " + what + ": allowed are " +
-                  std::to_string(count));
-  };
-  contacts_to_host(sliding, std::vector<SlidingContact>());
-  same_count_to_host(planes, "tangent planes");
-  same_count_to_host(ahead, "tangent planes ahead");
-  same_count_to_host(rubbing, "nodes with friction");
-  same_count_to_host(gliding, "nodes on moving surfaces");
-  contacts_to_host(gliding_searches, std::vector<GlidingSearch>());
-  same_count_to_host(searching, "searches of planes ahead");
-}
-
-void DeviceModel::save(Contacts& to, cudaStream_t stream) const
-{
-  to.sliding.assign(sliding_, stream);
-  to.planes.assign(contact_planes_, stream);
-  to.ahead.assign(planes_ahead_, stream);
-  to.rubbing.assign(rubbing_, stream);
-  to.gliding.assign(gliding_, stream);
-  to.gliding_searches.assign(gliding_searches_, stream);
-  to.searching.assign(searching_, stream);
-}
-
-void DeviceModel::restore(const Contacts& from, cudaStream_t stream)
-{
-  sliding_.assign(from.sliding, stream);
-  contact_planes_.assign(from.planes, stream);
-  planes_ahead_.assign(from.ahead, stream);
-  rubbing_.assign(from.rubbing, stream);
-  gliding_.assign(from.gliding, stream);
-  gliding_searches_.assign(from.gliding_searches, stream);
-  searching_.assign(from.searching, stream);
-}
-
-void DeviceModel::reset_contacts()
-{
-  const std::vector<TangentPlane> unknown(contact_planes_.size(), TangentPlane{ { 0, 0, 0, 0 }, { 0, 0, 0, -1 } });
-  static_assert(nothing_ahead == -1, "a plane that is not known is none ahead either");
-  contact_planes_.upload(unknown.data(), unknown.size());
-  planes_ahead_.upload(unknown.data(), unknown.size());
-  std::vector<RubbingContact> rubbing;
-  rubbing_.download(rubbing);
-  for (auto& contact : rubbing)
-    contact.pressing = contact.turning = 0;
-  rubbing_.upload(rubbing.data(), rubbing.size());
-  std::vector<GlidingContact> gliding;
-  gliding_.download(gliding);
-  for (auto& contact : gliding)
-  {
-    contact.pressing = 0;
-    contact.plane = {};
-    contact.plane.slip = contact.plane.limit = -1;
-    contact.turned_to = { 0, 0, 0 };
+    const ConstraintSurface& surface = surface_of(node);
+    const auto rest = rest_position(model, node.node);
+    const auto point = physics::field_point(view(surface.field), { rest[0], rest[1], rest[2] });
+    const std::size_t index = sliding.size();
+    if (surface.field.radius > 0)
+      samples[index].x = static_cast<float>(surface.field.radius + node.distance);
+    else
+      samples[(sample_words - 1) * count + index].w = static_cast<float>(1 / surface.field.spacing);
+    at.push_back({ static_cast<float>(point.offset.x), static_cast<float>(point.offset.y),
+                   static_cast<float>(point.offset.z), none });
+    sliding.push_back(
+        { node.surface, { point.cell[0], point.cell[1], point.cell[2] }, static_cast<float>(node.distance) });
+    if (surface.friction > 0)
+      friction.push_back(static_cast<float>(surface.friction));
+    node_.push_back(node.node);
+    gliding_.push_back(surface.bone < 0 ? -1 : static_cast<std::int32_t>(glides.size()));
+    if (surface.bone >= 0)
+      glides.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, static_cast<std::int32_t>(index) });
   }
-  gliding_.upload(gliding.data(), gliding.size());
-  std::vector<GlidingSearch> searches;
-  gliding_searches_.download(searches);
-  for (auto& search : searches)
+  sliding_ = DeviceArray<SlidingNodeField>(sliding);
+  at_ = DeviceArray<float4>(at);
+  samples_ = DeviceArray<float4>(samples);
+  planes_ = DeviceArray<float4>(count);
+  friction_ = DeviceArray<float>(friction);
+  pressing_ = DeviceArray<float>(friction.size());
+  glides_ = DeviceArray<GlidingNode>(glides);
+  reset();
+}
+
+void DeviceContacts::add_fields(const Model& model)
+{
+  std::vector<physics::DistanceField> fields;
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
   {
-    search.contact.forget();
-    search.state = nothing_ahead;
+    tables_.emplace_back(surface.field.table);
+    field_samples_.emplace_back(surface.field.samples);
+    fields.push_back(view(surface.field));
+    fields.back().table = tables_.back().data();
+    fields.back().samples = field_samples_.back().data();
   }
-  gliding_searches_.upload(searches.data(), searches.size());
+  fields_ = DeviceArray<physics::DistanceField>(fields);
+}
+
+void DeviceContacts::add_tasks(std::vector<NodeTask>& task_of) const
+{
+  for (std::size_t index = 0; index < node_.size(); ++index)
+  {
+    const bool glides = gliding_[index] >= 0;
+    task_of[node_[index]].of[glides ? node_gliding : node_sliding] =
+        glides ? gliding_[index] : static_cast<std::int32_t>(index);
+  }
+}
+
+void DeviceContacts::describe(StepArguments& g) const
+{
+  g.fields = fields_.data();
+  g.sliding = sliding_.data();
+  g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
+  g.sliding_at = at_.data();
+  g.samples = samples_.data();
+  g.planes = planes_.data();
+  g.friction = friction_.data();
+  g.pressing = pressing_.data();
+  g.rubbing_count = rubs_ ? static_cast<std::uint32_t>(friction_.size()) : 0;
+  g.gliding = glides_.data();
+}
+
+void DeviceContacts::list_arrays(ArrayList& list)
+{
+  for (std::size_t s = 0; s < tables_.size(); ++s)
+    list.add(Effect::sliding, "fields of surfaces", tables_[s].bytes() + field_samples_[s].bytes());
+  list.add(Effect::sliding, "fields of surfaces", fields_.bytes());
+  list.add(Effect::sliding, "samples at nodes", sliding_.bytes() + at_.bytes() + samples_.bytes() + glides_.bytes());
+  list_state(list, Effect::sliding, "tangent planes", planes_);
+  list.add(Effect::friction, "nodes that rub", friction_.bytes());
+  list_state(list, Effect::friction, "nodes that rub", pressing_);
+}
+
+void DeviceContacts::run(EffectSet running)
+{
+  rubs_ = running.has(Effect::sliding) && running.has(Effect::friction);
+  if (!running.has(Effect::sliding))
+    planes_.clear();
+  if (!rubs_)
+    pressing_.clear();
+}
+
+void DeviceContacts::reset()
+{
+  planes_.clear();
+  pressing_.clear();
 }
 
 }  // namespace cuda

@@ -30,9 +30,10 @@ void DeviceModel::run(const Model& model, const Discretisation& discretisation, 
     tasks_.download(whole_.tasks);
     patch_tasks_.download(whole_.patch_tasks);
   }
-  viscosity_.run(running);
+  for (EffectPart* const part : parts())
+    part->run(running);
   viscosity_.describe(constants_);
-  loads_.run(running);
+  contacts_.describe(constants_);
   constants_.load_relief = running.has(Effect::gravity) ? loads_.relief() : nullptr;
   run_fibres(model, discretisation, running);
   run_tasks(running);
@@ -86,9 +87,6 @@ void DeviceModel::run_tasks(EffectSet running)
     if (!slides && word >= 0)
       word = patch_task::none;
   patch_tasks_.upload(words.data(), words.size());
-  constants_.sliding_count = slides ? static_cast<std::uint32_t>(sliding_.size()) : 0;
-  constants_.gliding_count = slides ? static_cast<std::uint32_t>(gliding_.size()) : 0;
-  constants_.rubbing_count = slides && running.has(Effect::friction) ? static_cast<std::uint32_t>(rubbing_.size()) : 0;
 }
 
 // The part of Effects that follows from the tasks of nodes.
@@ -122,7 +120,7 @@ void DeviceModel::choose_effects(EffectSet running)
   launch_.effects = effects_;
 }
 
-void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list) const
+void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
 {
   const auto add = [&list](Effect effect, const char* what, const auto&... arrays)
   { (list.add(effect, what, arrays.bytes()), ...); };
@@ -133,17 +131,15 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list) const
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
-  add(Effect::sliding, "contacts", sliding_, contact_planes_, planes_ahead_);
-  add(Effect::friction, "nodes that rub", rubbing_);
-  add(Effect::sliding, "nodes that glide", gliding_, gliding_searches_);
-  add(Effect::sliding, "searches", searching_);
-  for (const auto& boxes : boxes_)
-    add(Effect::sliding, "surfaces", boxes);
-  for (const auto& triangles : triangles_)
-    add(Effect::sliding, "surfaces", triangles);
   add(Effect::elasticity, "what nodes do", tasks_, patch_tasks_);
-  loads_.list_arrays(list);
-  viscosity_.list_arrays(list);
+  for (EffectPart* const part : parts())
+    part->list_arrays(list);
+}
+
+void DeviceModel::reset()
+{
+  for (EffectPart* const part : parts())
+    part->reset();
 }
 
 }  // namespace cuda

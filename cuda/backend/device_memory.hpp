@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/solver/backend.hpp"
+#include "solver/stepping/array_list.hpp"
 
 #include <cuda_runtime_api.h>
 
@@ -64,13 +65,11 @@ public:
       require(cudaMemcpy(host.data(), data_, bytes(), cudaMemcpyDeviceToHost), "copying from the device");
   }
 
-  /// Copies the size and values of another array on the device, in stream order.
-  void assign(const DeviceArray& from, cudaStream_t stream)
+  /// Sets all bytes to zero.
+  void clear() const
   {
-    if (size_ != from.size_)
-      *this = DeviceArray(from.size_);
     if (size_ > 0)
-      require(cudaMemcpyAsync(data_, from.data_, bytes(), cudaMemcpyDeviceToDevice, stream), "copying on the device");
+      require(cudaMemset(data_, 0, bytes()), "clearing an array");
   }
 
 private:
@@ -83,6 +82,14 @@ private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };
+
+/// Lists an array that holds state of the motion.
+template <class T>
+void list_state(ArrayList& list, Effect effect, const std::string& what, const DeviceArray<T>& array)
+{
+  list.add(effect, what, array.bytes());
+  list.add_state(array.data(), array.bytes());
+}
 
 /// Page-locked host memory, for copies that overlap with work of the device.
 template <class T>

@@ -2,7 +2,6 @@
 
 #include "frontalis/solver/backend.hpp"
 #include "solver/stepping/step_bound.hpp"
-#include "solver/contact/surface_tree.hpp"
 
 #include <fmt/format.h>
 
@@ -34,12 +33,6 @@ struct HashEntry
   }
 };
 
-std::array<double, 3> rest_position(const Model& model, std::int32_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 // Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
 void expect_room(const Model& model, const VoxelCut& cut)
 {
@@ -60,6 +53,12 @@ void expect_room(const Model& model, const VoxelCut& cut)
 }
 
 }  // namespace
+
+std::array<double, 3> rest_position(const Model& model, std::int32_t node)
+{
+  const auto& n = model.nodes[node];
+  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
+}
 
 Effects effects_of(const Model& model, const Discretisation& discretisation)
 {
@@ -87,11 +86,12 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
-                 cut.patches != nullptr)
+                 cut.patches != nullptr),
+      contacts_(model, device_node_)
 {
   palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
-  std::vector<NodeTask> tasks = add_tasks(model, cut.searches);
+  std::vector<NodeTask> tasks = add_tasks(model);
   // nodes that never move get no inverse mass
   if (discretisation.held.size() > still_nodes_.size())
   {
@@ -135,19 +135,10 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.load_begin = loads_.begin();
   g.vertex_force = loads_.vertex_force();
   g.load_ramp = loads_.ramp();
-  g.sliding = sliding_.data();
-  g.contact_planes = contact_planes_.data();
-  g.planes_ahead = planes_ahead_.data();
-  g.sliding_count = static_cast<std::uint32_t>(sliding_.size());
-  g.rubbing = rubbing_.data();
-  g.rubbing_count = static_cast<std::uint32_t>(rubbing_.size());
-  g.gliding = gliding_.data();
-  g.gliding_searches = gliding_searches_.data();
-  g.searching = searching_.data();
-  g.gliding_count = static_cast<std::uint32_t>(gliding_.size());
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
+  contacts_.describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
@@ -248,67 +239,11 @@ void DeviceModel::add_fibres(const Model& model, const Discretisation& discretis
   fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
 }
 
-void DeviceModel::add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of)
-{
-  if (model.sliding.empty())
-    return;
-  std::vector<SurfaceSearch> surfaces;
-  for (const auto& surface : model.constraint_surfaces)
-  {
-    const SurfaceTree tree(surface.mesh);
-    boxes_.emplace_back(tree.boxes());
-    triangles_.emplace_back(tree.triangles());
-    surfaces.push_back(
-        { boxes_.back().data(), triangles_.back().data(), static_cast<std::int32_t>(tree.boxes().size()) });
-  }
-  // nodes with friction come first, then the order in which warps process them
-  const auto rubs = [&model](const SlidingNode& node)
-  {
-    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    return surface.bone < 0 && surface.friction > 0;
-  };
-  std::vector<SlidingNode> nodes = model.sliding;
-  std::sort(nodes.begin(), nodes.end(),
-            [&](const SlidingNode& a, const SlidingNode& b)
-            { return rubs(a) != rubs(b) ? rubs(a) : device_node_[a.node] < device_node_[b.node]; });
-  std::vector<SlidingContact> sliding;
-  std::vector<RubbingContact> rubbing;
-  std::vector<GlidingContact> gliding;
-  std::vector<GlidingSearch> gliding_searches;
-  for (const auto& node : nodes)
-  {
-    const auto rest = rest_position(model, node.node);
-    const SurfaceContact contact(surfaces[node.surface], node.distance);
-    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    if (rubs(node))
-      rubbing.push_back({ static_cast<float>(surface.friction), 0, 0 });
-    if (surface.bone < 0)
-    {
-      task_of[node.node].of[node_sliding] = static_cast<std::int32_t>(sliding.size());
-      sliding.push_back({ { rest[0], rest[1], rest[2] }, contact, device_node_[node.node], -1, 0, 0 });
-      continue;
-    }
-    task_of[node.node].of[node_gliding] = static_cast<std::int32_t>(gliding.size());
-    gliding.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, surface.friction, 0, {}, {}, {} });
-    gliding_searches.push_back({ contact, device_node_[node.node], -1, nothing_ahead, {}, {} });
-  }
-  sliding_ = DeviceArray<SlidingContact>(sliding);
-  contact_planes_ = DeviceArray<TangentPlane>(sliding.size());
-  planes_ahead_ = DeviceArray<TangentPlane>(sliding.size());
-  rubbing_ = DeviceArray<RubbingContact>(rubbing);
-  gliding_ = DeviceArray<GlidingContact>(gliding);
-  gliding_searches_ = DeviceArray<GlidingSearch>(gliding_searches);
-  const std::size_t groups = (nodes.size() + search_group - 1) / search_group;
-  constants_.searches = searches;
-  searching_ = DeviceArray<SurfaceContact>(std::vector<SurfaceContact>(groups * searches));
-  reset_contacts();
-}
-
 // Lists the loads and restrictions of nodes, sorted by device node. Nodes that never move have no tasks.
-std::vector<NodeTask> DeviceModel::add_tasks(const Model& model, std::uint32_t searches)
+std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
-  add_sliding(model, searches, task_of);
+  contacts_.add_tasks(task_of);
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
     task_of[loads_.nodes()[l]].of[node_load] = static_cast<std::int32_t>(l);
   std::vector<PrescribedMotion> prescribed;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "cuda/backend/device_memory.hpp"
+#include "cuda/backend/device_contacts.hpp"
 #include "cuda/backend/device_surface.hpp"
 #include "cuda/backend/device_viscosity.hpp"
 #include "solver/stepping/discretisation.hpp"
-#include "frontalis/byte_archive.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -18,6 +18,8 @@ namespace cuda
 /// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
+std::array<double, 3> rest_position(const Model& model, std::int32_t node);
+
 /// The effects that a model's kernels must compute because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
@@ -27,7 +29,6 @@ struct CutChoice
   PatchSettings patches{ 0, 0 };  ///< first number of turns to try; 0 turns: use strips
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
-  std::uint32_t searches = search_group;  ///< StepArguments::searches, for strips
 };
 
 /// The patches or strips of a model.
@@ -37,14 +38,13 @@ struct VoxelCut
 
   std::unique_ptr<VoxelPatches> patches;
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
-  std::uint32_t searches = 0;           ///< StepArguments::searches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
   /// For each place in the partition, 1 + the number of its model voxel, or 0 if it is empty.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
-/// A model in device memory: its constant data and the contacts of its sliding nodes.
+/// A model in device memory, apart from the motion of its nodes.
 class DeviceModel
 {
 public:
@@ -55,23 +55,9 @@ public:
   StepArguments arguments() const;
   /// Switches to these effects. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
-  void list_arrays(Effect of_fibres, ArrayList& list) const;
-  /// Returns all contacts to their state at rest.
-  void reset_contacts();
-  /// The state of the contacts of sliding nodes.
-  struct Contacts
-  {
-    DeviceArray<SlidingContact> sliding;
-    DeviceArray<TangentPlane> planes, ahead;
-    DeviceArray<RubbingContact> rubbing;
-    DeviceArray<GlidingContact> gliding;
-    DeviceArray<GlidingSearch> gliding_searches;
-    DeviceArray<SurfaceContact> searching;
-
-    void archive(ByteArchive& archive);
-  };
-  void save(Contacts& to, cudaStream_t stream) const;
-  void restore(const Contacts& from, cudaStream_t stream);
+  void list_arrays(Effect of_fibres, ArrayList& list);
+  /// Brings all effects to their state at rest.
+  void reset();
 
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
@@ -83,9 +69,7 @@ public:
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
-  std::size_t contacts() const { return sliding_.size() + gliding_.size(); }
-  /// Number of entries of StepArguments::friction_work.
-  std::size_t friction_works() const { return rubbing_.size() + gliding_.size(); }
+  const DeviceContacts& contacts() const { return contacts_; }
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -94,15 +78,16 @@ private:
   DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut);
   std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
   void add_fibres(const Model& model, const Discretisation& discretisation);
-  std::vector<NodeTask> add_tasks(const Model& model, std::uint32_t searches);
+  std::vector<NodeTask> add_tasks(const Model& model);
   void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
                    const std::vector<std::uint32_t>& palette_entry);
-  void add_sliding(const Model& model, std::uint32_t searches, std::vector<NodeTask>& task_of);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
+
+  std::array<EffectPart*, 3> parts() { return { { &loads_, &viscosity_, &contacts_ } }; }
 
   /// The arrays with all effects switched on, kept from the first switch onwards.
   struct Whole
@@ -136,18 +121,11 @@ private:
   DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;
-  DeviceArray<SlidingContact> sliding_;
-  DeviceArray<TangentPlane> contact_planes_, planes_ahead_;
-  DeviceArray<RubbingContact> rubbing_;
-  DeviceArray<GlidingContact> gliding_;
-  DeviceArray<GlidingSearch> gliding_searches_;
-  DeviceArray<SurfaceContact> searching_;
-  std::vector<DeviceArray<SurfaceSearch::Box>> boxes_;
-  std::vector<DeviceArray<SurfaceSearch::Triangle>> triangles_;
   DeviceArray<PrescribedMotion> prescribed_;
   DeviceArray<RigidMotion> rigid_;
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
+  DeviceContacts contacts_;
 };
 
 }  // namespace cuda

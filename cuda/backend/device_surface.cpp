@@ -151,7 +151,7 @@ void DeviceLoads::run(EffectSet running)
   vertex_force_.upload((runs_ ? traction_ : none).data(), traction_.size());
 }
 
-void DeviceLoads::list_arrays(ArrayList& list) const
+void DeviceLoads::list_arrays(ArrayList& list)
 {
   const Effect effect = vertex_force_.size() > 0 ? Effect::surface_loads : Effect::gravity;
   list.add(effect, "parts of a surface's forces", begin_.bytes() + parts_.bytes() + ramp_.bytes());

@@ -37,7 +37,7 @@ private:
 
 /// Tractions, follower pressures, and the correction of gravity at nodes with scaled mass. The force on a node is a sum
 /// of parts of the forces on surface vertices.
-class DeviceLoads
+class DeviceLoads : public EffectPart
 {
 public:
   DeviceLoads(const Model& model, const Discretisation& discretisation, const std::vector<std::uint32_t>& device_node);
@@ -53,9 +53,10 @@ public:
   /// True if loads follow the surface, so that they change in every step.
   bool follow() const { return runs_ && !pressures_.empty(); }
   /// Switches loads and the correction of gravity on or off with their effects.
-  void run(EffectSet running);
+  void run(EffectSet running) override;
+  void reset() override {}
   bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
-  void list_arrays(ArrayList& list) const;
+  void list_arrays(ArrayList& list) override;
   void update(const float4* u, cudaStream_t stream);
 
 private:

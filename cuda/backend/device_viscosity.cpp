@@ -1,6 +1,5 @@
 #include "cuda/backend/device_viscosity.hpp"
 
-#include "cuda/backend/device_archive.hpp"
 #include "frontalis/physics/viscosity.hpp"
 
 namespace frontalis
@@ -70,44 +69,24 @@ void DeviceViscosity::describe(StepArguments& g) const
   g.viscous_terms = runs_ ? terms_ : 0;
 }
 
-void DeviceViscosity::run(EffectSet running) { runs_ = running.has(Effect::viscosity); }
+void DeviceViscosity::run(EffectSet running)
+{
+  runs_ = running.has(Effect::viscosity);
+  if (!runs_)
+    reset();
+}
 
-void DeviceViscosity::list_arrays(ArrayList& list) const
+void DeviceViscosity::list_arrays(ArrayList& list)
 {
   list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + makes_.bytes() + words_.bytes());
-  list.add(Effect::viscosity, "relaxed stresses", relaxed_.bytes());
-  list.add(Effect::viscosity, "work of viscous stresses", account_.bytes());
+  list_state(list, Effect::viscosity, "relaxed stresses", relaxed_);
+  list_state(list, Effect::viscosity, "work of viscous stresses", account_);
 }
 
 void DeviceViscosity::reset()
 {
-  if (!empty())
-    require(cudaMemset(relaxed_.data(), 0, relaxed_.bytes()), "clearing viscous stresses");
+  relaxed_.clear();
   reset_account();
-}
-
-void DeviceViscosity::reset_account()
-{
-  if (account_.size() > 0)
-    require(cudaMemset(account_.data(), 0, account_.bytes()), "clearing an account");
-}
-
-void DeviceViscosity::Kept::archive(ByteArchive& archive)
-{
-  to_host(relaxed, archive);
-  to_host(account, archive);
-}
-
-void DeviceViscosity::save(Kept& to, cudaStream_t stream) const
-{
-  to.relaxed.assign(relaxed_, stream);
-  to.account.assign(account_, stream);
-}
-
-void DeviceViscosity::restore(const Kept& from, cudaStream_t stream)
-{
-  relaxed_.assign(from.relaxed, stream);
-  account_.assign(from.account, stream);
 }
 
 void DeviceViscosity::keep_account()

@@ -2,7 +2,6 @@
 
 #include "cuda/backend/device_memory.hpp"
 #include "solver/stepping/discretisation.hpp"
-#include "frontalis/byte_archive.hpp"
 #include "cuda/kernels/voxel_kernels.hpp"
 
 #include <vector>
@@ -13,7 +12,7 @@ namespace cuda
 {
 
 /// Relaxed stresses of viscous voxels in device memory, and the kernel that updates them.
-class DeviceViscosity
+class DeviceViscosity : public EffectPart
 {
 public:
   /// `voxel_at`: 1 + the model voxel at each place of the partition, 0 if the place is empty. `apart`: a voxel that
@@ -23,34 +22,23 @@ public:
                   bool apart);
 
   bool empty() const { return voxels_.size() == 0; }
-  /// While viscosity is switched off, nothing is read or updated.
-  void run(EffectSet running);
   bool idle() const { return empty() || !runs_; }
-  void list_arrays(ArrayList& list) const;
+  void list_arrays(ArrayList& list) override;
+  /// While viscosity is switched off, nothing is read or updated.
+  void run(EffectSet running) override;
   /// Fills in what a step needs.
   void describe(StepArguments& g) const;
   /// To be called once the palette entries of voxels are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
   /// Sets the relaxed stresses and the account of their work to zero.
-  void reset();
-  void reset_account();
+  void reset() override;
+  void reset_account() { account_.clear(); }
   /// Relaxes stresses by `elapsed` [s] towards those at `u`. `u_before`: one step earlier, for the account only.
   void relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed, cudaStream_t stream);
   /// Starts an account of the work of viscous stresses.
   void keep_account();
   /// Work that viscous stresses have absorbed since the account was opened [J].
   double work() const;
-
-  /// A copy of the relaxed stresses and the account of their work.
-  struct Kept
-  {
-    DeviceArray<float> relaxed;
-    DeviceArray<double> account;
-
-    void archive(ByteArchive& archive);
-  };
-  void save(Kept& to, cudaStream_t stream) const;
-  void restore(const Kept& from, cudaStream_t stream);
 
 private:
   ViscousVoxels view() const;

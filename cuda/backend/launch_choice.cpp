@@ -33,12 +33,12 @@ int multiprocessors()
   return from_environment("FRONTALIS_CUDA_MULTIPROCESSORS", all, 1, all);
 }
 
-// Shared memory of a block minus the kernels' own arrays: activations, and 9 KB for searches of tangent planes.
-std::size_t bytes_for_patches(const Model& model)
+// Shared memory of a block minus the kernels' own array of activations.
+std::size_t bytes_for_patches()
 {
   const int all = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
   const int bytes = from_environment("FRONTALIS_CUDA_SHARED_BYTES", all, 0, all);
-  const int taken = 2 * static_cast<int>(sizeof(float)) * most_muscles + (model.sliding.empty() ? 0 : 9 * 1024);
+  const int taken = 2 * static_cast<int>(sizeof(float)) * most_muscles;
   return static_cast<std::size_t>(std::max(bytes - taken, 0));
 }
 
@@ -52,7 +52,7 @@ int expected_turns(const Model& model, int processors, std::size_t bytes)
                voxels = with_border * static_cast<double>(model.voxels.size()) / processors;
   for (int turns = 1; turns <= most_turns; ++turns)
     if (patch_bytes(static_cast<std::size_t>(voxels / turns), static_cast<std::size_t>(halo_share * nodes / turns),
-                    static_cast<std::size_t>(nodes), !model.sliding.empty()) < bytes)
+                    static_cast<std::size_t>(nodes)) < bytes)
       return turns;
   return 0;
 }
@@ -63,11 +63,9 @@ CutChoice choose_cut(const Model& model, Effects effects)
 {
   const int processors = multiprocessors();
   CutChoice cut;
-  cut.patch_bytes = bytes_for_patches(model);
+  cut.patch_bytes = bytes_for_patches();
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
-  cut.searches = static_cast<std::uint32_t>(from_environment(
-      "FRONTALIS_CUDA_SEARCHES", model.sliding.size() > small_model ? group_searches : search_group, 1, search_group));
   // All strips should run at once, with 10 % to spare: a second round of a few strips would take as long as the first.
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);

@@ -9,9 +9,9 @@ namespace cuda
 
 /// Cuts a model into as few patches per multiprocessor as its shared memory allows, or into strips if the model is too
 /// large for patches. Environment variables override this for tests and measurements: FRONTALIS_CUDA_PATCHES sets the
-/// patches per multiprocessor (0: strips), FRONTALIS_CUDA_PLANES the planes per strip, FRONTALIS_CUDA_SEARCHES
-/// StepArguments::searches; FRONTALIS_CUDA_SHARED_BYTES limits the shared memory per block and
-/// FRONTALIS_CUDA_MULTIPROCESSORS the number of multiprocessors, as on a smaller GPU.
+/// patches per multiprocessor (0: strips), FRONTALIS_CUDA_PLANES the planes per strip; FRONTALIS_CUDA_SHARED_BYTES
+/// limits the shared memory per block and FRONTALIS_CUDA_MULTIPROCESSORS the number of multiprocessors, as on a smaller
+/// GPU.
 CutChoice choose_cut(const Model& model, Effects effects);
 
 /// Throws BackendUnavailable if the device cannot run the launch.

@@ -3,15 +3,14 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/dense_block.hpp"
+#include "frontalis/study/step_time.hpp"
+#include "frontalis/study/voxel_model.hpp"
 #include "cuda/bench/shell_model.hpp"
 #include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
@@ -23,45 +22,11 @@ using namespace frontalis;
 namespace
 {
 
-double median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 struct Scene
 {
   std::string name;
   std::function<Model()> make;
   int steps;
-};
-
-struct Timer
-{
-  cudaEvent_t begin = nullptr, end = nullptr;
-
-  Timer()
-  {
-    cuda::require(cudaEventCreate(&begin), "making an event");
-    cuda::require(cudaEventCreate(&end), "making an event");
-  }
-  ~Timer()
-  {
-    cudaEventDestroy(begin);
-    cudaEventDestroy(end);
-  }
-  /// Seconds that the device needs for what `work` queues.
-  template <class Work>
-  double operator()(const Work& work) const
-  {
-    cuda::require(cudaEventRecord(begin), "recording an event");
-    work();
-    cuda::require(cudaEventRecord(end), "recording an event");
-    cuda::require(cudaEventSynchronize(end), "stepping");
-    float time = 0;
-    cuda::require(cudaEventElapsedTime(&time, begin, end), "reading a time");
-    return 1e-3 * time;
-  }
 };
 
 // Activations rise linearly to the wanted ones within 0.3 s, as in the published set-up.
@@ -75,23 +40,22 @@ Controls ramped(const Controls& wanted, double time)
 
 // Seconds per step over a run of at least `steps` steps; the skin is fetched every `frame_wall_time` seconds, if above
 // 0.
-double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& controls, int steps, double frame_wall_time)
+double seconds_of_a_run(Solver& solver, const Controls& controls, int steps, double frame_wall_time)
 {
   const std::int64_t before = solver.profile().steps;
-  const double time = timer(
+  const double time = device_seconds(
       [&]
       {
-        auto frame = std::chrono::steady_clock::now();
+        double frame = wall_seconds();
         SkinState skin;
         while (solver.profile().steps - before < steps)
         {
           const double slice = 128 * solver.time_step();
           solver.advance(slice, ramped(controls, solver.time() + slice));
-          const auto now = std::chrono::steady_clock::now();
-          if (frame_wall_time > 0 && std::chrono::duration<double>(now - frame).count() > frame_wall_time)
+          if (frame_wall_time > 0 && wall_seconds() - frame > frame_wall_time)
           {
+            frame = wall_seconds();
             solver.skin(skin);
-            frame = now;
           }
         }
       });
@@ -101,29 +65,26 @@ double seconds_of_a_run(const Timer& timer, Solver& solver, const Controls& cont
 // median of five runs
 double seconds_per_step(Solver& solver, const Controls& controls, int steps)
 {
-  const Timer timer;
-  std::vector<double> times;
-  times.reserve(5);
-  for (int run = 0; run < 5; ++run)
-    times.push_back(seconds_of_a_run(timer, solver, controls, steps, 0));
-  return median(times);
+  std::vector<double> times(5);
+  for (double& time : times)
+    time = seconds_of_a_run(solver, controls, steps, 0);
+  return spread_of(times).median;
 }
 
 // The share that fetching the skin 60 times per wall second adds: median of nine runs, each compared with the mean of
 // the runs without it before and after, because the motion goes on meanwhile.
 double share_of_skin(Solver& solver, const Controls& controls, int steps)
 {
-  const Timer timer;
-  std::vector<double> shares;
-  double before = seconds_of_a_run(timer, solver, controls, steps, 0);
-  for (int run = 0; run < 9; ++run)
+  std::vector<double> shares(9);
+  double before = seconds_of_a_run(solver, controls, steps, 0);
+  for (double& share : shares)
   {
-    const double with = seconds_of_a_run(timer, solver, controls, steps, 1.0 / 60);
-    const double after = seconds_of_a_run(timer, solver, controls, steps, 0);
-    shares.push_back(2 * with / (before + after) - 1);
+    const double with = seconds_of_a_run(solver, controls, steps, 1.0 / 60);
+    const double after = seconds_of_a_run(solver, controls, steps, 0);
+    share = 2 * with / (before + after) - 1;
     before = after;
   }
-  return median(shares);
+  return spread_of(shares).median;
 }
 
 // Voxels per second of the dense blocks of this run, by name; other models are compared with them.
@@ -131,16 +92,16 @@ using DenseRates = std::vector<std::pair<std::string, double>>;
 
 void bench(const Scene& scene, DenseRates& dense)
 {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_seconds();
   const auto model = std::make_shared<const Model>(scene.make());
   std::size_t free_before = 0, free_after = 0, total = 0;
   cuda::require(cudaMemGetInfo(&free_before, &total), "asking for free memory");
   const auto solver = make_solver(model, { "cuda", 0, 0 });
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
-  const double built = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double built = wall_seconds() - start;
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no tangent plane is renewed: the difference to the motion is the cost of sliding far
+  // at rest no node enters another cell of its field: the difference to the motion is the cost of sliding far
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();

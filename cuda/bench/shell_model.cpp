@@ -195,15 +195,13 @@ struct ShellBuilder
         continue;
       const auto node = static_cast<std::int32_t>(n);
       if (p.x > height - 6e-3 || std::abs(p.y) > half_width - 8e-3)
-      {
         model.rigid.push_back({ node, -1 });
-        continue;
-      }
-      sliding.push_back(node);
+      else
+        sliding.push_back(node);
     }
-    const auto above_bone = [&](const std::array<double, 3>& local)
+    const auto above_bone = [this](const std::array<double, 3>& at_rest)
     {
-      const Point p = origin + Point{ local[0], local[1], local[2] };
+      const Point p = origin + Point{ at_rest[0], at_rest[1], at_rest[2] };
       return thickness(p.x) + 1e-3 - depth(p);
     };
     slide_on(model, "bone", above_bone, sliding);

@@ -1,8 +1,8 @@
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/physics/materials/neo_hookean.hpp"
 #include "cuda/bench/yardstick.hpp"
+#include "frontalis/study/step_time.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -115,36 +115,33 @@ __global__ void __launch_bounds__(tile_x* tile_y) bare_step(const Block b)
   }
 }
 
-namespace
-{
+}  // namespace cuda
 
-// median milliseconds of five runs
-template <class Run>
-double median_time(const Run& run)
+double device_seconds(const std::function<void()>& work)
 {
   cudaEvent_t begin = nullptr, end = nullptr;
-  require(cudaEventCreate(&begin), "making an event");
-  require(cudaEventCreate(&end), "making an event");
-  std::vector<float> times;
-  for (int i = 0; i < 6; ++i)
-  {
-    require(cudaEventRecord(begin), "recording an event");
-    run();
-    require(cudaEventRecord(end), "recording an event");
-    require(cudaEventSynchronize(end), "the yardstick");
-    float time = 0;
-    require(cudaEventElapsedTime(&time, begin, end), "reading a time");
-    if (i > 0)  // the first one warms up
-      times.push_back(time);
-  }
+  cuda::require(cudaEventCreate(&begin), "making an event");
+  cuda::require(cudaEventCreate(&end), "making an event");
+  cuda::require(cudaEventRecord(begin), "recording an event");
+  work();
+  cuda::require(cudaEventRecord(end), "recording an event");
+  cuda::require(cudaEventSynchronize(end), "waiting for the device");
+  float milliseconds = 0;
+  cuda::require(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
   cudaEventDestroy(begin);
   cudaEventDestroy(end);
-  std::sort(times.begin(), times.end());
-  return times[times.size() / 2];
+  return 1e-3 * milliseconds;
 }
 
-}  // namespace
-}  // namespace cuda
+// median seconds of five runs
+static double median_time(const std::function<void()>& run)
+{
+  run();  // warms up
+  std::vector<double> times(5);
+  for (double& time : times)
+    time = device_seconds(run);
+  return spread_of(times).median;
+}
 
 YardstickResult run_yardstick(std::int32_t n, int steps)
 {
@@ -156,7 +153,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
     require(cudaMemset(from.data(), 1, bytes), "filling");
     const double time =
         median_time([&] { cudaMemcpyAsync(to.data(), from.data(), bytes, cudaMemcpyDeviceToDevice, nullptr); });
-    result.copy_bandwidth = 2.0 * static_cast<double>(bytes) / (time * 1e-3);
+    result.copy_bandwidth = 2.0 * static_cast<double>(bytes) / time;
   }
   const std::size_t nodes = static_cast<std::size_t>(n + 1) * (n + 1) * (n + 1);
   std::vector<DeviceArray<float>> fields;
@@ -196,7 +193,7 @@ YardstickResult run_yardstick(std::int32_t n, int steps)
         }
         require(cudaGetLastError(), "launching the yardstick");
       });
-  result.microseconds_per_step = 1e3 * time / steps;
+  result.microseconds_per_step = 1e6 * time / steps;
   result.updates_per_second = static_cast<double>(n) * n * n / (result.microseconds_per_step * 1e-6);
   return result;
 }

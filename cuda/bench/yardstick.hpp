@@ -1,9 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 namespace frontalis
 {
+
+/// Seconds that the device needs for what `work` queues.
+double device_seconds(const std::function<void()>& work);
 
 /// Speed of the hardware on a bare element loop, for comparison with the solver's figures of the same run.
 struct YardstickResult

@@ -7,6 +7,20 @@ namespace frontalis
 namespace cuda
 {
 
+constexpr unsigned whole_warp = 0xffffffffu;
+
+/// The largest value among the lanes of a warp. GPUs below compute capability 8.0 have no instruction for it.
+__device__ __forceinline__ std::uint32_t largest_of_warp(std::uint32_t value)
+{
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(whole_warp, value);
+#else
+  for (int apart = 16; apart > 0; apart /= 2)
+    value = max(value, __shfl_xor_sync(whole_warp, value, apart));
+  return value;
+#endif
+}
+
 /// Data of a voxel apart from its deformation. Its first fibre is loaded early to hide memory latency.
 struct ElementPlace
 {

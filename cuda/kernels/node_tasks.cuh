@@ -51,7 +51,7 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
 static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                                 NodeState& n)
 {
-  using Point = SurfaceContact::Point;
+  using Point = physics::Vec3<double>;
   const RigidMotion& motion = g.rigid[index];
   const Point rest{ motion.rest[0], motion.rest[1], motion.rest[2] };
   const Point moved = pose_at(g, at.step + 1, motion.bone).outwards(rest) - rest;
@@ -84,53 +84,39 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Hides the address of a rarely called function from the compiler, which would otherwise allocate the registers of the
-/// function and its caller together and spill.
-template <class Function>
-__device__ __forceinline__ Function* aside(Function* function)
+/// Applies a task after the update of its node has been written. A function of its own, so that it takes no registers
+/// from the sweep through a strip.
+template <Effects With>
+static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
+                                             int step)
 {
-  auto address = reinterpret_cast<std::uint64_t>(function);
-  asm volatile("" : "+l"(address));
-  return reinterpret_cast<Function*>(address);
+  // all loads are issued at once, because memory latency dominates here
+  const NodeTask task = g.tasks[index];
+  const std::int32_t sliding = task.of[node_sliding];
+  const bool slides = has<With, Effects::sliding> && slides_only(task);
+  SlidingFetch fetch;
+  if (slides)
+    fetch_sliding<With>(g, sliding, fetch);
+  const float4 before = u[task.node], now = next[task.node];
+  NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
+  // the inverse mass is taken from the new buffer: the old one may never have been written by a step
+  const float4 old = make_float4(before.x, before.y, before.z, now.w);
+  if (slides)
+    slide<With>(g, sliding, { old, task.node, step }, fetch, n);
+  else
+    apply_task<With>(g, task, old, step, n);
+  next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
+  for (int i = 0; i < 3; ++i)
+    g.v[i][task.node] = n.v[i];
 }
 
-/// Contact of a sliding node, numbered as for find_others().
-__device__ __forceinline__ std::int32_t contact_of(const NodeTask& task)
-{
-  return task.of[node_sliding] >= 0 ? task.of[node_sliding] : -1 - task.of[node_gliding];
-}
-
-/// Applies tasks [begin, end) after the updates of their nodes have been written. Whole warps call it.
+/// Applies tasks [begin, end). Whole warps call it. `With`: effects of nodes.
 template <Effects With>
 __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
                                           const float4* u, float4* next, int step)
 {
-  for (std::uint32_t first = begin; first < end; first += 32)
-  {
-    const std::uint32_t t = first + (threadIdx.x & 31);
-    NodeState n{};
-    NodeTask task{};
-    if (t < end)
-    {
-      // all loads are issued at once, because memory latency dominates here
-      task = g.tasks[t];
-      const float4 before = u[task.node], now = next[task.node];
-      n = { { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-      // the inverse mass is taken from the new buffer: the old one may never have been written by a step
-      const float4 old = make_float4(before.x, before.y, before.z, now.w);
-      const std::int32_t contact = task.of[node_sliding];
-      if (has<With, Effects::sliding> && slides_only(task))
-        slide<With>(g, contact, { old, task.node, step }, fetch_contact<With>(g, contact), n);
-      else
-        apply_task<part<With, of_nodes>>(g, task, old, step, n);
-      next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
-    }
-    if (has<With, Effects::sliding> && __any_sync(whole_warp, n.leaves))
-      aside(find_others<step_block / 32, part<With, of_nodes>>)(g, n.leaves, n.leaves ? contact_of(task) : 0, n.u, n.v);
-    if (t < end)
-      for (int i = 0; i < 3; ++i)
-        g.v[i][task.node] = n.v[i];
-  }
+  for (std::uint32_t t = begin + (threadIdx.x & 31); t < end; t += 32)
+    run_task<With>(g, t, u, next, step);
 }
 
 /// Data for the update of a node, loaded before the stress is computed.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cuda/kernels/element_stress.cuh"
-#include "cuda/kernels/patch_memory.cuh"
+#include "cuda/kernels/node_tasks.cuh"
 
 #include <utility>
 
@@ -15,6 +15,24 @@ namespace cuda
 // only border nodes are exchanged with other blocks. Displacement and step number are written as one 16-byte word, so
 // that a reader waits for exactly the data it needs, without barriers between blocks or fences. Neighbouring patches
 // read each other, so a writer is at most one step ahead of its readers, and two buffers suffice.
+
+/// Layout of the shared memory of a block; see patch_bytes().
+struct PatchMemory
+{
+  float4* place;        // displacements of halo nodes, then of own nodes with their inverse mass
+  float* v[3];          // velocities of own nodes
+  float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
+  std::uint32_t width;  // length of a row of `force`
+};
+
+__device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
+{
+  extern __shared__ float4 all[];
+  float* const v = reinterpret_cast<float*>(all + launch.most_halo + launch.most_nodes);
+  return {
+    all, { v, v + launch.most_nodes, v + 2 * launch.most_nodes }, v + 3 * launch.most_nodes, launch.most_voxels + 1
+  };
+}
 
 /// Step number, stored in place of the inverse mass. Its highest bit is set, which no inverse mass has.
 __device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
@@ -142,39 +160,23 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Contact of a sliding node from its entry of StepArguments::patch_tasks, numbered as for find_others().
-__device__ __forceinline__ std::int32_t contact_of(const StepArguments& g, std::int32_t task)
-{
-  return task >= 0 ? task : contact_of(g.tasks[patch_task::other - task]);
-}
-
-/// Requests a plane ahead of need. `own`: number of the node in the block.
-static __device__ __noinline__ void ask_ahead(const StepArguments& g, const StepLaunch& launch, std::int32_t contact,
-                                              std::uint32_t own)
-{
-  const PatchMemory memory = patch_memory(launch);
-  const float4 place = memory.place[launch.most_halo + own];
-  ask(g, plane_queue(launch), contact, { place.x, place.y, place.z },
-      { memory.v[0][own], memory.v[1][own], memory.v[2][own] });
-}
-
 /// Updates a node. `own`: its number in the block. `last`: the launch ends with this step, so everything is written to
-/// global memory. Returns whether the node leaves its plane.
+/// global memory.
 template <Effects With>
-__device__ __forceinline__ bool step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
+__device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
                                                 float4* next, int step)
 {
   const std::int32_t task = __ldg(g.patch_tasks + node);
-  SlidingFetch fetched{};
+  SlidingFetch fetched;
   if (has<With, Effects::sliding> && task >= 0)
-    fetched = fetch_contact<With>(g, task);
+    fetch_sliding<With>(g, task, fetched);
   float force[3];
   sum_forces(memory, __ldg(g.node_voxels + node), force);
   if (g.forces_only)
   {
     next[node] = make_float4(force[0], force[1], force[2], 0);
-    return false;
+    return;
   }
   float4& place = memory.place[launch.most_halo + own];
   const NodeFetch fetch{ place, { memory.v[0][own], memory.v[1][own], memory.v[2][own] } };
@@ -205,47 +207,6 @@ __device__ __forceinline__ bool step_patch_node(const StepArguments& g, const Pa
   }
   else if (on_border)
     send(next + node, n.u, mark(g, step + 1));
-  // not in the last step, because the launch would wait for the answer
-  if (has<With, Effects::sliding> && n.asks && !last)
-  {
-    const std::int32_t contact = contact_of(g, task);
-    if (seen(state_of(g, contact)) == nothing_ahead)
-      aside(ask_ahead)(g, launch, contact, own);
-  }
-  return n.leaves;
-}
-
-/// Gives new planes to the nodes that leave theirs. Whole warps call it. Neighbours do not wait, because displacements
-/// have been sent before. `own`: as for step_patch_node(). PatchMemory is not an argument, because passing it by
-/// reference would force the whole kernel to keep it in local memory. `With`: effects of nodes.
-template <Effects With>
-static __device__ __noinline__ void leave_planes(const StepArguments& g, const StepLaunch& launch, bool leaves,
-                                                 std::uint32_t node, std::uint32_t own, bool last)
-{
-  const PatchMemory memory = patch_memory(launch);
-  std::int32_t contact = 0;
-  float u[3] = {}, v[3] = {};
-  if (leaves)
-  {
-    const std::int32_t task = __ldg(g.patch_tasks + node);
-    contact = contact_of(g, task);
-    const float4 place = memory.place[launch.most_halo + own];
-    u[0] = place.x;
-    u[1] = place.y;
-    u[2] = place.z;
-    for (int i = 0; i < 3; ++i)
-      v[i] = memory.v[i][own];
-  }
-  const bool finds = leaves && !take_asked<With>(g, contact, u, v);
-  if (__any_sync(whole_warp, finds))
-    find_others<most_patch_threads / 32, With>(g, finds, contact, u, v);
-  if (leaves)
-    for (int i = 0; i < 3; ++i)
-    {
-      memory.v[i][own] = v[i];
-      if (last)
-        g.v[i][node] = v[i];
-    }
 }
 
 // Set: as in step_kernel.cuh
@@ -257,19 +218,9 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   constexpr Effects plain = plain_part<With>;
   const PatchMemory memory = patch_memory(launch);
-  const std::uint32_t threads = stepping_threads<With>(launch);
+  const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
-  if constexpr (has<With, Effects::sliding>)
-  {
-    clear(plane_queue(launch));
-    __syncthreads();
-    if (threadIdx.x >= threads)
-    {
-      aside(find_planes)(g, plane_queue(launch));
-      return;
-    }
-  }
   std::uint32_t filled = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
@@ -311,7 +262,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
         memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
       }
-      meet<With>(launch);
+      __syncthreads();
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -321,23 +272,11 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         else
           put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
       }
-      meet<With>(launch);
+      __syncthreads();
       const bool last = step + 1 == g.step_end;
-      const auto step_node = [&](std::uint32_t n)
-      {
-        return step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
-                                     g.u[1 - present], step);
-      };
-      if constexpr (has<With, Effects::sliding>)
-        for (std::uint32_t n = threadIdx.x; n - (threadIdx.x & 31) < patch.nodes; n += threads)
-        {
-          const bool leaves = n < patch.nodes && step_node(n);
-          if (__any_sync(whole_warp, leaves))
-            aside(leave_planes<part<With, of_nodes>>)(g, launch, leaves, patch.first_node + n, filled + n, last);
-        }
-      else
-        for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
-          step_node(n);
+      for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
+        step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
+                              g.u[1 - present], step);
       if (look)
         for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
           if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
@@ -351,12 +290,6 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       if ((threadIdx.x & 31) == 0)
         atomicMax(g.look, largest);
     }
-  }
-  if constexpr (has<With, Effects::sliding>)
-  {
-    meet<With>(launch);
-    if (threadIdx.x == 0)
-      atomicExch(plane_queue(launch).done, 1);
   }
 }
 

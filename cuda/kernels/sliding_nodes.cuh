@@ -2,114 +2,20 @@
 
 #include "cuda/kernels/bone_pose.cuh"
 #include "frontalis/physics/element/sliding_node.hpp"
-#include "cuda/kernels/warp_search.cuh"
 
 namespace frontalis
 {
 namespace cuda
 {
 
-// Nodes that slide on surfaces: the step on a tangent plane, and the change to another plane.
+// Nodes that slide on surfaces. In each step a node takes the tangent plane of its field's level set at its place. The
+// samples around it are read from its own copy, in loads that a warp's nodes share; most steps stay in a cell.
 
 struct NodeState
 {
   float u[3];
   float v[3];
-  bool leaves = false;  ///< in the next step it leaves the range in which its plane is valid
-  bool asks = false;    ///< it will leave that range within StepArguments::lead
 };
-
-__device__ __forceinline__ physics::Vec3<float> normal_of(const float4& normal_offset)
-{
-  return { normal_offset.x, normal_offset.y, normal_offset.z };
-}
-
-__device__ __forceinline__ SurfaceContact::Point place_of(const SlidingContact& s, const float* u)
-{
-  return { s.rest[0] + u[0], s.rest[1] + u[1], s.rest[2] + u[2] };
-}
-
-__device__ __forceinline__ float squared(const float* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-
-/// How far ahead of a node its next plane is searched, as a fraction of a plan: half the distance over which its last
-/// plane was valid, at most half a plan. `goes`: distance per plan [m]; `served`: squared distance of validity [m2].
-__device__ __forceinline__ float share_before(float goes, float served)
-{
-  // a node may have had no plane, and may not move
-  const float far = sqrtf(fmaxf(served, 0.0f));
-  return goes > far ? 0.5f * far / goes : 0.5f;
-}
-
-/// The same as a time [s].
-__device__ __forceinline__ float time_before(const StepArguments& g, const float* v, float served)
-{
-  const float plan = g.steps * g.dt;
-  return plan * share_before(plan * sqrtf(squared(v)), served);
-}
-
-/// Converts the plane that was found at `at` to the form that a step needs. `serves`: see SlidingContact.
-__device__ __forceinline__ TangentPlane tangent_plane(const SlidingContact& s, const ContactPlane& plane,
-                                                      const SurfaceContact::Point& at, float& serves)
-{
-  serves = static_cast<float>(plane.slip * plane.slip);
-  const SurfaceContact::Point& n = plane.normal;
-  const SurfaceContact::Point rest{ s.rest[0], s.rest[1], s.rest[2] }, u = at - rest;
-  return { make_float4(n.x, n.y, n.z, dot(n, rest) - plane.height),
-           make_float4(u.x, u.y, u.z, plane.limit * plane.limit) };
-}
-
-/// Whether a sliding node has friction.
-__device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
-{
-  return static_cast<std::uint32_t>(index) < g.rubbing_count;
-}
-
-/// Gives a node another plane and turns its velocity with it. `With`: effects of nodes.
-template <Effects With>
-__device__ __forceinline__ void change_plane(const StepArguments& g, std::int32_t index, const TangentPlane& to,
-                                             float* v)
-{
-  physics::Vec3<float> turned{ v[0], v[1], v[2] };
-  const float taken =
-      physics::turn_with_plane(normal_of(g.contact_planes[index].normal_offset), normal_of(to.normal_offset), turned);
-  v[0] = turned.x;
-  v[1] = turned.y;
-  v[2] = turned.z;
-  if (has<With, Effects::friction> && rubs(g, index))
-    g.rubbing[index].turning += taken;
-  g.contact_planes[index] = to;
-}
-
-/// The same for a plane that was found at `at`.
-template <Effects With>
-__device__ __forceinline__ void put_on(const StepArguments& g, std::int32_t index, const ContactPlane& found,
-                                       const SurfaceContact::Point& at, float* v)
-{
-  SlidingContact& s = g.sliding[index];
-  change_plane<With>(g, index, tangent_plane(s, found, at, s.serves), v);
-}
-
-__device__ __forceinline__ float slip_squared(const float4& reference, const float* u)
-{
-  const float x = u[0] - reference.x, y = u[1] - reference.y, z = u[2] - reference.z;
-  return x * x + y * y + z * z;
-}
-
-/// Data of a sliding node's contact, read before the step.
-struct SlidingFetch
-{
-  TangentPlane plane;
-  RubbingContact rubbing;  ///< only if the node has friction
-};
-
-template <Effects With>
-__device__ __forceinline__ SlidingFetch fetch_contact(const StepArguments& g, std::int32_t index)
-{
-  SlidingFetch contact{ g.contact_planes[index], {} };
-  if (has<With, Effects::friction> && rubs(g, index))
-    contact.rubbing = g.rubbing[index];
-  return contact;
-}
 
 /// A node in a step. `before`: displacement before the step, and inverse mass.
 struct NodeStep
@@ -119,135 +25,192 @@ struct NodeStep
   int step;
 };
 
-/// Energy dissipated by friction at a node [J]; see physics::friction_work().
-static __device__ __forceinline__ double lost_to_friction(const StepArguments& g, const NodeStep& at,
-                                                          const SurfaceContact::Point& normal,
-                                                          const SurfaceContact::Point& surface_velocity,
-                                                          const SurfaceContact::Point& free,
-                                                          const SurfaceContact::Point& v)
+/// Data of a sliding node, read before the step. Its samples are read when they are needed: they would take too many
+/// registers.
+struct SlidingFetch
 {
-  const SurfaceContact::Point old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node],
+  float4 at, plane;
+  float inverse_spacing;
+  float friction = 0, pressing = 0;
+};
+
+__device__ __forceinline__ physics::Vec3<float> normal_of(const float4& plane) { return { plane.x, plane.y, plane.z }; }
+
+/// Whether a sliding node has friction.
+__device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
+{
+  return static_cast<std::uint32_t>(index) < g.rubbing_count;
+}
+
+/// One of the 28 numbers of a node's samples.
+__device__ __forceinline__ float& sample_of(const StepArguments& g, std::int32_t index, int n)
+{
+  return reinterpret_cast<float*>(g.samples + n / 4 * g.sliding_count + index)[n % 4];
+}
+
+template <Effects With>
+__device__ __forceinline__ void fetch_sliding(const StepArguments& g, std::int32_t index, SlidingFetch& fetch)
+{
+  fetch.at = g.sliding_at[index];
+  fetch.plane = g.planes[index];
+  fetch.inverse_spacing = sample_of(g, index, 27);
+  if (has<With, Effects::friction> && rubs(g, index))
+  {
+    fetch.friction = g.friction[index];
+    fetch.pressing = g.pressing[index];
+  }
+}
+
+/// Copies the samples of another cell to a node. Returns false, and copies nothing, where none are stored.
+static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int32_t index, std::uint32_t code)
+{
+  const SlidingNodeField node = g.sliding[index];
+  std::int32_t cell[3];
+  for (int axis = 0; axis < 3; ++axis)
+    cell[axis] = node.cell[axis] + static_cast<std::int32_t>(code >> 10 * axis & 1023u) - middle_cell;
+  const physics::DistanceField& field = g.fields[node.surface];
+  const float* const first = field.around(cell);
+  if (first == nullptr)
+    return false;
+  const physics::FieldSamples samples = physics::gather(first);
+  for (int n = 0; n < 27; ++n)
+    sample_of(g, index, n) = samples.value[n] - node.level;
+  g.sliding_at[index].w = __uint_as_float(code);
+  return true;
+}
+
+/// Hides the address of a rarely called function from the compiler, which would otherwise allocate the registers of the
+/// function and its caller together and spill.
+template <class Function>
+__device__ __forceinline__ Function* aside(Function* function)
+{
+  auto address = reinterpret_cast<std::uint64_t>(function);
+  asm volatile("" : "+l"(address));
+  return reinterpret_cast<Function*>(address);
+}
+
+/// A node's field less its level at displacement `u`. Returns false where no samples are stored.
+__device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
+                                         const physics::Vec3<float>& u, physics::FieldValue<float>& value)
+{
+  const physics::Vec3<float> offset = physics::Vec3<float>{ fetch.at.x, fetch.at.y, fetch.at.z } + u;
+  if (fetch.inverse_spacing == 0)
+  {
+    value = physics::sphere_value(sample_of(g, index, 0), offset);
+    return true;
+  }
+  std::int32_t cell[3] = { middle_cell, middle_cell, middle_cell };
+  const physics::Vec3<float> place = physics::enter_cell(fetch.inverse_spacing, offset, cell);
+  if (((cell[0] | cell[1] | cell[2]) & ~1023) != 0)
+    return false;
+  const std::uint32_t code = cell[0] | cell[1] << 10 | cell[2] << 20;
+  if (code != __float_as_uint(fetch.at.w) && !aside(enter_cell)(g, index, code))
+    return false;
+  physics::FieldSamples samples;
+  FRONTALIS_UNROLL
+  for (int w = 0; w < sample_words; ++w)
+  {
+    const float4 word = g.samples[w * g.sliding_count + index];
+    const float of[4] = { word.x, word.y, word.z, word.w };
+    FRONTALIS_UNROLL
+    for (int n = 4 * w; n < 4 * w + 4 && n < 27; ++n)
+      samples.value[n] = of[n - 4 * w];
+  }
+  value = physics::spline(samples, fetch.inverse_spacing, place);
+  return true;
+}
+
+/// The plane on which a node at displacement `u` slides in this step: that of the latest step where its field has none.
+__device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArguments& g, std::int32_t index,
+                                                               const SlidingFetch& fetch, const physics::Vec3<float>& u)
+{
+  const physics::Vec3<float> latest = normal_of(fetch.plane);
+  physics::LevelPlane<float> plane{ latest, dot(latest, u) - fetch.plane.w, 0 };
+  physics::FieldValue<float> value;
+  if (field_at(g, index, fetch, u, value) && physics::level_plane(value, 0.0f, plane))
+    g.planes[index] =
+        make_float4(plane.normal.x, plane.normal.y, plane.normal.z, dot(plane.normal, u) - plane.distance);
+  return plane;
+}
+
+/// Slides a node, at place p and with velocity v relative to its surface, on a plane in the surface's frame. Returns
+/// whether it has friction. T: number type of the step.
+template <Effects With, class T>
+__device__ __forceinline__ bool slide_on(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
+                                         const physics::LevelPlane<float>& plane, physics::Vec3<T>& p,
+                                         physics::Vec3<T>& v)
+{
+  const auto of = [](const physics::Vec3<float>& a) { return physics::Vec3<T>{ a.x, a.y, a.z }; };
+  const physics::Vec3<T> normal = of(plane.normal);
+  T taken = physics::turn_with_plane(of(normal_of(fetch.plane)), normal, v);
+  physics::Vec3<T> push{ 0, 0, 0 };
+  taken = taken + physics::slide(normal, -T(plane.distance), push, v);
+  p = p + push;
+  if (!has<With, Effects::friction> || !rubs(g, index))
+    return false;
+  T pressing = fetch.pressing;
+  physics::rub(T(fetch.friction), T(g.friction_response), T(g.dt_exact), taken * T(g.rate), pressing, p, v);
+  g.pressing[index] = static_cast<float>(pressing);
+  return true;
+}
+
+/// Adds the energy dissipated by friction at a node [J]; see physics::friction_work().
+static __device__ __forceinline__ void account_friction(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                                        const physics::Vec3<double>& normal,
+                                                        const physics::Vec3<double>& surface_velocity,
+                                                        const physics::Vec3<double>& free,
+                                                        const physics::Vec3<double>& v)
+{
+  const physics::Vec3<double> old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node],
                                    g.velocity_before[2][at.node] };
-  return physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
+  g.friction_work[index] += physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
 }
 
-/// Applies friction on a fixed surface. `taken`: normal speed that the plane removed in this step.
-static __device__ __forceinline__ void rub(const StepArguments& g, std::int32_t index, const NodeStep& at,
-                                           const SlidingFetch& contact, float taken, physics::Vec3<float>& u,
-                                           physics::Vec3<float>& v, const float (&free)[3])
-{
-  const RubbingContact& s = contact.rubbing;
-  const float reaction = (s.turning + taken) * static_cast<float>(g.rate);
-  float pressing = s.pressing;
-  physics::rub(s.friction, static_cast<float>(g.friction_response), g.dt, reaction, pressing, u, v);
-  g.rubbing[index].pressing = pressing;
-  g.rubbing[index].turning = 0;
-  const float4& normal = contact.plane.normal_offset;
-  if (g.friction_work != nullptr)
-    g.friction_work[index] += lost_to_friction(g, at, { normal.x, normal.y, normal.z }, { 0, 0, 0 },
-                                               { free[0], free[1], free[2] }, { v.x, v.y, v.z });
-}
-
-/// Step of a node that slides on a fixed surface.
+/// Step of a node that slides on a still surface.
 template <Effects With>
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, const NodeStep& at,
-                                      const SlidingFetch& contact, NodeState& n)
+                                      const SlidingFetch& fetch, NodeState& n)
 {
   physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
-  const TangentPlane& plane = contact.plane;
-  const float4& p = plane.normal_offset;
-  const float taken = physics::slide(normal_of(p), -p.w, u, v);
-  if (has<With, Effects::friction> && rubs(g, index))
-    rub(g, index, at, contact, taken, u, v, n.v);
-  const auto leaves_within = [&](float seconds)
-  {
-    const float then[3] = { u.x + seconds * v.x, u.y + seconds * v.y, u.z + seconds * v.z };
-    return slip_squared(plane.reference, then) > plane.reference.w;
-  };
-  const bool leaves = leaves_within(g.dt);
-  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z }, leaves, !leaves && leaves_within(g.dt + g.lead) };
+  const physics::LevelPlane<float> plane = plane_at(g, index, fetch, u);
+  if (slide_on<With>(g, index, fetch, plane, u, v) && g.friction_work != nullptr)
+    account_friction(g, index, at, { plane.normal.x, plane.normal.y, plane.normal.z }, { 0, 0, 0 },
+                     { n.v[0], n.v[1], n.v[2] }, { v.x, v.y, v.z });
+  n = { { u.x, u.y, u.z }, { v.x, v.y, v.z } };
 }
 
 template <Effects With>
 static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                                   NodeState& n)
 {
-  slide<With>(g, index, at, fetch_contact<With>(g, index), n);
+  SlidingFetch fetch;
+  fetch_sliding<With>(g, index, fetch);
+  slide<With>(g, index, at, fetch, n);
 }
 
-/// Step of a node that slides on a surface moving with a bone, in double precision as in gliding_nodes.cpp.
+/// Step of a node that slides on a surface moving with a bone. Only the plane is in single precision, so that changes
+/// of frame leave a node at rest where it is.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {
-  using Point = SurfaceContact::Point;
-  const std::int32_t bone = g.gliding[index].bone;
-  const Pose now = pose_at(g, at.step + 1, bone), before = pose_at(g, at.step, bone);
-  GlidingContact& s = g.gliding[index];
-  const Point rest{ s.rest[0], s.rest[1], s.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
-  const physics::RelativeMotion motion =
+  using Point = physics::Vec3<double>;
+  const GlidingNode node = g.gliding[index];
+  SlidingFetch fetch;
+  fetch_sliding<With>(g, node.sliding, fetch);
+  const Pose now = pose_at(g, at.step + 1, node.bone), before = pose_at(g, at.step, node.bone);
+  const Point rest{ node.rest[0], node.rest[1], node.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
+  physics::RelativeMotion motion =
       physics::relative_to(now, before, g.rate, rest + Point{ n.u[0], n.u[1], n.u[2] }, free);
-  Point p = motion.place, w = motion.velocity;
-  const Point& normal = s.plane.normal;
-  double taken = 0;
-  if (normal.x != s.turned_to.x || normal.y != s.turned_to.y || normal.z != s.turned_to.z)
-  {
-    taken = physics::turn_with_plane(s.turned_to, normal, w);
-    s.turned_to = normal;
-  }
-  taken += physics::slide(normal, s.plane.height, p, w);
-  const bool has_friction = has<With, Effects::friction> && s.friction > 0;
-  if (has_friction)
-    physics::rub(s.friction, g.friction_response, g.dt_exact, taken * g.rate, s.pressing, p, w);
-  const Point next = p + g.dt_exact * w, slipped = next - s.reference;
-  const bool leaves = dot(slipped, slipped) > s.plane.limit * s.plane.limit;
-  // position at which the next plane is searched
-  if (leaves)
-    s.reference = next;
-  const Point further = next + double(g.lead) * w, gone = further - s.reference;
-  const bool asks = g.lead > 0 && !leaves && dot(gone, gone) > s.plane.limit * s.plane.limit;
-  // only the thread of this node sets the state to nothing_ahead
-  GlidingSearch& search = g.gliding_searches[index];
-  if (asks && search.state == nothing_ahead)
-    search.ahead = further;
-  const Point moved = now.outwards(p) - rest, v = now.turned(w) + motion.surface_velocity;
-  if (has_friction && g.friction_work != nullptr)
-    g.friction_work[g.rubbing_count + index] +=
-        lost_to_friction(g, at, now.turned(normal), motion.surface_velocity, free, v);
-  n = { { static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z) },
-        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) },
-        leaves,
-        asks };
-}
-
-/// Gives new planes to nodes that left theirs in a step. Whole warps call it. `contact`: index into
-/// StepArguments::sliding, or -1 minus an index into gliding.
-template <int Warps, Effects With>
-__device__ __noinline__ void find_others(const StepArguments& g, bool leaves, std::int32_t contact, const float (&u)[3],
-                                         float (&v)[3])
-{
-  using Point = SurfaceContact::Point;
-  const bool slides = contact >= 0;
-  const std::int32_t gliding = -1 - contact;
-  SurfaceContact* on = nullptr;
-  Point next{ 0, 0, 0 }, at{ 0, 0, 0 };
-  if (leaves && slides)
-  {
-    const float before = time_before(g, v, g.contact_planes[contact].reference.w);
-    const Point velocity{ v[0], v[1], v[2] };
-    on = &g.sliding[contact].contact;
-    next = place_of(g.sliding[contact], u) + g.dt_exact * velocity;
-    at = next + double(before) * velocity;
-  }
-  else if (leaves)
-  {
-    on = &g.gliding_searches[gliding].contact;
-    next = at = g.gliding[gliding].reference;
-  }
-  const ContactPlane plane = find_before<Warps>(leaves, on, next, at);
-  if (leaves && slides)
-    put_on<With>(g, contact, plane, at, v);
-  else if (leaves)
-    g.gliding[gliding].plane = plane;
+  const Point gone = motion.place - rest;
+  const physics::LevelPlane<float> plane = plane_at(
+      g, node.sliding, fetch, { static_cast<float>(gone.x), static_cast<float>(gone.y), static_cast<float>(gone.z) });
+  const bool rubbed = slide_on<With>(g, node.sliding, fetch, plane, motion.place, motion.velocity);
+  const Point u = now.outwards(motion.place) - rest, v = now.turned(motion.velocity) + motion.surface_velocity;
+  if (rubbed && g.friction_work != nullptr)
+    account_friction(g, node.sliding, at, now.turned({ plane.normal.x, plane.normal.y, plane.normal.z }),
+                     motion.surface_velocity, free, v);
+  n = { { static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z) },
+        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
 }
 
 }  // namespace cuda

@@ -43,7 +43,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
   if (tasks)
   {
     __syncwarp();
-    run_tasks<With>(g, strip.task_begin, strip.task_end, u, next, step);
+    run_tasks<part<With, of_nodes>>(g, strip.task_begin, strip.task_end, u, next, step);
   }
   if (Look)
   {

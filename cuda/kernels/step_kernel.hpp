@@ -1,7 +1,7 @@
 #pragma once
 
+#include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
-#include "solver/contact/surface_contact.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
 
@@ -17,8 +17,8 @@ namespace frontalis
 enum NodeEffect : std::uint8_t
 {
   node_load,        ///< into StepArguments::load_begin
-  node_sliding,     ///< into StepArguments::sliding
-  node_gliding,     ///< into StepArguments::gliding
+  node_sliding,     ///< on a still surface; into StepArguments::sliding
+  node_gliding,     ///< on a surface that moves with a bone; into StepArguments::gliding
   node_prescribed,  ///< into StepArguments::prescribed
   node_rigid,       ///< into StepArguments::rigid
   node_effects      ///< number of effects
@@ -60,62 +60,31 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// In models that run as strips, new tangent planes are searched for while a plan's steps run. Nodes in
-/// StepArguments::sliding, then in gliding, form groups of `search_group`. A group has room for `group_searches`
-/// searches at a time, because one search takes 296 bytes. Models of up to `small_model` such nodes have room for all.
-constexpr std::uint32_t search_group = 32, group_searches = 8, small_model = 20000;
-
-/// A node on a fixed surface: data for the search of its closest point.
-struct SlidingContact
+/// What a sliding node needs when it enters another cell of its field.
+struct SlidingNodeField
 {
-  double rest[3];  ///< [m]
-  SurfaceContact contact;
-  std::uint32_t node;
-  std::int32_t search;         ///< index into StepArguments::searching during a search beside the steps
-  float serves, serves_ahead;  ///< squares of ContactPlane::slip of its plane and of the one found ahead [m2]
+  std::int32_t surface;  ///< into StepArguments::fields
+  std::int32_t cell[3];  ///< cell of its rest position
+  float level;           ///< value of the field that it keeps [m]
 };
 
-/// Additional data for friction on a fixed surface.
-struct RubbingContact
-{
-  float friction;  ///< coefficient
-  float pressing;  ///< reaction per mass, delayed as friction needs it [m/s2]
-  float turning;   ///< normal speed removed by changes of plane, counted in the next reaction [m/s]
-};
+/// A sliding node's copy of its field near its place, as words of 16 bytes that lie `sliding_count` apart: the samples
+/// of a cell less the level [m], and the inverse of their spacing [1/m]. On a sphere the inverse spacing is 0, and the
+/// first entry is the radius at the level [m].
+constexpr int sample_words = 7;
 
-/// A node on a surface that moves with a bone: data for each step, in the frame of the bone.
-struct GlidingContact
+/// The cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is that of its rest position. A
+/// node further away is past its field's rim. no_cell: there are no samples yet.
+constexpr std::int32_t middle_cell = 512;
+constexpr std::uint32_t no_cell = 0xffffffffu;
+
+/// A node on a surface that moves with a bone. Its field and plane are in the frame of the bone.
+struct GlidingNode
 {
   double rest[3];  ///< [m]
   std::int32_t bone;
-  double friction;
-  double pressing;  ///< reaction per mass, delayed as friction needs it [m/s2]
-  ContactPlane plane;
-  SurfaceContact::Point reference;  ///< where the plane was found
-  SurfaceContact::Point turned_to;  ///< normal of the plane to which its velocity is parallel
+  std::int32_t sliding;  ///< into StepArguments::sliding
 };
-
-/// Data for the search of its closest point, and the plane that was found ahead of need.
-struct GlidingSearch
-{
-  SurfaceContact contact;
-  std::uint32_t node;
-  std::int32_t search;  ///< as SlidingContact::search
-  float state;          ///< nothing_ahead, wanted_ahead, or 0 if found
-  SurfaceContact::Point ahead;
-  ContactPlane found;
-};
-
-/// Data of a sliding node for each step: the tangent plane of the offset surface at the latest closest point. A
-/// displacement u lies on the plane if normal . u + offset = 0.
-struct TangentPlane
-{
-  float4 normal_offset;
-  float4 reference;  ///< displacement where found; w: square of ContactPlane::limit [m2], < 0: no plane
-};
-
-/// Values of TangentPlane::reference.w in StepArguments::planes_ahead: no plane, or a plane is requested.
-constexpr float nothing_ahead = -1, wanted_ahead = -2;
 
 /// A law other than neo-Hookean that a voxel's tissue contains.
 struct LawEntry
@@ -173,18 +142,18 @@ struct StepArguments : physics::Kick<float>
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
   const double* load_ramp;     ///< one per load [s]
   const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; or null
-  SlidingContact* sliding;
-  TangentPlane* contact_planes;
-  TangentPlane* planes_ahead;  ///< planes found ahead; reference.w: nothing_ahead, wanted_ahead or as above
+  // Sliding nodes, on still and on moving surfaces, those with friction first. Samples are a function of a node's place
+  // alone; planes and `pressing` are state.
+  const physics::DistanceField* fields;
+  const SlidingNodeField* sliding;
   std::uint32_t sliding_count;
-  RubbingContact* rubbing;  ///< of the first `rubbing_count` nodes in `sliding`, which have friction
+  float4* sliding_at;     ///< offset of the rest position in its cell [m], or from a sphere's centre; bits of the cell
+  float4* samples;        ///< see sample_words
+  float4* planes;         ///< of the latest step, normal . u = offset: normal and offset; 0: none yet
+  const float* friction;  ///< coefficient, of the first `rubbing_count` nodes
+  float* pressing;        ///< their reaction per mass, delayed as friction needs it [m/s2]
   std::uint32_t rubbing_count;
-  GlidingContact* gliding;
-  GlidingSearch* gliding_searches;
-  std::uint32_t gliding_count;
-  SurfaceContact* searching;  ///< `searches` entries per search_group
-  std::uint32_t searches;     ///< 0: planes are requested within launches (plane_queue.cuh), not between plans
-  float lead;                 ///< time before a node leaves its plane at which it requests another [s]; 0: never
+  const GlidingNode* gliding;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
   const double* poses;  ///< [step][bone][12]: rotation by rows, translation; before the first step, then after each
@@ -204,8 +173,8 @@ struct StepArguments : physics::Kick<float>
   bool forces_only;                          ///< writes internal forces to u[1 - first] and updates nothing
   float* velocity_before[3];                 ///< velocities before the update; null without an account of work
   float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
-  double* friction_work;       ///< dissipated energy [J] per node of `rubbing`, then of `gliding`; or null
-  std::uint32_t steps_before;  ///< number of steps in earlier launches of this solver
+  double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
+  std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -214,18 +183,16 @@ constexpr int step_block = 128;
 /// Planes of slots that a warp loads beyond the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads per block of the patch kernel. If nodes slide, its last warp finds their planes (plane_queue.cuh).
+/// Most threads per block of the patch kernel.
 constexpr std::uint32_t most_patch_threads = 512;
-/// Threads of the warp that finds planes.
-constexpr std::uint32_t finding_threads = 32;
 /// Most patches that a block processes in turn.
 constexpr int most_turns = 8;
 
 /// Most muscles that a model may have on the GPU, because their activations lie in shared memory.
 constexpr int most_muscles = 512;
 
-/// Entries of patch_tasks. 0 or more: contact on which the node slides, as its only effect. none: no effect. still: the
-/// node never moves. other - i: the node has NodeTask i.
+/// Entries of patch_tasks. 0 or more: the node slides on a still surface, as its only effect, and this is its index
+/// into StepArguments::sliding. none: no effect. still: the node never moves. other - i: the node has NodeTask i.
 namespace patch_task
 {
 constexpr std::int32_t none = -1;
@@ -284,11 +251,11 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
-/// corners of voxels and their stiffness bounds, and the queue of requested planes if nodes slide.
-constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes, bool slides)
+/// corners of voxels and their stiffness bounds.
+constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
 {
   return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
-         25 * sizeof(float) * (most_voxels + 1) + (slides ? sizeof(std::int32_t) * (2 + most_nodes) : 0);
+         25 * sizeof(float) * (most_voxels + 1);
 }
 
 /// Number of blocks of the patch kernel that the device runs at once; 0 if it has no code for the device.
@@ -297,12 +264,5 @@ int resident_blocks(const StepLaunch& launch);
 /// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
-
-/// Gives new planes to sliding nodes that have left theirs: before each plan with strips, before the first with
-/// patches. With strips, a node first takes the plane that was found ahead for it, if that is valid, and requests
-/// another if it will leave its plane before the next plan ends.
-cudaError_t launch_renewals(const StepArguments& arguments, cudaStream_t stream);
-/// Finds the requested planes. It runs beside the plan's steps.
-cudaError_t launch_renewals_ahead(const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -1,6 +1,5 @@
 #include "cuda/kernels/element_stress.cuh"
 #include "frontalis/physics/ramp.hpp"
-#include "cuda/kernels/node_tasks.cuh"
 #include "cuda/kernels/voxel_kernels.hpp"
 
 namespace frontalis

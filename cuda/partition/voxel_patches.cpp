@@ -156,15 +156,13 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// Nodes with other effects, numbered contiguously because a warp takes as long for one of them as for 32.
+// Nodes with other effects: 1, those that slide on a still surface: 2. They are numbered contiguously, because a warp
+// takes as long for one of them as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
   for (const SlidingNode& node : model.sliding)
-  {
-    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    busy[node.node] = surface.bone >= 0 || surface.friction > 0 ? 1 : 0;
-  }
+    busy[node.node] = model.constraint_surfaces[node.surface].bone >= 0 ? 1 : 2;
   for (const auto& node : model.prescribed)
     busy[node.node] = 1;
   for (const auto& node : model.rigid)
@@ -191,9 +189,9 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
       }
   const auto busy = busy_nodes(model);
   for (const char border : { 1, 0 })
-    for (const char first : { 1, 0 })
+    for (const char kind : { 2, 1, 0 })
       for (std::size_t n = 0; n < model.nodes.size(); ++n)
-        if (on_border[n] == border && busy[n] == first)
+        if (on_border[n] == border && busy[n] == kind)
           nodes_of[part_of[n]].push_back(static_cast<std::uint32_t>(n));
   number_nodes(model.nodes.size(), nodes_of);
   for (int p = 0; p < parts; ++p)

@@ -1,47 +1,31 @@
 #include "frontalis/bake/bake.hpp"
 
-#include "bake/fibres/fibre_families.hpp"
 #include "bake/fibres/fibres.hpp"
-#include "bake/mesh/spread_points.hpp"
-#include "bake/mesh/surface.hpp"
 #include "bake/messages.hpp"
-#include "bake/voxels/bind_points.hpp"
 #include "bake/voxels/contact_bodies.hpp"
-#include "bake/voxels/local_frame.hpp"
-#include "bake/voxels/muscle_volumes.hpp"
-#include "bake/voxels/restricted_nodes.hpp"
-#include "bake/voxels/volume_probe.hpp"
-#include "bake/voxels/volumes.hpp"
-#include "bake/voxels/voxelise.hpp"
-#include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
-
-#include <algorithm>
 
 namespace frontalis
 {
 namespace
 {
 
-/// Refuses volumes of which nothing lies in the tissue, and reports how much of each muscle was clipped.
+/// Throws Error for a volume outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
   {
     const Volumes::Entry& entry = volumes.entries()[v];
-    const double size = voxels.volume_size.empty() ? 0 : voxels.volume_size[v];
+    const double size = voxels.volume_size[v];
     const std::string muscle = entry.muscle < 0 ? "" : "muscle '" + scene.muscles[entry.muscle].name + "'";
     if (size <= 0 && entry.volume->tissue)
-      throw Error(
-          volumes.place(*entry.volume) +
-          ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; check "
-          "these, the units and the voxel size");
+      throw Error(volumes.place(*entry.volume) +
+                  ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; "
+                  "check these, the units and the voxel size");
     if (size <= 0)
-      throw Error(fmt::format(
-          "{}: {}, or is thinner than the samples can see; check its surfaces, its crop and the voxel "
-          "size",
-          volumes.place(*entry.volume),
-          muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue"));
+      throw failure("{}: {}, or is thinner than the sample spacing; check its surfaces, its crop and the voxel size",
+                    volumes.place(*entry.volume),
+                    muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue");
     if (muscle.empty() || entry.closed_by || entry.inside.empty())
       continue;
     double whole = 0;
@@ -51,13 +35,12 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
       whole += signed_volume(volumes.body(b).mesh());
       closed = closed && volumes.body(b).closed();
     }
-    monitor.found(fmt::format("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle,
-                              1e6 * size, 1e6 * whole, 100 * std::max(0.0, 1 - size / whole),
-                              closed ? "" : "; the surface is open"));
+    monitor.found("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle, 1e6 * size,
+                  1e6 * whole, 100 * std::max(0.0, 1 - size / whole), closed ? "" : "; the surface is open");
   }
 }
 
-/// Greatest depth of a volume's points below a surface [m], estimated from some thousand points.
+/// Greatest depth of a volume's points below a surface [m], estimated from 4000 points.
 double greatest_depth(const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& surface)
 {
   const Box box = volumes.tissue_box();
@@ -71,7 +54,7 @@ double greatest_depth(const Volumes& volumes, const Volumes::Entry& entry, const
   return greatest;
 }
 
-/// Refuses layers that begin below the end of the tissue, and layers that leave nothing of the material below them.
+/// Throws Error for layers that begin below the tissue, and for layers that leave no room for the material below them.
 void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxels)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
@@ -91,8 +74,8 @@ void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxe
                                    ? fmt::format("begins {} deep, but {}", length_text(band.from, scene.unit), ends)
                                    : fmt::format("reaches {} deep and {}, so that nothing is left of its own material",
                                                  length_text(band.to, scene.unit), ends);
-      throw Error(fmt::format("{}: {}; make the layers thinner or the tissue thicker",
-                              place_in_scene(scene, "layer", *band.layer), what));
+      throw failure("{}: {}; make the layers thinner or the tissue thicker",
+                    place_in_scene(scene, "layer", *band.layer), what);
     }
   }
 }
@@ -101,15 +84,12 @@ void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxe
 
 Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 {
+  const bool measure = report != nullptr && report->measure_muscles;
   if (report != nullptr)
-  {
-    const bool measure = report->measure_muscles;
-    *report = {};
-    report->measure_muscles = measure;
-  }
+    *report = { {}, {}, measure, {} };
   BakeMonitor monitor(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
-    throw Error(fmt::format("{}: accuracy: samples is {}; it must be 1 to 32", scene.file, scene.accuracy.samples));
+    throw failure("{}: accuracy: samples is {}; it must be 1 to 32", scene.file, scene.accuracy.samples);
 
   monitor.begin("surfaces");
   const auto surfaces = prepare_surfaces(scene, monitor);
@@ -127,8 +107,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     check_layers(scene, volumes, voxels);
     if (voxels.place.empty())
       throw Error(scene.file +
-                  ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: take smaller "
-                  "ones, or a smaller fill_min");
+                  ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
+                  "voxels or a smaller fill_min");
     frame = assemble_voxels(grid, voxels, model);
   }
   copy_settings(scene, frame, model);
@@ -154,7 +134,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("check");
   switch_off(model, scene.switched_off);
   check_model(model);
-  if (report != nullptr && report->measure_muscles)
+  if (measure)
   {
     monitor.begin("muscle volumes");
     report->muscles = measure_muscles(volumes, model, monitor);

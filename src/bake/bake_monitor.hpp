@@ -2,13 +2,15 @@
 
 #include "frontalis/bake/bake.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
-#include <string>
+#include <cstddef>
 
 namespace frontalis
 {
 
-/// Measures the stages of a bake, collects its findings and asks the caller whether to go on. Used only by the
+/// Measures the stages of a bake, collects its findings and asks the caller whether to continue. Used only by the
 /// thread that called bake().
 class BakeMonitor
 {
@@ -17,17 +19,27 @@ public:
 
   /// Ends the current stage, if any, and begins this one.
   void begin(const std::string& stage);
-  /// Tells the caller the proportion of the stage that is done; throws Error("interrupted") if it wants to stop.
+  /// Reports the proportion of the stage that is done. Throws Error("interrupted") if the caller stops the bake.
   void advance(double done);
   void finish();
-  /// Adds a sentence to the report's findings.
   void found(const std::string& sentence);
+  template <class First, class... Rest>
+  void found(fmt::format_string<First, Rest...> sentence, First&& first, Rest&&... rest)
+  {
+    found(fmt::format(sentence, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
 
 private:
-  BakeReport* report_;  ///< null: no report is wanted
+  BakeReport* report_;  ///< null if the caller wants no report
   const BakeProgress& progress_;
   std::string stage_;
   std::chrono::steady_clock::time_point begin_;
 };
+
+/// Calls body(0) .. body(count - 1) on all cores, about `grain` of them per task. The calls must be independent: each
+/// writes only data of its own index. Meanwhile the calling thread reports progress; if that interrupts the bake, no
+/// further task begins. If calls throw, the exception of the lowest index is rethrown.
+void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t)>& body);
 
 }  // namespace frontalis

@@ -1,12 +1,7 @@
-#include "frontalis/error.hpp"
+#include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/scene/content_hash.hpp"
-#include "bake/voxels/local_frame.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <map>
+#include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
 {
@@ -20,12 +15,12 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   {
     const auto found = material.parameters.find(name);
     if (found == material.parameters.end())
-      throw Error(fmt::format("{}: has no '{}'", place, name));
+      throw failure("{}: has no '{}'", place, name);
     return found->second;
   };
   const auto law = physics::law_named(material.law);
   if (!law)
-    throw Error(fmt::format("{}: law '{}' is not known", place, material.law));
+    throw failure("{}: law '{}' is not known", place, material.law);
   const physics::MaterialDescription& description = physics::description_of(*law);
   std::array<double, physics::law_parameters_max> given{};
   for (int p = 0; p < description.count(); ++p)
@@ -48,16 +43,16 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   }
   const double shear = physics::shear_modulus_of(*law, out.parameters);
   if (!(shear > 0) || !(poisson > -1) || !(poisson < 0.5))
-    throw Error(
-        fmt::format("{}: its shear modulus at rest is {} Pa and its Poisson's ratio {}; the modulus must be above "
-                    "0 and the ratio between -1 and 0.5",
-                    place, shear, poisson));
+    throw failure(
+        "{}: its shear modulus at rest is {} Pa and its Poisson's ratio {}; the modulus must be above 0 and the ratio "
+        "between -1 and 0.5",
+        place, shear, poisson);
   if (!(material.density > 0))
-    throw Error(fmt::format("{}: density is {} kg/m3; it must be above 0", place, material.density));
+    throw failure("{}: density is {} kg/m3; it must be above 0", place, material.density);
   return out;
 }
 
-/// Rows of the face frame: forward, left, up, in scene axes.
+/// Axes of the face frame (forward, left, up) as unit vectors in scene axes.
 std::array<Vector3d, 3> face_axes(const Scene& scene)
 {
   const Vector3d forward = to_vector(scene.frame.forward).normalized(), upwards = to_vector(scene.frame.up);
@@ -69,48 +64,28 @@ std::array<Vector3d, 3> face_axes(const Scene& scene)
 
 void copy_presets(const Scene& scene, Model& model)
 {
-  std::map<std::string, std::int32_t> muscle;
-  for (std::size_t m = 0; m < model.muscles.size(); ++m)
-    muscle[model.muscles[m].name] = static_cast<std::int32_t>(m);
-  std::map<std::string, std::int32_t> expression;
   for (const auto& [name, activations] : scene.expressions)
   {
-    Model::Expression preset;
-    preset.name = name;
-    for (const auto& [muscle_name, activation] : activations)
-    {
-      const auto found = muscle.find(muscle_name);
-      if (found == muscle.end())
-        throw Error(scene.file + ": expression '" + name + "': there is no muscle '" + muscle_name + "'");
-      preset.activation.emplace_back(found->second, static_cast<float>(activation));
-    }
-    expression[name] = static_cast<std::int32_t>(model.expressions.size());
-    model.expressions.push_back(preset);
+    Model::Expression& expression = model.expressions.emplace_back(Model::Expression{ name, {} });
+    for (const auto& [muscle, activation] : activations)
+      expression.activation.emplace_back(
+          index_of(model.muscles, muscle, scene.file + ": expression '" + name + "'", "muscle"),
+          static_cast<float>(activation));
   }
   for (const DemoPhase& phase : scene.demo)
-  {
-    const auto found = expression.find(phase.expression);
-    if (found == expression.end() && phase.expression != "relax")
-      throw Error(scene.file + ": demo: there is no expression '" + phase.expression + "'");
-    model.demo.push_back({ found == expression.end() ? -1 : found->second, phase.ramp, phase.seconds });
-  }
+    model.demo.push_back({ phase.expression == "relax"
+                               ? -1
+                               : index_of(model.expressions, phase.expression, scene.file + ": demo", "expression"),
+                           phase.ramp, phase.seconds });
 }
 
 void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
-  model.mass_scaling.factor = from.factor;
-  model.mass_scaling.time_step = from.time_step;
-  // both have the kinds none, uniform and selective in this order
-  model.mass_scaling.kind = static_cast<MassScalingSettings::Kind>(from.kind);
+  // both enumerations are none, uniform, selective
+  model.mass_scaling = { static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step };
   for (const std::string& name : from.materials)
-  {
-    const auto found = std::find_if(model.materials.begin(), model.materials.end(),
-                                    [&](const Material& material) { return material.name == name; });
-    if (found == model.materials.end())
-      throw Error(scene.file + ": mass_scaling: there is no material '" + name + "'");
-    model.mass_scaling.materials.push_back(static_cast<std::int32_t>(found - model.materials.begin()));
-  }
+    model.mass_scaling.materials.push_back(index_of(model.materials, name, scene.file + ": mass_scaling", "material"));
 }
 
 }  // namespace

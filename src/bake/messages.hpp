@@ -5,18 +5,30 @@
 
 #include <fmt/format.h>
 
-#include <string>
-
 namespace frontalis
 {
 
-// Texts of errors and findings.
+template <class... Values>
+Error failure(fmt::format_string<Values...> text, Values&&... values)
+{
+  return Error(fmt::format(text, std::forward<Values>(values)...));
+}
 
-/// How a message about a named part of the scene begins: "face.yaml:12: volume 'tissue'".
+/// Beginning of a message about a named element of the scene: "face.yaml:12: volume 'tissue'".
 template <class Part>
 std::string place_in_scene(const Scene& scene, const char* kind, const Part& part)
 {
   return fmt::format("{}:{}: {} '{}'", scene.file, part.line, kind, part.name);
+}
+
+/// Index of the entry called `name`. Throws Error if there is none, with a message that begins with `place`.
+template <class Named>
+int index_of(const std::vector<Named>& list, const std::string& name, const std::string& place, const char* kind)
+{
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Named& entry) { return entry.name == name; });
+  if (found == list.end())
+    throw failure("{}: there is no {} '{}'", place, kind, name);
+  return static_cast<int>(found - list.begin());
 }
 
 /// Name of a length unit given in metres.
@@ -25,20 +37,20 @@ inline const char* unit_text(double unit)
   return unit == 1 ? "m" : unit == 1e-2 ? "cm" : unit == 1e-6 ? "um" : unit == 0.0254 ? "in" : "mm";
 }
 
-/// A length [m] in the scene's unit: "12.3 mm".
+/// Text of a length [m] in the scene's length unit: "12.3 mm".
 inline std::string length_text(double length, double unit)
 {
   return fmt::format("{:.3g} {}", length / unit, unit_text(unit));
 }
 
-/// A place [m] in the scene's unit, as the mesh files have it: "(12.3, -180, 1540.2) mm".
+/// Text of a position [m] in the scene's length unit: "(12.3, -180, 1540.2) mm".
 inline std::string place_text(const Vector3d& place, double unit)
 {
   const Vector3d p = place / unit;
   return fmt::format("({:.6g}, {:.6g}, {:.6g}) {}", p[0], p[1], p[2], unit_text(unit));
 }
 
-/// "1 edge", "2 edges".
+/// A count with its noun: "1 edge", "2 edges".
 inline std::string count_text(std::size_t count, const char* one, const char* many)
 {
   return fmt::format("{} {}", count, count == 1 ? one : many);

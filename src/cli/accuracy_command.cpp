@@ -1,18 +1,21 @@
-#include "cli/accuracy_subject.hpp"
-#include "cli/command.hpp"
+#include "cli/command_options.hpp"
+#include "cli/model_source.hpp"
 
 #include "frontalis/error.hpp"
 
-#include <CLI/CLI.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <memory>
 
 #ifdef FRONTALIS_WITH_BAKE
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/study/accuracy.hpp"
+
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #endif
 
 namespace frontalis
@@ -20,7 +23,157 @@ namespace frontalis
 namespace
 {
 
+struct AccuracyOptions
+{
+  ModelSource source;
+  std::vector<std::string> knobs;
+  std::vector<double> voxels;
+  std::string expression;
+  double ramp = 0, hold = 0;
+  double budget = 0;
+  double tolerance = 0, time = 0;
+  std::string folder, save;
+  SolverSettings solver;
+  bool quick = false;
+};
+
 #ifdef FRONTALIS_WITH_BAKE
+
+Scene scene_with(Scene scene, const AccuracySetting& setting)
+{
+  scene.accuracy = setting.profile;
+  // names and measured figures do not change the model, and must not make equal variants look different
+  scene.accuracy.name = "standard";
+  scene.accuracy.measured = {};
+  scene.profiles.clear();
+  scene.time.scaling *= setting.time_scaling;
+  if (setting.poisson != 0)
+    for (SceneMaterial& material : scene.materials)
+      material.parameters["poisson"] = setting.poisson;
+  scene.content = content_of(scene);
+  return scene;
+}
+
+// the profile called standard, else the one that the scene takes
+AccuracyProfile standard_profile(const Scene& scene, bool chosen)
+{
+  if (!chosen)
+    for (const AccuracyProfile& profile : scene.profiles)
+      if (profile.name == "standard")
+        return profile;
+  return scene.accuracy;
+}
+
+// an expression's activations; without expressions all muscles at 0.75
+std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
+{
+  if (!options.expression.empty())
+    return expression_activation(model, options.expression);
+  if (!model.expressions.empty())
+    return expression_activation(model, model.expressions.front().name);
+  return std::vector<float>(model.muscles.size(), 0.75F);
+}
+
+void check_numbers(const AccuracyOptions& options)
+{
+  std::vector<double> numbers = options.voxels;
+  numbers.insert(numbers.end(), { options.budget, options.ramp, options.hold, options.tolerance, options.time });
+  for (const double number : numbers)
+    if (!(number >= 0) || !std::isfinite(number))
+      throw WrongUsage("--voxels, --budget, --ramp, --hold, --tolerance, --time: must be numbers greater than 0");
+}
+
+// takes over the options that any subject has; those that were not given change nothing
+void take_options(const AccuracyOptions& options, AccuracyPlan& plan)
+{
+  plan.standard.backend = options.solver.backend;
+  if (plan.standard.backend == "auto")
+  {
+    const auto backends = available_backends();
+    const bool device = std::find(backends.begin(), backends.end(), "cuda") != backends.end();
+    plan.standard.backend = device ? "cuda" : "cpu";
+  }
+  if (!options.knobs.empty())
+    plan.knobs = options.knobs;
+  plan.quick = options.quick;
+  plan.budget = options.budget > 0 ? options.budget : options.quick ? 280 : 0;
+  plan.threads = options.solver.threads;
+  if (options.ramp > 0)
+    plan.history.ramp = options.ramp;
+  if (options.hold > 0)
+    plan.history.hold = options.hold;
+  if (!options.voxels.empty())
+    plan.edges.clear();
+  for (const double millimetres : options.voxels)
+    plan.edges.push_back(1e-3 * millimetres);
+}
+
+ClosedForm scene_subject(const AccuracyOptions& options)
+{
+  const Scene scene = read_scene(options.source.path, options.source.scene);
+  ClosedForm subject{ std::filesystem::path(options.source.path).stem().string(), {}, {} };
+  AccuracyPlan& plan = subject.plan;
+  plan.standard.profile = standard_profile(scene, !options.source.scene.accuracy.empty());
+  plan.profiles = scene.profiles;
+  plan.frame_rate = scene.time.frame_rate;
+  plan.history = { {}, options.quick ? 0.2 : 0.3, options.quick ? 0.1 : 0.3 };
+  for (const double factor :
+       options.quick ? std::vector<double>{ 2, 1.5, 1, 0.75, 0.5 } : std::vector<double>{ 1.5, 1, 0.75, 0.5, 0.375 })
+    plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
+  take_options(options, plan);
+
+  // the meshes' content is the same for all settings and is hashed once
+  Scene bare = scene_with(scene, {});
+  const std::string meshes = bare.content;
+  bare.surfaces.clear();
+  subject.maker = { [meshes, bare](const AccuracySetting& setting)
+                    { return meshes + scene_with(bare, setting).content; },
+                    [scene](const AccuracySetting& setting) {
+                      return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
+                    } };
+  // any model has the names of the muscles; the coarsest is baked fastest
+  AccuracySetting coarsest = plan.standard;
+  coarsest.profile.voxel.fill(plan.edges.front());
+  plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
+  return subject;
+}
+
+ClosedForm closed_form_subject(ClosedForm form, const AccuracyOptions& options)
+{
+  const SceneOptions& of_scene = options.source.scene;
+  if (!of_scene.accuracy.empty() || !of_scene.voxel_quantity.empty() || !of_scene.mesh_directory.empty() ||
+      !options.expression.empty() || options.ramp > 0 || options.hold > 0)
+    throw WrongUsage(form.name +
+                     " is a body with a closed form; --accuracy, --voxel, --mesh-dir, --expression, --ramp "
+                     "and --hold go with scenes");
+  for (const std::string& knob : options.knobs)
+    if (std::find(form.plan.knobs.begin(), form.plan.knobs.end(), knob) == form.plan.knobs.end())
+      throw Error(
+          fmt::format("{} has no knob '{}'; its knobs are {}", form.name, knob, fmt::join(form.plan.knobs, ", ")));
+  take_options(options, form.plan);
+  return form;
+}
+
+// what the command line names: a scene, or a body with a closed form
+ClosedForm accuracy_subject(const AccuracyOptions& options)
+{
+  check_numbers(options);
+  const std::string& path = options.source.path;
+  const bool exists = std::filesystem::exists(path) && !std::filesystem::is_directory(path);
+  if (exists && is_model_file(path))
+    throw Error(path + ": is a baked model; a study of accuracy needs the scene (YAML)");
+  std::string names;
+  if (!exists)
+    for (const ClosedForm& form : closed_forms())
+    {
+      if (form.name == path)
+        return closed_form_subject(form, options);
+      names += (names.empty() ? "" : ", ") + form.name;
+    }
+  if (!exists)
+    throw Error(path + ": there is no such scene file, nor a body of that name with a closed form: " + names);
+  return scene_subject(options);
+}
 
 std::string time_text(double seconds)
 {
@@ -59,7 +212,7 @@ void choose(const AccuracyFindings& findings, const AccuracyOptions& options)
   const std::string profile = profile_text(row, "chosen", findings.machine);
   fmt::print("chosen    {}: error {:.3g} mm RMS, {:.3g} mm at most; {:.3g} s per simulated second{}\n\n  {}\n",
              row.name, 1e3 * row.error.rms, 1e3 * row.error.largest, row.cost,
-             row.noisy ? " (timed on a disturbed machine)" : "", profile);
+             row.is_noisy() ? " (timed on a disturbed machine)" : "", profile);
   if (!options.save.empty())
   {
     write_text(options.save, fmt::format("# {}, as measured by: frontalis accuracy {}\n{}\n", row.name,
@@ -74,7 +227,10 @@ void study(AccuracyOptions options)
     throw WrongUsage("--tolerance and --time: only one of the two may be given");
   if (!options.save.empty() && options.tolerance <= 0 && options.time <= 0)
     throw WrongUsage("--save goes with --tolerance or --time");
-  const AccuracySubject subject = accuracy_subject(options);
+  ClosedForm subject = accuracy_subject(options);
+  if (options.folder.empty())
+    options.folder = "accuracy_" + subject.name;
+  subject.plan.folder = options.folder;
 
   Progress progress;
   int count = 0;
@@ -116,9 +272,9 @@ void study(const AccuracyOptions& options)
 
 }  // namespace
 
-void add_accuracy_command(CLI::App& app, Action& action)
+void add_accuracy_command(CLI::App& app)
 {
-  auto options = std::make_shared<AccuracyOptions>();
+  const auto options = std::make_shared<AccuracyOptions>();
   CLI::App* command = app.add_subcommand(
       "accuracy", "measure what each setting of a scene costs and how accurate it is, and choose one");
   command
@@ -132,28 +288,22 @@ void add_accuracy_command(CLI::App& app, Action& action)
           "vary only these, without combinations: voxel, samples, fill_min, hourglass, integration, precision, "
           "share, time_step, mass_scaling, poisson, time_scaling, backend, profiles")
       ->delimiter(',');
-  command->add_option("--voxels", options->voxels, "voxel edges, coarse to fine [mm]; the last is the reference's")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  add_positive(*command, "--voxels", options->voxels, "voxel edges, coarse to fine [mm]; the last is the reference's")
+      ->delimiter(',');
   command->add_flag("--quick", options->quick, "fewer settings and a shorter motion, for a study of minutes");
-  command
-      ->add_option("--budget", options->budget,
-                   "wall seconds that the study may take (280 with --quick, else all it needs)")
-      ->check(CLI::PositiveNumber);
+  add_positive(*command, "--budget", options->budget,
+               "wall seconds that the study may take (280 with --quick, else all it needs)");
   command->add_option("--expression", options->expression, "the expression to activate (the scene's first one)");
-  command->add_option("--ramp", options->ramp, "seconds over which activations grow (0.3)")->check(CLI::PositiveNumber);
-  command->add_option("--hold", options->hold, "seconds for which they are held (0.3)")->check(CLI::PositiveNumber);
-  auto* tolerance = command->add_option("--tolerance", options->tolerance,
-                                        "choose the cheapest setting whose skin has at most this RMS error [mm]");
-  tolerance->check(CLI::PositiveNumber);
-  command
-      ->add_option("--time", options->time,
-                   "choose the most accurate setting that takes at most so many wall seconds per simulated second")
-      ->check(CLI::PositiveNumber);
+  add_positive(*command, "--ramp", options->ramp, "seconds over which activations grow (0.3)");
+  add_positive(*command, "--hold", options->hold, "seconds for which they are held (0.3)");
+  add_positive(*command, "--tolerance", options->tolerance,
+               "choose the cheapest setting whose skin has at most this RMS error [mm]");
+  add_positive(*command, "--time", options->time,
+               "choose the most accurate setting that takes at most so many wall seconds per simulated second");
   command->add_option("--save", options->save, "write the chosen profile to this file, for --accuracy");
   command->add_option("-o,--output", options->folder, "folder for results and finished variants (accuracy_SCENE)");
   add_solver_options(*command, options->solver);
-  command->callback([options, &action] { action = [options] { study(*options); }; });
+  command->callback([options] { study(*options); });
 }
 
 }  // namespace frontalis

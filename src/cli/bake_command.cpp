@@ -61,17 +61,13 @@ void bake_to_file(const BakeOptions& options)
   write_model(model, options.output);
   const double seconds = wall_seconds() - begin;
 
-  if (!summary.cache.empty())
-    fmt::print("cache    {}\n", summary.cache);
-  for (const std::string& stage : summary.stages)
-    fmt::print("stage    {}\n", stage);
+  fmt::print("{}", summary.stages);
   if (options.report)
   {
     for (const std::string& finding : summary.findings)
       fmt::print("finding  {}\n", finding);
     print_constraints(model);
-    for (const std::string& muscle : summary.muscles)
-      fmt::print("muscle   {}\n", muscle);
+    fmt::print("{}", summary.muscles);
   }
   fmt::print("voxels   {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
              model.spacing[1] * 1e3, model.spacing[2] * 1e3);
@@ -86,7 +82,7 @@ void bake_to_file(const BakeOptions& options)
 
 }  // namespace
 
-void add_bake_command(CLI::App& app, Action& action)
+void add_bake_command(CLI::App& app)
 {
   CLI::App* command = app.add_subcommand("bake", "build the model of a scene and write it to a file");
   const auto options = std::make_shared<BakeOptions>();
@@ -98,7 +94,7 @@ void add_bake_command(CLI::App& app, Action& action)
       "--cache", options->source.cache,
       "folder that keeps models by the content of their scenes: a model is taken from there, or baked and kept there");
   add_scene_options(*command, options->source);
-  command->callback([&action, options] { action = [options] { bake_to_file(*options); }; });
+  command->callback([options] { bake_to_file(*options); });
 }
 
 }  // namespace frontalis

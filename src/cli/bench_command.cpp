@@ -1,17 +1,12 @@
-#include "cli/command.hpp"
+#include "cli/command_options.hpp"
 #include "cli/model_source.hpp"
-#include "cli/plot_path.hpp"
-#include "cli/solver_options.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/solver/solver.hpp"
-#include "frontalis/study/dense_block.hpp"
-#include "frontalis/study/effect_presence.hpp"
+#include "frontalis/study/effect_costs.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
-#include "frontalis/study/yardstick.hpp"
+#include "frontalis/study/voxel_model.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #ifdef __GLIBC__
@@ -34,7 +29,7 @@ namespace
 struct BenchOptions
 {
   ModelSource source;
-  SolverOptions solver{ "cpu", 0 };
+  SolverSettings solver{ "cpu" };
   bool quick = false;
   bool effects = false;
   std::string plot;
@@ -126,7 +121,7 @@ void bench_model(const std::string& name, const std::shared_ptr<const Model>& mo
                  double yardstick)
 {
   const double before = resident_bytes();
-  const auto solver = make_solver(model, options.solver.settings());
+  const auto solver = make_solver(model, options.solver);
   Controls controls = solver->controls();
   std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
   const std::vector<double> times = time_steps(*solver, controls, options.quick ? 1.5 : 5.0);
@@ -161,7 +156,6 @@ void draw(const std::vector<PresenceCost>& costs, const std::string& backend, co
 
 void bench_effects(const BenchOptions& options)
 {
-  const SolverSettings settings = options.solver.settings();
   const double seconds = options.quick ? 1.0 : 4.0;
   // options and model are checked before minutes are spent
   const std::string plot = plot_path(options.plot);
@@ -170,7 +164,7 @@ void bench_effects(const BenchOptions& options)
     model = std::make_shared<const Model>(obtain_model(options.source));
   if (model && model->muscles.empty())
     throw Error(options.source.path + ": has no muscles; to compare one with all it must have some");
-  const auto costs = measure_presence(settings, seconds);
+  const auto costs = measure_presence(options.solver, seconds);
   Table table({ "effect", "share [%]", "additional [us]", "spread [us]", "of base step [%]", "of full cost [%]" });
   const auto rounded = [](double x, double unit) { return std::round(x / unit) * unit; };
   const std::size_t shares = presence_shares().size();
@@ -184,7 +178,7 @@ void bench_effects(const BenchOptions& options)
   fmt::print("{}", table.text());
   if (model)
   {
-    const ActivationCost cost = measure_activation(model, settings, step_timer(settings, seconds));
+    const ActivationCost cost = measure_activation(model, options.solver, step_timer(options.solver, seconds));
     fmt::print("one muscle active: {:.2f} us per step; all: {:.2f} us; spread of the difference {:.2f} us\n",
                1e6 * cost.one, 1e6 * cost.all, 1e6 * cost.spread);
   }
@@ -217,7 +211,7 @@ void bench(const BenchOptions& options)
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, Action& action)
+void add_bench_command(CLI::App& app)
 {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
@@ -229,7 +223,7 @@ void add_bench_command(CLI::App& app, Action& action)
   command->add_flag("--effects", options->effects,
                     "time effects that a share of the voxels has; of SCENE_OR_MODEL, one active muscle against all");
   command->add_option("--plot", options->plot, "draw the result of --effects: FILE.png, and FILE.svg beside it");
-  command->callback([options, &action] { action = [options] { bench(*options); }; });
+  command->callback([options] { bench(*options); });
 }
 
 }  // namespace frontalis

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cmath>
-#include <functional>
 #include <stdexcept>
-#include <string>
 
 namespace CLI
 {
@@ -26,26 +23,25 @@ enum ExitCode : int
 class WrongUsage : public std::runtime_error
 {
 public:
-  explicit WrongUsage(const std::string& what) : std::runtime_error(what) {}
+  using std::runtime_error::runtime_error;
 };
 
-/// Throws WrongUsage if --seconds is not a number greater than 0.
-inline void check_seconds(double seconds)
+/// Thrown where Ctrl-C ends the work early.
+struct Interrupted
 {
-  if (!(seconds > 0) || !std::isfinite(seconds))
-    throw WrongUsage("--seconds: must be a number greater than 0");
-}
+};
 
-/// The work of a subcommand, done after the command line has been read; throws Error, WrongUsage or Interrupted.
-using Action = std::function<void()>;
+/// Whether Ctrl-C (or SIGTERM) has come, which ends the program only when it comes again.
+bool interrupt_requested();
 
-// One function per subcommand: it declares the options in `app` and sets `action` where the subcommand is chosen.
-void add_accuracy_command(CLI::App& app, Action& action);
-void add_bake_command(CLI::App& app, Action& action);
-void add_bench_command(CLI::App& app, Action& action);
-void add_effects_command(CLI::App& app, Action& action);
-void add_run_command(CLI::App& app, Action& action);
-void add_stability_command(CLI::App& app, Action& action);
-void add_verify_command(CLI::App& app, Action& action);
+// One function per subcommand: it declares the options in `app` and the work that is done once the command line has
+// been read. The work throws Error, WrongUsage or Interrupted.
+void add_accuracy_command(CLI::App& app);
+void add_bake_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
+void add_effects_command(CLI::App& app);
+void add_run_command(CLI::App& app);
+void add_stability_command(CLI::App& app);
+void add_verify_command(CLI::App& app);
 
 }  // namespace frontalis

@@ -1,13 +1,10 @@
-#include "cli/command.hpp"
+#include "cli/command_options.hpp"
 #include "cli/model_source.hpp"
-#include "cli/plot_path.hpp"
-#include "cli/solver_options.hpp"
 
 #include "frontalis/study/effect_costs.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +20,7 @@ namespace
 struct EffectsOptions
 {
   ModelSource source;
-  SolverOptions solver;
+  SolverSettings solver;
   double seconds = 2;
   bool json = false;
   bool arrays = false;
@@ -89,8 +86,7 @@ void draw(const EffectCosts& costs, const std::string& path)
 // the bytes of each of the solver's arrays
 void show_arrays(const EffectsOptions& options)
 {
-  const auto solver =
-      make_solver(std::make_shared<const Model>(obtain_model(options.source)), options.solver.settings());
+  const auto solver = make_solver(std::make_shared<const Model>(obtain_model(options.source)), options.solver);
   Table table({ "effect", "array", "bytes" });
   for (const Allocation& allocation : solver->allocations())
     table.add({ name_of(allocation.effect), allocation.what, static_cast<double>(allocation.bytes) });
@@ -113,8 +109,7 @@ void show_effects(const EffectsOptions& options)
     return show_arrays(options);
   check_seconds(options.seconds);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
-  const SolverSettings settings = options.solver.settings();
-  const EffectCosts costs = measure_effects(model, settings, step_timer(settings, options.seconds));
+  const EffectCosts costs = measure_effects(model, options.solver, step_timer(options.solver, options.seconds));
   if (options.json)
     fmt::print("{}", json_of(*model, costs));
   else
@@ -127,20 +122,26 @@ void show_effects(const EffectsOptions& options)
 
 }  // namespace
 
-void add_effects_command(CLI::App& app, Action& action)
+void add_effects_command(CLI::App& app)
 {
-  auto options = std::make_shared<EffectsOptions>();
+  const auto options = std::make_shared<EffectsOptions>();
   CLI::App* command = app.add_subcommand("effects", "list the effects of a scene or a baked model and what each costs");
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   add_scene_options(*command, options->source);
   add_solver_options(*command, options->solver);
-  command->add_option("--seconds", options->seconds, "wall seconds for which each effect is timed (2)")
-      ->check(CLI::PositiveNumber);
+  add_positive(*command, "--seconds", options->seconds, "wall seconds for which each effect is timed (2)");
   command->add_flag("--json", options->json, "JSON instead of a table");
   command->add_flag("--arrays", options->arrays, "list the bytes of each of the solver's arrays instead of timing")
       ->excludes(
           command->add_option("--plot", options->plot, "draw the costs as bars: FILE.png, and FILE.svg beside it"));
-  command->callback([options, &action] { action = [options] { show_effects(*options); }; });
+  command->callback(
+      [options]
+      {
+        // nothing but the JSON comes to stdout
+        if (options->json)
+          options->source.progress = stderr;
+        show_effects(*options);
+      });
 }
 
 }  // namespace frontalis

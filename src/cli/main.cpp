@@ -1,13 +1,25 @@
 #include "cli/command.hpp"
-#include "cli/interrupt.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
 namespace
 {
+
+volatile std::sig_atomic_t requested = 0;
+
+// the first Ctrl-C or SIGTERM only sets the flag; the second one ends the program at once
+void catch_interrupts()
+{
+  struct sigaction action = {};
+  action.sa_handler = [](int) { requested = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
 
 int report(const char* text, int code)
 {
@@ -17,37 +29,32 @@ int report(const char* text, int code)
 
 }  // namespace
 
+bool frontalis::interrupt_requested() { return requested != 0; }
+
 int main(int argc, char** argv)
 {
   CLI::App app("frontalis: simulates facial soft tissue", "frontalis");
   app.set_version_flag("--version", "frontalis " FRONTALIS_VERSION);
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
+  frontalis::add_bake_command(app);
+  frontalis::add_run_command(app);
+  frontalis::add_bench_command(app);
+  frontalis::add_effects_command(app);
+  frontalis::add_verify_command(app);
+  frontalis::add_accuracy_command(app);
+  frontalis::add_stability_command(app);
 
-  frontalis::Action action;
-  frontalis::add_bake_command(app, action);
-  frontalis::add_run_command(app, action);
-  frontalis::add_bench_command(app, action);
-  frontalis::add_effects_command(app, action);
-  frontalis::add_verify_command(app, action);
-  frontalis::add_accuracy_command(app, action);
-  frontalis::add_stability_command(app, action);
-
+  catch_interrupts();
   try
   {
     app.parse(argc, argv);
+    return frontalis::exit_success;
   }
   catch (const CLI::ParseError& error)
   {
     // --help and --version are exceptions too, with code 0
     return app.exit(error) == 0 ? frontalis::exit_success : frontalis::exit_wrong_usage;
-  }
-
-  frontalis::catch_interrupts();
-  try
-  {
-    action();
-    return frontalis::exit_success;
   }
   catch (const frontalis::Interrupted&)
   {

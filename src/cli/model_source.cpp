@@ -1,7 +1,6 @@
 #include "cli/model_source.hpp"
 
 #include "cli/command.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
@@ -9,7 +8,6 @@
 #ifdef FRONTALIS_WITH_BAKE
 #include "frontalis/bake/bake.hpp"
 #include "frontalis/scene/content_hash.hpp"
-#include "frontalis/scene/read_scene.hpp"
 #endif
 
 #include <CLI/CLI.hpp>
@@ -24,10 +22,11 @@ namespace frontalis
 
 void add_scene_options(CLI::App& command, ModelSource& source)
 {
-  command.add_option("--mesh-dir", source.mesh_directory, "folder of the scene's mesh files");
-  command.add_option("--accuracy", source.accuracy,
+  command.add_option("--mesh-dir", source.scene.mesh_directory, "folder of the scene's mesh files");
+  command.add_option("--accuracy", source.scene.accuracy,
                      "name of one of the scene's accuracy profiles, or a file with one (.yaml)");
-  command.add_option("--voxel", source.voxel, "voxel edge, in the scene's length unit (1.5) or with one (\"1.5 mm\")");
+  command.add_option("--voxel", source.scene.voxel_quantity,
+                     "voxel edge, in the scene's length unit (1.5) or with one (\"1.5 mm\")");
 }
 
 bool is_model_file(const std::string& path)
@@ -47,71 +46,56 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-/// A folder that keeps models by the hash of their scenes' content. A scene is baked even where the folder fails.
-class Cache
+// The model of a scene's content in the cache, if it is usable. `told`: a sentence on what was found.
+std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
 {
-public:
-  Cache(const std::string& folder, const Scene& scene) : hash_(content_hash(scene.content))
+  if (path.empty() || !std::filesystem::exists(path))
+    return std::nullopt;
+  try
   {
-    if (!folder.empty())
-      path_ = (std::filesystem::path(folder) / (hash_ + ".vtkhdf")).string();
+    Model model = read_model_of(path, hash);
+    told = "taken from " + path;
+    return model;
   }
-
-  std::optional<Model> find(std::string& told) const
+  catch (const Error& error)
   {
-    if (path_.empty() || !std::filesystem::exists(path_))
-      return std::nullopt;
-    try
-    {
-      Model model = read_model_of(path_, hash_);
-      told = "taken from " + path_;
-      return model;
-    }
-    catch (const Error& error)
-    {
-      told = std::string("not usable: ") + error.what() + "; ";
-      return std::nullopt;
-    }
+    told = std::string("not usable: ") + error.what() + "; ";
+    return std::nullopt;
   }
+}
 
-  void keep(const Model& model, std::string& told) const
+// a model that cannot be kept is no error, for the bake has succeeded
+void keep_in_cache(const Model& model, const std::string& path, std::string& told)
+{
+  if (path.empty())
+    return;
+  try
   {
-    if (path_.empty())
-      return;
-    try
-    {
-      std::filesystem::create_directories(std::filesystem::path(path_).parent_path());
-      write_model(model, path_);
-      told += "kept as " + path_;
-    }
-    catch (const std::exception& error)
-    {
-      told += std::string("not kept: ") + error.what();
-    }
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+    write_model(model, path);
+    told += "kept as " + path;
   }
-
-private:
-  std::string hash_;
-  std::string path_;
-};
+  catch (const std::exception& error)
+  {
+    told += std::string("not kept: ") + error.what();
+  }
+}
 
 BakeSummary summary_of(const BakeReport& report)
 {
-  BakeSummary summary;
-  summary.whole = report.measure_muscles;
-  summary.findings = report.findings;
+  BakeSummary summary{ report.measure_muscles, {}, {}, report.findings };
   for (const BakeReport::Stage& stage : report.stages)
-    summary.stages.push_back(
-        fmt::format("{:8.3f} s  {:6.0f} MB  {}", stage.seconds, stage.peak_memory / 1e6, stage.name));
+    summary.stages +=
+        fmt::format("stage    {:8.3f} s  {:6.0f} MB  {}\n", stage.seconds, stage.peak_memory / 1e6, stage.name);
   if (!report.muscles.empty())
-    summary.muscles.push_back(fmt::format("{:>8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}  cm3", "voxels", "in tissue",
-                                          "differ", "mesh", "in bone", "off skin", "limits", "nurbs"));
+    summary.muscles = fmt::format("muscle   {:>8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}  cm3\n", "voxels",
+                                  "in tissue", "differ", "mesh", "in bone", "off skin", "limits", "nurbs");
   for (const BakeReport::MuscleVolume& muscle : report.muscles)
-    summary.muscles.push_back(
-        fmt::format("{:8.3f} {:9.3f} {:6.1f}% {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:>8}  {}", 1e6 * muscle.voxels,
-                    1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1), 1e6 * muscle.mesh,
-                    1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
-                    muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name));
+    summary.muscles +=
+        fmt::format("muscle   {:8.3f} {:9.3f} {:6.1f}% {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:>8}  {}\n",
+                    1e6 * muscle.voxels, 1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1),
+                    1e6 * muscle.mesh, 1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
+                    muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name);
   return summary;
 }
 
@@ -143,32 +127,28 @@ Model bake_interruptibly(const Scene& scene, BakeReport* report,
 
 Model bake_scene(const ModelSource& source, BakeSummary* summary)
 {
-  SceneOptions options;
-  options.mesh_directory = source.mesh_directory;
-  options.accuracy = source.accuracy;
-  options.voxel_quantity = source.voxel;
-  const Scene scene = read_scene(source.path, options);
-
-  const Cache cache(source.cache, scene);
+  const Scene scene = read_scene(source.path, source.scene);
+  const std::string hash = content_hash(scene.content);
+  const std::string cached =
+      source.cache.empty() ? "" : (std::filesystem::path(source.cache) / (hash + ".vtkhdf")).string();
   std::string of_cache;
-  if (std::optional<Model> model = cache.find(of_cache))
-  {
-    if (summary != nullptr)
-      summary->cache = of_cache;
-    return *std::move(model);
-  }
-  Progress progress;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
-  Model model = bake_interruptibly(
-      scene, &report, [&progress](const std::string& stage, double done) { progress.update(stage, done); });
-  cache.keep(model, of_cache);
+  std::optional<Model> model = cached_model(cached, hash, of_cache);
+  if (!model)
+  {
+    Progress progress(source.progress);
+    model = bake_interruptibly(scene, &report,
+                               [&](const std::string& stage, double done) { progress.update(stage, done); });
+    keep_in_cache(*model, cached, of_cache);
+  }
   if (summary != nullptr)
   {
     *summary = summary_of(report);
-    summary->cache = of_cache;
+    if (!of_cache.empty())
+      summary->stages.insert(0, "cache    " + of_cache + "\n");
   }
-  return model;
+  return *std::move(model);
 }
 
 #else
@@ -186,9 +166,9 @@ Model obtain_model(const ModelSource& source)
     throw Error(source.path + ": no such file; must be a scene (YAML) or a baked model (.vtkhdf)");
   if (!is_model_file(source.path))
     return bake_scene(source);
-  for (const auto& [option, text] : { std::pair<const char*, const std::string&>("--mesh-dir", source.mesh_directory),
-                                      std::pair<const char*, const std::string&>("--accuracy", source.accuracy),
-                                      std::pair<const char*, const std::string&>("--voxel", source.voxel) })
+  for (const auto& [option, text] : { std::pair{ "--mesh-dir", source.scene.mesh_directory },
+                                      { "--accuracy", source.scene.accuracy },
+                                      { "--voxel", source.scene.voxel_quantity } })
     if (!text.empty())
       throw WrongUsage(fmt::format("{} goes with a scene; '{}' is already a baked model", option, source.path));
   return read_model(source.path);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/scene/read_scene.hpp"
 
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,25 +17,22 @@ namespace frontalis
 {
 
 struct BakeReport;
-struct Scene;
 
 /// The scene or model that the command line names.
 struct ModelSource
 {
   std::string path;
-  std::string mesh_directory;
-  std::string accuracy;
-  std::string voxel;
-  std::string cache;  ///< folder that keeps models by the hash of their scene; empty: none
+  SceneOptions scene;
+  std::string cache;             ///< folder that keeps models by the hash of their scene; empty: none
+  std::FILE* progress = stdout;  ///< where the stages of a bake are named if stderr is not a terminal
 };
 
 /// The report of a bake, ready to print.
 struct BakeSummary
 {
-  bool whole = false;                ///< set before the bake: measure the muscles too
-  std::string cache;                 ///< a sentence on how the cache was used; empty: there is no cache
-  std::vector<std::string> stages;   ///< seconds, peak memory and name
-  std::vector<std::string> muscles;  ///< a table of their volumes, heading first; empty: none
+  bool whole = false;   ///< set before the bake: measure the muscles too
+  std::string stages;   ///< how the cache was used, if there is one, then seconds, peak memory and name of each stage
+  std::string muscles;  ///< a table of their volumes
   std::vector<std::string> findings;
 };
 

@@ -17,10 +17,7 @@ constexpr std::size_t name_width = 16;
 
 }  // namespace
 
-Progress::Progress(OffTerminal off_terminal)
-    : terminal_(isatty(STDERR_FILENO) != 0), lines_(off_terminal == OffTerminal::lines)
-{
-}
+Progress::Progress(std::FILE* lines) : terminal_(isatty(STDERR_FILENO) != 0), lines_(lines) {}
 
 void Progress::update(const std::string& stage, double done)
 {
@@ -35,8 +32,8 @@ void Progress::update(const std::string& stage, double done)
       const std::string name = stage + std::string(name_width - std::min(name_width, stage.size()), ' ');
       bar_.emplace(steps, std::cerr, space, name, space);
     }
-    else if (lines_)
-      std::printf("%s ...\n", stage.c_str());
+    else if (lines_ != nullptr)
+      std::fprintf(lines_, "%s ...\n", stage.c_str());
     std::fflush(stdout);
   }
   if (!bar_)

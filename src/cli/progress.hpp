@@ -2,23 +2,19 @@
 
 #include <boost/timer/progress_display.hpp>
 
+#include <cstdio>
 #include <optional>
 #include <string>
 
 namespace frontalis
 {
 
-/// Shows the progress of work: one bar per stage where stderr is a terminal, else one line per stage on stdout.
+/// Shows the progress of work: one bar per stage where stderr is a terminal, else one line per stage.
 class Progress
 {
 public:
-  /// What is shown where stderr is no terminal.
-  enum class OffTerminal
-  {
-    lines,
-    silent
-  };
-  explicit Progress(OffTerminal off_terminal = OffTerminal::lines);
+  /// `lines`: where the lines go; null: nowhere.
+  explicit Progress(std::FILE* lines = stdout);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -29,7 +25,8 @@ public:
   void clear();
 
 private:
-  bool terminal_, lines_;
+  bool terminal_;
+  std::FILE* lines_;
   std::string stage_;
   std::optional<boost::timer::progress_display> bar_;
 };

@@ -1,19 +1,15 @@
-#include "cli/activation_list.hpp"
-#include "cli/command.hpp"
-#include "cli/frame_folder.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/command_options.hpp"
+#include "cli/given_controls.hpp"
 #include "cli/model_source.hpp"
-#include "cli/motion.hpp"
 #include "cli/progress.hpp"
 #include "cli/reactions.hpp"
-#include "cli/run_summary.hpp"
-#include "cli/solver_options.hpp"
+#include "cli/run_output.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/step_time.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -26,6 +22,9 @@ namespace frontalis
 namespace
 {
 
+// time steps between two checks whether Ctrl-C was pressed: about a second of wall time with a large model
+constexpr double steps_per_slice = 4096;
+
 struct RunOptions
 {
   ModelSource source;
@@ -36,33 +35,49 @@ struct RunOptions
   std::vector<std::string> without;
   bool to_equilibrium = false;
   double tolerance = 1e-3;
-  bool ledger = false;
   double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if that is less
   double seconds = 1;
   std::string frames;
   double frame_rate = 0;  ///< [1/s]; 0: the model's
-  SolverOptions solver;
-  double time_step = 0;     ///< [s]; 0: found by the solver
+  SolverSettings solver;
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
 };
 
-// Ends the run before a frame of a diverged motion is written.
-void check_motion(const Monitor& monitor, const SkinState& skin, double time)
+/// A solver with what moves it, and what has been found of its motion.
+struct Run
 {
-  if (!monitor.finite || !is_finite(skin))
-    throw Error(
-        fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
-                    "time_step_share, smaller activations or more damping",
-                    time));
-}
+  const RunOptions& options;
+  const Model& model;
+  ActivationCurve curve;
+  std::vector<RigidTransform> bones;  ///< motion of each bone from its rest pose, at the end of the ramp
+  double ramp;                        ///< [s]
+  Solver& solver;
+  std::optional<FrameFolder> folder;
+  std::optional<Guard> guard{};
+  RunSummary summary{};
+  double time = 0;  ///< simulated so far [s], on the clock of the activations
 
-void look(Solver& solver, const Model& model, double time, RunSummary& summary)
+  void play();
+  void settle();
+
+private:
+  void look();
+  void advance_to(double end);
+  void advance(double end);
+};
+
+// Looks at the present state. Ends the run before a frame of a diverged motion is written.
+void Run::look()
 {
   solver.skin(summary.end);
   summary.monitor = solver.monitor();
   if (summary.ledger)
     summary.ledger = solver.ledger();
-  check_motion(summary.monitor, summary.end, time);
+  if (!summary.monitor.finite || !is_finite(summary.end))
+    throw Error(
+        fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
+                    "time_step_share, smaller activations or more damping",
+                    time));
   summary.reactions = reactions_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;
@@ -73,20 +88,47 @@ void look(Solver& solver, const Model& model, double time, RunSummary& summary)
   summary.worst_jacobian = std::min(summary.worst_jacobian, summary.monitor.worst_jacobian);
 }
 
+// activations and bones move linearly between the knots of the curve and the end of the ramp
+void Run::advance_to(double end)
+{
+  for (const double knot : curve.time)
+    if (time < knot && knot < end)
+      advance(knot);
+  if (time < ramp && ramp < end)
+    advance(ramp);
+  advance(end);
+}
+
+void Run::advance(double end)
+{
+  while (time < end && !interrupt_requested())
+  {
+    const double next = std::min(end, time + steps_per_slice * solver.time_step() * model.time_scaling);
+    Controls controls = solver.controls();
+    controls.activation = curve.at(next);
+    for (std::size_t b = 0; b < bones.size(); ++b)
+      controls.bone[b] = next < ramp ? interpolate({}, bones[b], next / ramp) : bones[b];
+    const double seconds = (next - time) / model.time_scaling;
+    if (guard)
+      guard->advance(seconds, controls);
+    else
+      solver.advance(seconds, controls);
+    time = next;
+  }
+}
+
 // plays the motion frame by frame; ends early on Ctrl-C
-void play(Solver& solver, const Guard* guard, const Model& model, const RunOptions& options, Motion& motion,
-          std::optional<FrameFolder>& folder, RunSummary& summary)
+void Run::play()
 {
   const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
   const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * frame_rate * (1 - 1e-9))));
   const double begin = wall_seconds();
   Progress progress;
-  for (int frame = 0; frame <= frames; ++frame)
+  for (int frame = 0; frame <= frames && summary.complete; ++frame)
   {
-    motion.advance_to(frame == frames ? options.seconds : frame / frame_rate);
-    const double time = motion.time();
-    look(solver, model, time, summary);
-    if (guard != nullptr)
+    advance_to(frame == frames ? options.seconds : frame / frame_rate);
+    look();
+    if (guard)
       summary.guard = guard->counts();
     if (frame == 0)
       summary.rest = summary.end;
@@ -95,20 +137,15 @@ void play(Solver& solver, const Guard* guard, const Model& model, const RunOptio
     summary.frames = frame + 1;
     summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
-    if (time < options.seconds && interrupt_requested())
-    {
-      summary.complete = false;
-      break;
-    }
+    summary.complete = time >= options.seconds || !interrupt_requested();
   }
 }
 
 // relaxes to equilibrium under the final activations
-void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& options, const Controls& target,
-            std::optional<FrameFolder>& folder, RunSummary& summary)
+void Run::settle()
 {
   const double begin = wall_seconds();
-  look(solver, model, 0, summary);
+  look();
   summary.rest = summary.end;
   Progress progress;
   const double seconds = options.seconds / model.time_scaling;
@@ -117,10 +154,11 @@ void settle(Solver& solver, Guard* guard, const Model& model, const RunOptions& 
     progress.update("relaxing", now.seconds / seconds);
     return !interrupt_requested();
   };
-  const Equilibrium found = guard != nullptr ? guard->settle(target, options.tolerance, seconds, go_on)
-                                             : solver.settle(target, options.tolerance, seconds, go_on);
-  const double time = found.seconds * model.time_scaling;
-  look(solver, model, time, summary);
+  const Controls target{ curve.activation.back(), bones };
+  const Equilibrium found = guard ? guard->settle(target, options.tolerance, seconds, go_on)
+                                  : solver.settle(target, options.tolerance, seconds, go_on);
+  time = found.seconds * model.time_scaling;
+  look();
   summary.frames = 1;
   summary.wall = wall_seconds() - begin;
   summary.equilibrium = found;
@@ -133,7 +171,7 @@ void check_options(const RunOptions& options)
 {
   if (!options.activation_file.empty() && (!options.activation.empty() || !options.expression.empty()))
     throw WrongUsage("--activations goes with neither --activate nor --expression");
-  if (options.to_equilibrium && options.ledger)
+  if (options.to_equilibrium && options.solver.ledger)
     throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
   check_seconds(options.seconds);
   if (!std::isfinite(options.ramp))
@@ -153,66 +191,56 @@ void switch_off(Solver& solver, EffectSet off)
       solver.switch_effect(*effect, false);
 }
 
-void run(const RunOptions& options)
+void simulate(const RunOptions& options)
 {
   check_options(options);
   const std::map<std::string, double> listed = parse_activation_list(options.activation);
-  SolverSettings settings = options.solver.settings();
-  settings.time_step = options.time_step;
-  settings.ledger = options.ledger;
   EffectSet off;
   for (const std::string& name : options.without)
     off = off.with(effect_from_name(name));
 
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
-  const ActivationCurve curve = options.activation_file.empty()
-                                    ? ramp_to(target_activation(*model, options.expression, listed), ramp)
-                                    : read_activation_curve(options.activation_file, *model);
-  const std::vector<RigidTransform> bones = parse_bone_motions(*model, options.bones);
+  ActivationCurve curve = options.activation_file.empty()
+                              ? ramp_to(target_activation(*model, options.expression, listed), ramp)
+                              : read_activation_curve(options.activation_file, *model);
+  std::vector<RigidTransform> bones = parse_bone_motions(*model, options.bones);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
     folder.emplace(options.frames, *model);
 
-  const std::unique_ptr<Solver> solver = make_solver(model, settings);
+  const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
-  RunSummary summary;
-  if (options.ledger)
+  Run run{ options, *model, std::move(curve), std::move(bones), ramp, *solver, std::move(folder) };
+  RunSummary& summary = run.summary;
+  if (options.solver.ledger)
     summary.ledger.emplace();
   summary.backend = solver->description();
   summary.time_step = solver->time_step();
   print_set_up(*model, summary);
 
-  std::optional<Guard> guard;
   if (options.guard_interval != 0)
   {
     GuardSettings watch;
     watch.interval = std::max(options.guard_interval, 0);
-    watch.ledger = options.ledger;
-    guard.emplace(*solver, model, watch);
+    watch.ledger = options.solver.ledger;
+    run.guard.emplace(*solver, model, watch);
   }
-  Guard* const watched = guard ? &*guard : nullptr;
   try
   {
-    if (options.to_equilibrium)
-      settle(*solver, watched, *model, options, { curve.activation.back(), bones }, folder, summary);
-    else
-    {
-      Motion motion(*solver, watched, *model, curve, bones, ramp, [] { return !interrupt_requested(); });
-      play(*solver, watched, *model, options, motion, folder, summary);
-    }
+    options.to_equilibrium ? run.settle() : run.play();
   }
   catch (const Error& error)
   {
     // the result up to here is written before the error is told
     summary.complete = false;
     summary.failure = error.what();
-    if (folder)
-      folder->finish(json_of(*model, summary));
+    if (run.folder)
+      run.folder->finish(json_of(*model, summary));
     throw;
   }
-  if (folder)
-    folder->finish(json_of(*model, summary));
+  if (run.folder)
+    run.folder->finish(json_of(*model, summary));
   print_result(*model, summary);
   if (!summary.complete)
     throw Interrupted();
@@ -225,7 +253,7 @@ void run(const RunOptions& options)
 
 }  // namespace
 
-void add_run_command(CLI::App& app, Action& action)
+void add_run_command(CLI::App& app)
 {
   CLI::App* command = app.add_subcommand("run", "simulate a scene or a baked model and print how its landmarks moved");
   const auto options = std::make_shared<RunOptions>();
@@ -237,11 +265,9 @@ void add_run_command(CLI::App& app, Action& action)
                       "activations over time: a table (CSV) with a column time [s] and one column per muscle");
   command->add_flag("--to-equilibrium", options->to_equilibrium,
                     "relax to equilibrium under the final activations, within --seconds (10)");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "of equilibrium: remaining motion divided by displacement (0.001)")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--ledger", options->ledger, "keep the energy ledger and print it");
+  add_positive(*command, "--tolerance", options->tolerance,
+               "of equilibrium: remaining motion divided by displacement (0.001)");
+  command->add_flag("--ledger", options->solver.ledger, "keep the energy ledger and print it");
   command->add_option("--bone", options->bones,
                       "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
                       "the origin [degrees]; once per bone");
@@ -251,12 +277,11 @@ void add_run_command(CLI::App& app, Action& action)
       ->check(CLI::NonNegativeNumber);
   command->add_option("--without", options->without, "effects to switch off: NAME,NAME,... (see frontalis effects)")
       ->delimiter(',');
-  command->add_option("--seconds", options->seconds, "simulated seconds (1)")->check(CLI::PositiveNumber);
+  add_positive(*command, "--seconds", options->seconds, "simulated seconds (1)");
   command->add_option("--frames", options->frames,
                       "folder for skin_NNNN.ply, landmarks.csv, reactions.csv (of bodies that tissue touches) and "
                       "run.json; files of an earlier run are replaced");
-  command->add_option("--frame-rate", options->frame_rate, "frames per simulated second (as the model says)")
-      ->check(CLI::PositiveNumber);
+  add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");
   add_solver_options(*command, options->solver);
   command
       ->add_option(
@@ -264,15 +289,15 @@ void add_run_command(CLI::App& app, Action& action)
           "steps between two checks of the motion (512, on a GPU 2048; 0: no checks); an unstable motion goes back "
           "to the last good check and takes shorter steps")
       ->check(CLI::Range(0, 1 << 30));
-  command->add_option("--time-step", options->time_step,
+  command->add_option("--time-step", options->solver.time_step,
                       "longest time step [s], at most the critical one (0: the safe one, by the model's share of it)");
   add_scene_options(*command, options->source);
   command->callback(
-      [&action, options, command]
+      [options, command]
       {
         if (options->to_equilibrium && command->count("--seconds") == 0)
           options->seconds = 10;
-        action = [options] { run(*options); };
+        simulate(*options);
       });
 }
 

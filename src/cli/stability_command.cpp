@@ -1,17 +1,16 @@
-#include "cli/chosen_cases.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/command_options.hpp"
+#include "cli/model_source.hpp"
 #include "cli/progress.hpp"
-#include "cli/solver_options.hpp"
-#include "cli/stability_scenes.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/study/stability.hpp"
+#include "frontalis/study/table.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 namespace frontalis
@@ -19,24 +18,77 @@ namespace frontalis
 namespace
 {
 
+namespace fs = std::filesystem;
+
 struct StabilityOptions
 {
   std::vector<std::string> only;
-  std::string backend = "cpu";
+  StabilitySettings settings;
   std::string cases, json, table, markdown, models;
-  StabilityScenes scenes;
-  bool all = false;
+  std::string scenes;          ///< folder; empty: beside the program, or in the sources
+  std::string mesh_directory;  ///< of the real head
 };
+
+// The places where a folder of the package may be: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/
+// beside `bundled`), or in the sources.
+std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
+{
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none).parent_path();
+  return { program / "../share/frontalis" / shared, program / "../../share/frontalis" / shared,
+           program / ".." / bundled, fs::path(FRONTALIS_SOURCE_DIRECTORY) / source };
+}
+
+// the folder of the cases' files: `given`, or, if that is empty, the one beside the program or in the sources
+std::string stability_folder(const std::string& given)
+{
+  if (!given.empty())
+    return given;
+  for (const fs::path& folder : folders("stability", "stability", "test/stability"))
+    if (fs::is_directory(folder))
+      return folder.lexically_normal().string();
+  throw Error(
+      "the files of the hard cases (stability/*.yaml) are not beside the program; --cases must name their folder");
+}
+
+// Reads or bakes the model of the scene called `name`. Throws Skipped if this build cannot bake or the scene needs
+// meshes that were not given.
+std::shared_ptr<const Model> stability_scene(const StabilityOptions& options, const std::string& name)
+{
+  const bool real = name == "real_head";
+  if (real && options.mesh_directory.empty())
+    throw Skipped{ "needs meshes (--mesh-dir)" };
+  const std::vector<fs::path> given{ options.scenes };
+  for (const fs::path& folder : options.scenes.empty() ? folders("config", "models/stability", "config") : given)
+  {
+    const fs::path model = folder / (name + ".vtkhdf");
+    if (fs::exists(model))
+      return std::make_shared<const Model>(read_model(model.string()));
+    ModelSource scene;
+    scene.path = folder / (name + ".yaml");
+    if (!fs::exists(scene.path))
+      continue;
+#ifdef FRONTALIS_WITH_BAKE
+    if (real)
+      scene.scene.mesh_directory = options.mesh_directory;
+    return std::make_shared<const Model>(bake_scene(scene));
+#else
+    throw Skipped{ "this build bakes no scenes, and there is no " + name + ".vtkhdf" };
+#endif
+  }
+  if (!options.scenes.empty())
+    throw Error(options.scenes + ": has neither " + name + ".yaml nor " + name + ".vtkhdf");
+  throw Skipped{ "no " + name + ".yaml or .vtkhdf here (--scenes)" };
+}
 
 void run_stability(const StabilityOptions& options)
 {
-  const auto cases = chosen_cases(stability_cases(stability_folder(options.cases)), options.only, options.all);
-  Progress progress(Progress::OffTerminal::silent);
+  const auto cases =
+      chosen_cases(stability_cases(stability_folder(options.cases)), options.only, options.settings.long_runs);
+  Progress progress(nullptr);
   std::string name;
-  StabilitySettings settings;
-  settings.backend = backend_from_name(options.backend);
-  settings.long_runs = options.all;
-  settings.scene = [&](const std::string& scene) { return stability_scene(options.scenes, scene); };
+  StabilitySettings settings = options.settings;
+  settings.scene = [&](const std::string& scene) { return stability_scene(options, scene); };
   settings.watch = [&](double done)
   {
     progress.update(name, done);
@@ -83,25 +135,24 @@ void run_stability(const StabilityOptions& options)
 
 }  // namespace
 
-void add_stability_command(CLI::App& app, Action& action)
+void add_stability_command(CLI::App& app)
 {
-  auto options = std::make_shared<StabilityOptions>();
+  const auto options = std::make_shared<StabilityOptions>();
   CLI::App* command =
       app.add_subcommand("stability", "run motions that explicit codes fail at, and check that each holds");
   command->add_option("--only", options->only, "cases to run, by name");
-  command->add_flag("--all", options->all, "run long cases too, and all of them in full length");
-  add_backend_option(*command, options->backend, named_backends());
+  command->add_flag("--all", options->settings.long_runs, "run long cases too, and all of them in full length");
+  add_backend_option(*command, options->settings.backend, false);
   command->add_option("--cases", options->cases, "folder of the cases' files (found beside the program)");
-  command->add_option("--mesh-dir", options->scenes.mesh_directory,
-                      "folder of the real head's meshes, which its case needs");
-  command->add_option("--scenes", options->scenes.folder,
+  command->add_option("--mesh-dir", options->mesh_directory, "folder of the real head's meshes, which its case needs");
+  command->add_option("--scenes", options->scenes,
                       "folder of the cases' scenes, or of models baked from them (found beside the program)");
   command->add_option("--models", options->models, "write the model of each motion to this folder");
   command->add_option("--json", options->json, "write the figures to this file");
   command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--markdown", options->markdown,
                       "write stability.md to this folder, and its plots to its folder stability");
-  command->callback([options, &action] { action = [options] { run_stability(*options); }; });
+  command->callback([options] { run_stability(*options); });
 }
 
 }  // namespace frontalis

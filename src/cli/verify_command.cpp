@@ -1,12 +1,9 @@
-#include "cli/chosen_cases.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/solver_options.hpp"
+#include "cli/command_options.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/verification.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>
@@ -21,7 +18,7 @@ namespace
 struct VerifyOptions
 {
   std::vector<std::string> only;
-  std::string backend = "cpu";
+  Backend backend = "cpu";
   std::string json, markdown;
   bool quick = false;
 };
@@ -29,7 +26,6 @@ struct VerifyOptions
 void verify(const VerifyOptions& options)
 {
   const auto cases = chosen_cases(verification_cases(), options.only, !options.quick);
-  const VerificationSettings settings{ backend_from_name(options.backend) };
   Findings findings;
   int failed = 0, bounded = 0;
   double seconds = 0;
@@ -37,7 +33,8 @@ void verify(const VerifyOptions& options)
   for (const auto& c : cases)
   {
     const double start = wall_seconds();
-    Finding finding = c.run(settings);
+    Finding finding;
+    c.run(options.backend, finding);
     seconds += wall_seconds() - start;
     for (const auto& check : finding.checks)
     {
@@ -63,18 +60,18 @@ void verify(const VerifyOptions& options)
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Action& action)
+void add_verify_command(CLI::App& app)
 {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command =
       app.add_subcommand("verify", "compare the solver with closed forms, published figures and CalculiX");
   command->add_option("--only", options->only, "cases to run, by name");
   command->add_flag("--quick", options->quick, "leave out the cases that take longer than some seconds");
-  add_backend_option(*command, options->backend, named_backends());
+  add_backend_option(*command, options->backend, false);
   command->add_option("--json", options->json, "write the figures to this file");
   command->add_option("--markdown", options->markdown,
                       "write the manual to this file, and its plots to a folder of the same name");
-  command->callback([options, &action] { action = [options] { verify(*options); }; });
+  command->callback([options] { verify(*options); });
 }
 
 }  // namespace frontalis

@@ -25,13 +25,6 @@ void check_length(const std::string& array, std::size_t found, std::size_t right
     fail(array, "has {} entries; must have {}, one per {}", found, right, of);
 }
 
-template <class Integer>
-void check_index(const std::string& array, std::size_t at, Integer index, std::size_t count, Integer lowest = 0)
-{
-  if (index < lowest || (index >= 0 && static_cast<std::size_t>(index) >= count))
-    fail(array, "entry {} is {}; indices run from {} to {}", at, index, lowest, static_cast<std::ptrdiff_t>(count) - 1);
-}
-
 void check_finite(const std::string& array, std::size_t at, double value)
 {
   if (!std::isfinite(value))
@@ -58,11 +51,34 @@ void check_proportion(const std::string& array, std::size_t at, double value)
     fail(array, "entry {} is {}; proportions lie between 0 and 1", at, value);
 }
 
-template <std::size_t N, class T>
-void check_finite(const std::string& array, std::size_t at, const std::array<T, N>& values)
+/// The check that an index is below `count` and not below `lowest`.
+auto index_below(std::size_t count, std::ptrdiff_t lowest = 0)
 {
-  for (const T value : values)
-    check_finite(array, at, static_cast<double>(value));
+  return [=](const std::string& array, std::size_t at, std::ptrdiff_t index)
+  {
+    const std::ptrdiff_t end = static_cast<std::ptrdiff_t>(count);
+    if (index < lowest || index >= end)
+      fail(array, "entry {} is {}; indices run from {} to {}", at, index, lowest, end - 1);
+  };
+}
+
+/// Checks an entry that is a number or an array of numbers.
+template <class Check, class Entry>
+void check_entry(const std::string& array, std::size_t at, const Check& check, const Entry& entry)
+{
+  if constexpr (std::is_arithmetic_v<Entry>)
+    check(array, at, entry);
+  else
+    for (const auto number : entry)
+      check(array, at, number);
+}
+
+/// Checks all entries of an array, or, where a field is named, that field of each.
+template <class Check, class Entry, class... Field>
+void check_each(const std::string& array, const Check& check, const std::vector<Entry>& entries, Field... field)
+{
+  for (std::size_t at = 0; at < entries.size(); ++at)
+    check_entry(array, at, check, (entries[at].*....*field));
 }
 
 void check_ranges(const std::string& array, const std::vector<std::int32_t>& begin, std::size_t voxels,
@@ -71,53 +87,42 @@ void check_ranges(const std::string& array, const std::vector<std::int32_t>& beg
   check_length(array, begin.size(), voxels + 1, "voxel and an end");
   if (begin.front() != 0)
     fail(array, "starts at {}; it must start at 0", begin.front());
-  for (std::size_t e = 0; e < voxels; ++e)
-  {
-    if (begin[e] > begin[e + 1])
-      fail(array, "decreases after entry {}", e);
-  }
+  const auto decrease = std::is_sorted_until(begin.begin(), begin.end());
+  if (decrease != begin.end())
+    fail(array, "decreases after entry {}", decrease - begin.begin() - 1);
   if (static_cast<std::size_t>(begin.back()) != entries)
     fail(array, "ends at {}; there are {} entries", begin.back(), entries);
 }
 
 void check_mesh(const std::string& array, const TriangleMesh& mesh)
 {
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    check_finite(array + ".vertices", v, mesh.vertices[v]);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
-    for (const std::int32_t v : mesh.triangles[t])
-      check_index(array + ".triangles", t, v, mesh.vertices.size());
-  }
+  check_each(array + ".vertices", check_finite, mesh.vertices);
+  check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
 }
 
 void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
 {
   check_length(array + ".voxel", binding.voxel.size(), points, "point");
   check_length(array + ".coordinates", binding.coordinates.size(), points, "point");
-  for (std::size_t p = 0; p < points; ++p)
-  {
-    check_index(array + ".voxel", p, binding.voxel[p], voxels);
-    check_finite(array + ".coordinates", p, binding.coordinates[p]);
-  }
+  check_each(array + ".voxel", index_below(voxels), binding.voxel);
+  check_each(array + ".coordinates", check_finite, binding.coordinates);
 }
 
 void check_grid(const Model& model)
 {
-  for (std::size_t a = 0; a < 3; ++a)
-    check_positive("spacing", a, model.spacing[a]);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    check_positive("spacing", axis, model.spacing[axis]);
   const std::size_t voxels = model.voxels.size();
   check_length("fill", model.fill.size(), voxels, "voxel");
   check_length("voxel_nodes", model.voxel_nodes.size(), voxels, "voxel (see build_nodes)");
+  check_each("fill", check_proportion, model.fill);
+  check_each("voxel_nodes", index_below(model.nodes.size()), model.voxel_nodes);
   for (std::size_t e = 0; e < voxels; ++e)
   {
-    check_proportion("fill", e, model.fill[e]);
     if (!(model.fill[e] > 0))
       fail("fill", "entry {} is 0; a voxel without tissue must be left out", e);
-    for (int a = 0; a < 3; ++a)
-      check_index("voxels", e, model.voxels[e][a], static_cast<std::size_t>(model.size[a]));
-    for (const std::int32_t n : model.voxel_nodes[e])
-      check_index("voxel_nodes", e, n, model.nodes.size());
+    for (int axis = 0; axis < 3; ++axis)
+      index_below(static_cast<std::size_t>(model.size[axis]))("voxels", e, model.voxels[e][axis]);
   }
 }
 
@@ -133,23 +138,21 @@ void check_material_directions(const Model& model)
   const auto& directions = model.material_directions;
   if (!directions.empty())
     check_length("material_directions", directions.size(), model.voxels.size(), "voxel, or none at all");
+  check_each("material_directions", check_finite, directions);
   for (std::size_t e = 0; e < directions.size(); ++e)
-  {
-    check_finite("material_directions", e, directions[e]);
     for (const int family : { 0, 3 })
       if (const float* const d = directions[e].data() + family; d[0] != 0 || d[1] != 0 || d[2] != 0)
         check_direction("material_directions", e, d);
-  }
 }
 
 void check_mixtures(const Model& model)
 {
+  check_each("materials", check_finite, model.materials, &Material::parameters);
+  check_each("materials (density)", check_positive, model.materials, &Material::density);
   for (std::size_t m = 0; m < model.materials.size(); ++m)
   {
     const Material& material = model.materials[m];
-    check_finite("materials", m, material.parameters);
     check_positive("materials (bulk modulus)", m, material.parameters[physics::bulk_modulus_slot]);
-    check_positive("materials (density)", m, material.density);
     for (std::size_t term = 0; term < 2; ++term)
       if (material.viscous_share[term] != 0)
       {
@@ -165,11 +168,8 @@ void check_mixtures(const Model& model)
   const std::size_t entries = model.mixture_material.size();
   check_ranges("mixture_begin", model.mixture_begin, model.voxels.size(), entries);
   check_length("mixture_proportion", model.mixture_proportion.size(), entries, "entry of mixture_material");
-  for (std::size_t m = 0; m < entries; ++m)
-  {
-    check_index("mixture_material", m, model.mixture_material[m], model.materials.size());
-    check_proportion("mixture_proportion", m, model.mixture_proportion[m]);
-  }
+  check_each("mixture_material", index_below(model.materials.size()), model.mixture_material);
+  check_each("mixture_proportion", check_proportion, model.mixture_proportion);
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     double sum = 0;
@@ -182,29 +182,25 @@ void check_mixtures(const Model& model)
 
 void check_fibres(const Model& model)
 {
+  check_each("muscles (stress_reference)", check_positive, model.muscles, &Muscle::stress_reference);
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
-  {
-    check_positive("muscles (stress_reference)", m, model.muscles[m].stress_reference);
     for (const double time : { model.muscles[m].rise_time, model.muscles[m].fall_time })
       check_not_negative("muscles", fmt::format("rise or fall time [s] of entry {}", m), time);
-  }
   const std::size_t entries = model.fibre_muscle.size();
   check_ranges("fibre_begin", model.fibre_begin, model.voxels.size(), entries);
   check_length("fibre_weight", model.fibre_weight.size(), entries, "entry of fibre_muscle");
   check_length("fibre_direction", model.fibre_direction.size(), entries, "entry of fibre_muscle");
+  check_each("fibre_muscle", index_below(model.muscles.size()), model.fibre_muscle);
+  check_each("fibre_weight", check_proportion, model.fibre_weight);
+  check_each("fibre_direction", check_finite, model.fibre_direction);
   for (std::size_t m = 0; m < entries; ++m)
-  {
-    check_index("fibre_muscle", m, model.fibre_muscle[m], model.muscles.size());
-    check_proportion("fibre_weight", m, model.fibre_weight[m]);
-    check_finite("fibre_direction", m, model.fibre_direction[m]);
     check_direction("fibre_direction", m, model.fibre_direction[m].data());
-  }
 }
 
 void check_field(const std::string& array, const SampledField& field)
 {
   using physics::DistanceField;
-  check_finite(array + " (origin)", 0, field.origin);
+  check_entry(array + " (origin)", 0, check_finite, field.origin);
   check_not_negative(array, "radius", field.radius);
   if (field.radius > 0)
     return;
@@ -215,39 +211,31 @@ void check_field(const std::string& array, const SampledField& field)
   check_length(array + " (table)", field.table.size(), bricks, "brick");
   const std::size_t stored = field.samples.size() / DistanceField::brick_size;
   check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");
-  for (std::size_t b = 0; b < bricks; ++b)
-    check_index(array + " (table)", b, field.table[b], stored, -1);
-  for (std::size_t s = 0; s < field.samples.size(); ++s)
-    check_finite(array + " (samples)", s, static_cast<double>(field.samples[s]));
+  check_each(array + " (table)", index_below(stored, -1), field.table);
+  check_each(array + " (samples)", check_finite, field.samples);
 }
 
 void check_constraints(const Model& model)
 {
+  const auto node = index_below(model.nodes.size());
+  const auto bone_or_none = index_below(model.bones.size(), -1);
+  const auto constraint_or_none = index_below(model.constraints.size(), -1);
   for (const ConstraintSurface& surface : model.constraint_surfaces)
   {
     const std::string name = "constraint_surfaces '" + surface.name + "'";
     check_field(name, surface.field);
-    check_index(name + " (bone)", 0, surface.bone, model.bones.size(), -1);
+    bone_or_none(name + " (bone)", 0, surface.bone);
     check_not_negative(name, "friction", surface.friction);
   }
-  for (std::size_t n = 0; n < model.rigid.size(); ++n)
-  {
-    check_index("rigid (node)", n, model.rigid[n].node, model.nodes.size());
-    check_index("rigid (bone)", n, model.rigid[n].bone, model.bones.size(), -1);
-    check_index("rigid (constraint)", n, model.rigid[n].constraint, model.constraints.size(), -1);
-  }
-  for (std::size_t n = 0; n < model.sliding.size(); ++n)
-  {
-    check_index("sliding (node)", n, model.sliding[n].node, model.nodes.size());
-    check_index("sliding (surface)", n, model.sliding[n].surface, model.constraint_surfaces.size());
-    check_finite("sliding (distance)", n, model.sliding[n].distance);
-    check_index("sliding (constraint)", n, model.sliding[n].constraint, model.constraints.size(), -1);
-  }
-  for (std::size_t n = 0; n < model.prescribed.size(); ++n)
-  {
-    check_index("prescribed (node)", n, model.prescribed[n].node, model.nodes.size());
-    check_index("prescribed (load)", n, model.prescribed[n].load, model.loads.size());
-  }
+  check_each("rigid (node)", node, model.rigid, &RigidNode::node);
+  check_each("rigid (bone)", bone_or_none, model.rigid, &RigidNode::bone);
+  check_each("rigid (constraint)", constraint_or_none, model.rigid, &RigidNode::constraint);
+  check_each("sliding (node)", node, model.sliding, &SlidingNode::node);
+  check_each("sliding (surface)", index_below(model.constraint_surfaces.size()), model.sliding, &SlidingNode::surface);
+  check_each("sliding (distance)", check_finite, model.sliding, &SlidingNode::distance);
+  check_each("sliding (constraint)", constraint_or_none, model.sliding, &SlidingNode::constraint);
+  check_each("prescribed (node)", node, model.prescribed, &PrescribedNode::node);
+  check_each("prescribed (load)", index_below(model.loads.size()), model.prescribed, &PrescribedNode::load);
 }
 
 void check_contacts(const Model& model)
@@ -257,28 +245,26 @@ void check_contacts(const Model& model)
     const std::string name = "contacts '" + contact.name + "'";
     check_field(name, contact.field);
     check_not_negative(name, "reach", contact.reach);
-    check_index(name + " (bone)", 0, contact.bone, model.bones.size(), -1);
+    index_below(model.bones.size(), -1)(name + " (bone)", 0, contact.bone);
     check_not_negative(name, "friction", contact.friction);
     check_length(name + " (area)", contact.area.size(), contact.points.size(), "point");
     check_binding(name + ".binding", contact.binding, contact.points.size(), model.voxels.size());
-    for (std::size_t p = 0; p < contact.points.size(); ++p)
-    {
-      check_finite(name + " (points)", p, contact.points[p]);
-      check_not_negative(name, "an area", contact.area[p]);
-    }
+    check_each(name + " (points)", check_finite, contact.points);
+    for (const double area : contact.area)
+      check_not_negative(name, "an area", area);
   }
 }
 
 void check_loads(const Model& model)
 {
-  check_finite("gravity", 0, model.gravity);
+  check_entry("gravity", 0, check_finite, model.gravity);
   for (std::size_t l = 0; l < model.loads.size(); ++l)
   {
     const Load& load = model.loads[l];
     const std::string name = "loads '" + load.name + "'";
     if (load.kind > Load::Kind::displacement)
       fail(name, "kind {} is not known", static_cast<int>(load.kind));
-    check_finite(name + " (value)", l, load.value);
+    check_entry(name + " (value)", l, check_finite, load.value);
     check_finite(name + " (ramp)", l, load.ramp);
     check_mesh(name, load.mesh);
     check_binding(name + ".binding", load.binding, load.mesh.vertices.size(), model.voxels.size());
@@ -292,26 +278,23 @@ void check_presets(const Model& model)
       check_not_negative("profiles '" + profile.name + "'", what, value);
   for (const Model::Expression& expression : model.expressions)
   {
-    for (std::size_t m = 0; m < expression.activation.size(); ++m)
-    {
-      check_index("expressions '" + expression.name + "'", m, expression.activation[m].first, model.muscles.size());
-      check_proportion("expressions '" + expression.name + "'", m, expression.activation[m].second);
-    }
+    const std::string name = "expressions '" + expression.name + "'";
+    using Activation = std::pair<std::int32_t, float>;
+    check_each(name, index_below(model.muscles.size()), expression.activation, &Activation::first);
+    check_each(name, check_proportion, expression.activation, &Activation::second);
   }
-  for (std::size_t p = 0; p < model.demo.size(); ++p)
-  {
-    check_index("demo", p, model.demo[p].expression, model.expressions.size(), -1);
-    check_finite("demo (ramp)", p, model.demo[p].ramp);
-    check_positive("demo (seconds)", p, model.demo[p].seconds);
-  }
+  check_each("demo", index_below(model.expressions.size(), -1), model.demo, &Model::DemoPhase::expression);
+  check_each("demo (ramp)", check_finite, model.demo, &Model::DemoPhase::ramp);
+  check_each("demo (seconds)", check_positive, model.demo, &Model::DemoPhase::seconds);
 }
 
 void check_settings(const Model& model)
 {
-  check_finite("to_scene", 0, model.to_scene.rotation);
-  check_finite("to_scene", 0, model.to_scene.translation);
-  check_finite("to_face", 0, model.to_face.rotation);
-  check_finite("to_face", 0, model.to_face.translation);
+  for (const auto& [name, map] : { std::pair{ "to_scene", model.to_scene }, { "to_face", model.to_face } })
+  {
+    check_entry(name, 0, check_finite, map.rotation);
+    check_entry(name, 0, check_finite, map.translation);
+  }
   check_not_negative("time", "damping", model.damping);
   check_positive("time_scaling", 0, model.time_scaling);
   check_positive("frame_rate", 0, model.frame_rate);
@@ -326,8 +309,7 @@ void check_settings(const Model& model)
     fail("mass_scaling", "kind {} is not known", static_cast<int>(model.mass_scaling.kind));
   check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);
   check_not_negative("mass_scaling", "time_step", model.mass_scaling.time_step);
-  for (std::size_t m = 0; m < model.mass_scaling.materials.size(); ++m)
-    check_index("mass_scaling (materials)", m, model.mass_scaling.materials[m], model.materials.size());
+  check_each("mass_scaling (materials)", index_below(model.materials.size()), model.mass_scaling.materials);
   for (const std::string& name : model.switched_off)
     effect_from_name(name);
 }
@@ -346,8 +328,7 @@ void check_model(const Model& model)
   check_mesh("skin", model.skin);
   check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());
   check_length("landmark_positions", model.landmark_positions.size(), model.landmarks.size(), "landmark");
-  for (std::size_t l = 0; l < model.landmark_positions.size(); ++l)
-    check_finite("landmark_positions", l, model.landmark_positions[l]);
+  check_each("landmark_positions", check_finite, model.landmark_positions);
   check_binding("landmark_binding", model.landmark_binding, model.landmarks.size(), model.voxels.size());
   check_presets(model);
   check_settings(model);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/contact.hpp"
+#include "model/model_archive.hpp"
 
 #include <string>
 
@@ -18,17 +19,14 @@ void exchange_contacts(Archive& archive, const std::string& path, Contacts& cont
 {
   if (!archive.group_if(!contacts.empty(), path))
     return;
-  archive.column(path + "/name", contacts, &Contact::name);
-  archive.column(path + "/bone", contacts, &Contact::bone);
-  archive.column(path + "/friction", contacts, &Contact::friction);
-  archive.column(path + "/reach", contacts, &Contact::reach);
+  archive.table(path, contacts, Column{ "name", &Contact::name }, Column{ "bone", &Contact::bone },
+                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach });
   for (std::size_t c = 0; c < contacts.size(); ++c)
   {
     const std::string own = path + "/" + std::to_string(c);
-    archive.group(own);
     exchange_field(archive, own, contacts[c].field);
-    archive.array(own + "/points", contacts[c].points);
-    archive.array(own + "/area", contacts[c].area);
+    archive(own + "/points", contacts[c].points);
+    archive(own + "/area", contacts[c].area);
     exchange_binding(archive, own, contacts[c].binding);
   }
 }

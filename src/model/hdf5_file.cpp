@@ -56,8 +56,7 @@ hid_t string_type(std::size_t length)
 Hdf5File Hdf5File::create(const std::string& path)
 {
   silence();
-  const Handle list(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make a property list");
-  H5Pset_obj_track_times(list, 0);
+  const Handle list(timeless(H5P_FILE_CREATE), H5Pclose, "make a property list");
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, list, H5P_DEFAULT);
   if (file < 0)
     throw Error("cannot create the file; the folder must exist and be writable");
@@ -80,8 +79,6 @@ Hdf5File Hdf5File::open(const std::string& path)
   return Hdf5File(file);
 }
 
-Hdf5File::Hdf5File(Hdf5File&& other) noexcept : file_(std::exchange(other.file_, H5I_INVALID_HID)) {}
-
 Hdf5File::~Hdf5File()
 {
   if (file_ >= 0)
@@ -102,10 +99,10 @@ void Hdf5File::make_group(const std::string& path)
   const Handle group(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, list, H5P_DEFAULT), H5Gclose, "make group " + path);
 }
 
-bool Hdf5File::has(const std::string& path) const { return H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0; }
-
 void Hdf5File::write(const std::string& path, const void* data, hsize_t rows, hsize_t width, hid_t memory, hid_t type)
 {
+  if (const std::string group = path.substr(0, path.rfind('/')); !has(group))
+    make_group(group);
   const hsize_t shape[2] = { rows, width };
   const Handle space(H5Screate_simple(width == 1 ? 1 : 2, shape, nullptr), H5Sclose, "make the shape of " + path);
   const Handle list(timeless(H5P_DATASET_CREATE), H5Pclose, "make a property list");
@@ -126,85 +123,82 @@ hsize_t Hdf5File::rows(const std::string& path, hsize_t width) const
   return shape[0];
 }
 
-void Hdf5File::read(const std::string& path, void* data, hsize_t rows, hsize_t width, hid_t memory) const
+void Hdf5File::read(const std::string& path, void* data, hsize_t rows, hid_t memory) const
 {
-  if (this->rows(path, width) != rows)
-    throw Error(fmt::format("array {} has another length than its neighbours, which have {} entries", path, rows));
   const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open array " + path);
   if (rows > 0 && H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     throw Error("array " + path + " cannot be read; the file is truncated or damaged");
 }
 
-void Hdf5File::write_strings(const std::string& path, const std::vector<std::string>& strings)
+void Hdf5File::write(const std::string& path, const std::vector<std::string>& strings)
 {
   std::size_t length = 1;
   for (const std::string& s : strings)
     length = std::max(length, s.size());
-  std::string buffer(strings.size() * length, '\0');
-  for (std::size_t s = 0; s < strings.size(); ++s)
-    std::copy(strings[s].begin(), strings[s].end(), buffer.begin() + static_cast<std::ptrdiff_t>(s * length));
+  std::string buffer;
+  for (std::string s : strings)
+  {
+    s.resize(length);
+    buffer += s;
+  }
   const Handle type(string_type(length), H5Tclose, "make a string type");
   write(path, buffer.data(), strings.size(), 1, type, type);
 }
 
-std::vector<std::string> Hdf5File::read_strings(const std::string& path) const
+void Hdf5File::read(const std::string& path, std::vector<std::string>& strings) const
 {
-  const hsize_t count = rows(path, 1);
+  strings.resize(rows(path, 1));
   const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open array " + path);
   const Handle stored(H5Dget_type(set), H5Tclose, "read the type of " + path);
   if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0)
     throw Error("array " + path + " does not hold strings of fixed length");
   const std::size_t length = H5Tget_size(stored);
-  std::string buffer(count * length, '\0');
+  std::string buffer(strings.size() * length, '\0');
   const Handle type(string_type(length), H5Tclose, "make a string type");
-  read(path, buffer.data(), count, 1, type);
-  std::vector<std::string> strings(count);
-  for (std::size_t s = 0; s < count; ++s)
+  read(path, buffer.data(), strings.size(), type);
+  for (std::size_t s = 0; s < strings.size(); ++s)
   {
     strings[s] = buffer.substr(s * length, length);
-    strings[s].resize(std::min(strings[s].find('\0'), strings[s].size()));
+    strings[s].resize(std::min(strings[s].find('\0'), length));
   }
-  return strings;
+}
+
+void Hdf5File::write_attribute(const std::string& group, const std::string& name, hid_t space, hid_t memory, hid_t type,
+                               const void* data)
+{
+  const Handle object(H5Oopen(file_, group.c_str(), H5P_DEFAULT), H5Oclose, "open " + group);
+  const Handle shape(space, H5Sclose, "make the shape of " + name);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, shape, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "make attribute " + name);
+  if (H5Awrite(attribute, memory, data) < 0)
+    throw Error("HDF5: cannot write attribute " + name);
 }
 
 void Hdf5File::write_attribute(const std::string& group, const std::string& name,
                                const std::vector<std::int64_t>& values)
 {
-  const Handle object(H5Oopen(file_, group.c_str(), H5P_DEFAULT), H5Oclose, "open " + group);
   const hsize_t count = values.size();
-  const Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose,
-                     "make the shape of " + name);
-  const Handle attribute(H5Acreate2(object, name.c_str(), H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "make attribute " + name);
-  if (H5Awrite(attribute, H5T_NATIVE_INT64, values.data()) < 0)
-    throw Error("HDF5: cannot write attribute " + name);
+  write_attribute(group, name, count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr),
+                  H5T_NATIVE_INT64, H5T_STD_I64LE, values.data());
 }
 
 void Hdf5File::write_attribute(const std::string& group, const std::string& name, const std::string& value)
 {
-  const Handle object(H5Oopen(file_, group.c_str(), H5P_DEFAULT), H5Oclose, "open " + group);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make the shape of " + name);
   const Handle type(string_type(value.size()), H5Tclose, "make a string type");
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "make attribute " + name);
-  if (H5Awrite(attribute, type, value.c_str()) < 0)
-    throw Error("HDF5: cannot write attribute " + name);
+  write_attribute(group, name, H5Screate(H5S_SCALAR), type, type, value.c_str());
 }
 
 std::int64_t Hdf5File::attribute(const std::string& group, const std::string& name, std::int64_t otherwise) const
 {
-  if (!has(group))
+  if (!has(group) || H5Aexists_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT) <= 0)
     return otherwise;
-  const Handle object(H5Oopen(file_, group.c_str(), H5P_DEFAULT), H5Oclose, "open " + group);
-  if (H5Aexists(object, name.c_str()) <= 0)
-    return otherwise;
-  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "open attribute " + name);
+  const Handle attribute(H5Aopen_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "open attribute " + name);
   const Handle space(H5Aget_space(attribute), H5Sclose, "read the shape of " + name);
-  std::vector<std::int64_t> values(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 1)),
-                                   otherwise);
-  if (H5Aread(attribute, H5T_NATIVE_INT64, values.data()) < 0)
+  std::int64_t value = otherwise;
+  if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
     return otherwise;
-  return values.front();
+  return value;
 }
 
 }  // namespace frontalis

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -13,132 +12,99 @@
 namespace frontalis
 {
 
-/// Puts the fields of a model into the file.
+/// A field of the rows of a table, and its name in the file.
+template <class Row, class Value>
+struct Column
+{
+  const char* name;
+  Value Row::*field;
+  /// std::vector<bool> has no array of bytes.
+  using Values = std::vector<std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>>;
+};
+template <class Row, class Value>
+Column(const char*, Value Row::*) -> Column<Row, Value>;
+
+/// Puts the fields of a model into a group of the file: arrays, single values, and vectors of structures as tables.
 class ModelWriter
 {
 public:
-  explicit ModelWriter(Hdf5File& file) : file_(file) {}
+  ModelWriter(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
-  void group(const std::string& path) { file_.make_group(path); }
   /// Whether to go on with a group that is only in files where `stored` holds.
-  bool group_if(bool stored, const std::string& path)
-  {
-    if (stored)
-      group(path);
-    return stored;
-  }
+  bool group_if(bool stored, const std::string&) const { return stored; }
 
   template <class T>
-  void array(const std::string& path, const std::vector<T>& values)
+  void operator()(const std::string& path, const std::vector<T>& values)
   {
-    using Element = Hdf5Element<T>;
-    file_.write(path, reinterpret_cast<const typename Element::Number*>(values.data()), values.size(), Element::width);
+    file_.write(group_ + "/" + path, values);
   }
-
-  void strings(const std::string& path, const std::vector<std::string>& values) { file_.write_strings(path, values); }
-
   template <class T>
-  void value(const std::string& path, const T& value)
+  void operator()(const std::string& path, const T& value)
   {
-    if constexpr (std::is_same_v<T, std::string>)
-      strings(path, { value });
-    else
-      column(path, std::vector<Single<T>>{ { value } }, &Single<T>::value);
+    (*this)(path, std::vector<T>{ value });
   }
-
-  /// One field of a vector of structures.
-  template <class S, class T, class P = S>
-  void column(const std::string& path, const std::vector<S>& entries, T P::*field)
+  template <class Row, class... Of, class... Value>
+  void table(const std::string& path, const std::vector<Row>& rows, const Column<Of, Value>&... columns)
   {
-    if constexpr (std::is_same_v<T, std::string>)
+    const auto put = [&](const auto& column)
     {
-      std::vector<std::string> values;
-      values.reserve(entries.size());
-      for (const S& entry : entries)
-        values.push_back(entry.*field);
-      strings(path, values);
-    }
-    else
-    {
-      using Element = Hdf5Element<T>;
-      std::vector<typename Element::Number> values(entries.size() * Element::width);
-      for (std::size_t e = 0; e < entries.size(); ++e)
-        std::memcpy(values.data() + e * Element::width, &(entries[e].*field), sizeof(T));
-      file_.write(path, values.data(), entries.size(), Element::width);
-    }
+      typename std::decay_t<decltype(column)>::Values values;
+      values.reserve(rows.size());
+      for (const Row& row : rows)
+        values.push_back(row.*column.field);
+      (*this)(path + "/" + column.name, values);
+    };
+    (put(columns), ...);
   }
-
-  template <class T>
-  struct Single
-  {
-    T value;
-  };
 
 private:
   Hdf5File& file_;
+  std::string group_;
 };
 
-/// Takes the fields of a model from the file.
+/// Takes the fields of a model from a group of the file.
 class ModelReader
 {
 public:
-  explicit ModelReader(const Hdf5File& file) : file_(file) {}
+  ModelReader(const Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
-  void group(const std::string&) {}
-  bool group_if(bool, const std::string& path) { return file_.has(path); }
+  bool group_if(bool, const std::string& path) const { return file_.has(group_ + "/" + path); }
 
   template <class T>
-  void array(const std::string& path, std::vector<T>& values)
+  void operator()(const std::string& path, std::vector<T>& values)
   {
-    using Element = Hdf5Element<T>;
-    values.resize(file_.rows(path, Element::width));
-    file_.read(path, reinterpret_cast<typename Element::Number*>(values.data()), values.size(), Element::width);
+    file_.read(group_ + "/" + path, values);
   }
-
-  void strings(const std::string& path, std::vector<std::string>& values) { values = file_.read_strings(path); }
-
   template <class T>
-  void value(const std::string& path, T& value)
+  void operator()(const std::string& path, T& value)
   {
-    std::vector<ModelWriter::Single<T>> one;
-    column(path, one, &ModelWriter::Single<T>::value);
+    std::vector<T> one;
+    (*this)(path, one);
     if (one.size() != 1)
-      throw Error(fmt::format("array {} has {} entries; it must have 1", path, one.size()));
-    value = one.front().value;
+      throw Error(fmt::format("array {}/{} has {} entries; it must have 1", group_, path, one.size()));
+    value = one.front();
   }
-
-  template <class S, class T, class P = S>
-  void column(const std::string& path, std::vector<S>& entries, T P::*field)
+  template <class Row, class... Of, class... Value>
+  void table(const std::string& path, std::vector<Row>& rows, const Column<Of, Value>&... columns)
   {
-    if constexpr (std::is_same_v<T, std::string>)
+    const auto take = [&](const auto& column)
     {
-      const std::vector<std::string> values = file_.read_strings(path);
-      resize(path, entries, values.size());
-      for (std::size_t e = 0; e < entries.size(); ++e)
-        entries[e].*field = values[e];
-    }
-    else
-    {
-      using Element = Hdf5Element<T>;
-      resize(path, entries, file_.rows(path, Element::width));
-      std::vector<typename Element::Number> values(entries.size() * Element::width);
-      file_.read(path, values.data(), entries.size(), Element::width);
-      for (std::size_t e = 0; e < entries.size(); ++e)
-        std::memcpy(&(entries[e].*field), values.data() + e * Element::width, sizeof(T));
-    }
+      typename std::decay_t<decltype(column)>::Values values;
+      (*this)(path + "/" + column.name, values);
+      if (rows.empty())
+        rows.resize(values.size());
+      if (rows.size() != values.size())
+        throw Error(fmt::format("array {}/{}/{} has {} entries; its neighbours have {}", group_, path, column.name,
+                                values.size(), rows.size()));
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        rows[r].*column.field = values[r];
+    };
+    (take(columns), ...);
   }
 
 private:
-  template <class S>
-  static void resize(const std::string& path, std::vector<S>& entries, std::size_t count)
-  {
-    if (entries.empty())
-      entries.resize(count);
-    else if (entries.size() != count)
-      throw Error(fmt::format("array {} has {} entries; its neighbours have {}", path, count, entries.size()));
-  }
-
   const Hdf5File& file_;
+  std::string group_;
 };
 
 }  // namespace frontalis

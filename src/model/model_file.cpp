@@ -1,10 +1,7 @@
 #include "frontalis/model/model_file.hpp"
 
 #include "frontalis/error.hpp"
-#include "model/hdf5_file.hpp"
-#include "model/model_archive.hpp"
 #include "model/model_layout.hpp"
-#include "model/vtk_arrays.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +20,7 @@ namespace
 {
 
 const std::string root = "/frontalis";
-const std::string package_version = root + "/package_version";
+const std::string package_version = "package_version";
 
 void write_whole(const Model& model, const std::string& path)
 {
@@ -31,9 +28,9 @@ void write_whole(const Model& model, const std::string& path)
   write_vtk_arrays(file, model);
   file.make_group(root);
   file.write_attribute(root, "model_file_version", std::vector<std::int64_t>{ model_file_version });
-  ModelWriter writer(file);
-  exchange_model(writer, model, root);
-  writer.value(package_version, std::string(FRONTALIS_VERSION));
+  ModelWriter writer(file, root);
+  exchange_model(writer, model);
+  writer(package_version, std::string(FRONTALIS_VERSION));
   file.close();
 }
 
@@ -64,12 +61,12 @@ Model read(const std::string& path, const std::string* scene_hash)
       throw Error(fmt::format("has version {}; this program reads version {}: bake the scene again", version,
                               model_file_version));
     Model model;
-    ModelReader reader(file);
+    ModelReader reader(file, root);
     if (scene_hash != nullptr)
     {
       std::string baked_by;
-      reader.value(package_version, baked_by);
-      reader.value(root + "/scene_hash", model.scene_hash);
+      reader(package_version, baked_by);
+      reader("scene_hash", model.scene_hash);
       if (model.scene_hash != *scene_hash)
         throw Error(fmt::format("is of another scene (content hash '{}', not '{}'); bake the scene again",
                                 model.scene_hash, *scene_hash));
@@ -77,7 +74,7 @@ Model read(const std::string& path, const std::string* scene_hash)
         throw Error(fmt::format("was baked by version {} of frontalis, and this is {}; bake the scene again", baked_by,
                                 FRONTALIS_VERSION));
     }
-    exchange_model(reader, model, root);
+    exchange_model(reader, model);
     build_nodes(model);
     check_model(model);
     return model;

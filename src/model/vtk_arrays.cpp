@@ -1,6 +1,7 @@
-#include "model/vtk_arrays.hpp"
+#include "model/model_layout.hpp"
 
-#include <cstddef>
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,74 +14,61 @@ constexpr std::uint8_t vtk_voxel = 11;
 
 void write_geometry(Hdf5File& file, const Model& model)
 {
-  const std::size_t nodes = model.nodes.size();
-  const std::size_t voxels = model.voxels.size();
-  const auto count = [&file](const std::string& name, std::size_t number)
-  {
-    const std::int64_t value = static_cast<std::int64_t>(number);
-    file.write("/VTKHDF/" + name, &value, 1, 1);
-  };
-  count("NumberOfPoints", nodes);
-  count("NumberOfCells", voxels);
-  count("NumberOfConnectivityIds", 8 * voxels);
+  const auto voxels = static_cast<std::int64_t>(model.voxels.size());
+  file.write("/VTKHDF/NumberOfPoints", std::vector<std::int64_t>{ static_cast<std::int64_t>(model.nodes.size()) });
+  file.write("/VTKHDF/NumberOfCells", std::vector<std::int64_t>{ voxels });
+  file.write("/VTKHDF/NumberOfConnectivityIds", std::vector<std::int64_t>{ 8 * voxels });
 
-  std::vector<float> points(3 * nodes);
-  for (std::size_t n = 0; n < nodes; ++n)
+  std::vector<std::array<float, 3>> points(model.nodes.size());
+  for (std::size_t n = 0; n < points.size(); ++n)
   {
-    for (std::size_t a = 0; a < 3; ++a)
-      points[3 * n + a] = static_cast<float>(model.nodes[n][a] * model.spacing[a]);
+    const auto rest = rest_position(model, n);
+    std::copy(rest.begin(), rest.end(), points[n].begin());
   }
-  file.write("/VTKHDF/Points", points.data(), nodes, 3);
+  file.write("/VTKHDF/Points", points);
 
-  std::vector<std::int64_t> connectivity(8 * voxels), offsets(voxels + 1);
-  for (std::size_t e = 0; e < voxels; ++e)
+  std::vector<std::int64_t> connectivity, offsets{ 0 };
+  connectivity.reserve(8 * model.voxels.size());
+  for (const auto& corners : model.voxel_nodes)
   {
-    offsets[e] = static_cast<std::int64_t>(8 * e);
-    for (std::size_t b = 0; b < 8; ++b)
-      connectivity[8 * e + b] = model.voxel_nodes[e][b];
+    connectivity.insert(connectivity.end(), corners.begin(), corners.end());
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
-  offsets[voxels] = static_cast<std::int64_t>(8 * voxels);
-  file.write("/VTKHDF/Connectivity", connectivity.data(), connectivity.size(), 1);
-  file.write("/VTKHDF/Offsets", offsets.data(), offsets.size(), 1);
-  const std::vector<std::uint8_t> types(voxels, vtk_voxel);
-  file.write("/VTKHDF/Types", types.data(), types.size(), 1);
+  file.write("/VTKHDF/Connectivity", connectivity);
+  file.write("/VTKHDF/Offsets", offsets);
+  file.write("/VTKHDF/Types", std::vector<std::uint8_t>(model.voxels.size(), vtk_voxel));
+}
+
+// index of the largest of the values [begin, end) that are above 0; -1: none is
+std::int32_t largest(const std::vector<float>& values, std::int32_t begin, std::int32_t end)
+{
+  const auto found = std::max_element(values.begin() + begin, values.begin() + end);
+  return begin<end&& * found> 0 ? static_cast<std::int32_t>(found - values.begin()) : -1;
 }
 
 void write_cell_data(Hdf5File& file, const Model& model)
 {
   const std::size_t voxels = model.voxels.size();
   std::vector<std::int32_t> material(voxels, -1), muscle(voxels, -1);
-  std::vector<float> fibre(3 * voxels, 0.f), muscle_weight(voxels, 0.f);
+  std::vector<std::array<float, 3>> fibre(voxels, { { 0, 0, 0 } });
+  std::vector<float> muscle_weight(voxels, 0);
   for (std::size_t e = 0; e < voxels; ++e)
   {
-    // the material of the largest proportion, and the muscle of the largest weight
-    float largest = 0;
-    for (auto m = static_cast<std::size_t>(model.mixture_begin[e]);
-         m < static_cast<std::size_t>(model.mixture_begin[e + 1]); ++m)
-    {
-      if (model.mixture_proportion[m] > largest)
-      {
-        largest = model.mixture_proportion[m];
-        material[e] = model.mixture_material[m];
-      }
-    }
-    for (auto m = static_cast<std::size_t>(model.fibre_begin[e]);
-         m < static_cast<std::size_t>(model.fibre_begin[e + 1]); ++m)
-    {
-      if (model.fibre_weight[m] > muscle_weight[e])
-      {
-        muscle_weight[e] = model.fibre_weight[m];
-        muscle[e] = model.fibre_muscle[m];
-        for (std::size_t a = 0; a < 3; ++a)
-          fibre[3 * e + a] = model.fibre_direction[m][a];
-      }
-    }
+    const auto m = largest(model.mixture_proportion, model.mixture_begin[e], model.mixture_begin[e + 1]);
+    if (m >= 0)
+      material[e] = model.mixture_material[m];
+    const auto f = largest(model.fibre_weight, model.fibre_begin[e], model.fibre_begin[e + 1]);
+    if (f < 0)
+      continue;
+    muscle_weight[e] = model.fibre_weight[f];
+    muscle[e] = model.fibre_muscle[f];
+    fibre[e] = model.fibre_direction[f];
   }
-  file.write("/VTKHDF/CellData/material", material.data(), voxels, 1);
-  file.write("/VTKHDF/CellData/fill", model.fill.data(), voxels, 1);
-  file.write("/VTKHDF/CellData/muscle", muscle.data(), voxels, 1);
-  file.write("/VTKHDF/CellData/muscle_weight", muscle_weight.data(), voxels, 1);
-  file.write("/VTKHDF/CellData/fibre", fibre.data(), voxels, 3);
+  file.write("/VTKHDF/CellData/material", material);
+  file.write("/VTKHDF/CellData/fill", model.fill);
+  file.write("/VTKHDF/CellData/muscle", muscle);
+  file.write("/VTKHDF/CellData/muscle_weight", muscle_weight);
+  file.write("/VTKHDF/CellData/fibre", fibre);
 }
 
 void write_point_data(Hdf5File& file, const Model& model)
@@ -89,26 +77,24 @@ void write_point_data(Hdf5File& file, const Model& model)
   // constraints; -1: none
   std::vector<std::uint8_t> constraint(model.nodes.size(), 0);
   std::vector<std::int32_t> held_by(model.nodes.size(), -1);
-  std::vector<float> distance(model.nodes.size(), 0.f);
+  std::vector<float> distance(model.nodes.size(), 0);
+  const auto hold = [&](std::int32_t node, std::uint8_t how, std::int32_t by)
+  {
+    constraint[node] = how;
+    held_by[node] = by;
+  };
   for (const SlidingNode& node : model.sliding)
   {
-    constraint[static_cast<std::size_t>(node.node)] = 2;
-    distance[static_cast<std::size_t>(node.node)] = static_cast<float>(node.distance);
-    held_by[static_cast<std::size_t>(node.node)] = node.constraint;
+    hold(node.node, 2, node.constraint);
+    distance[node.node] = static_cast<float>(node.distance);
   }
   for (const PrescribedNode& node : model.prescribed)
-  {
-    constraint[static_cast<std::size_t>(node.node)] = 3;
-    held_by[static_cast<std::size_t>(node.node)] = static_cast<std::int32_t>(model.constraints.size()) + node.load;
-  }
+    hold(node.node, 3, static_cast<std::int32_t>(model.constraints.size()) + node.load);
   for (const RigidNode& node : model.rigid)
-  {
-    constraint[static_cast<std::size_t>(node.node)] = 1;
-    held_by[static_cast<std::size_t>(node.node)] = node.constraint;
-  }
-  file.write("/VTKHDF/PointData/constraint", constraint.data(), constraint.size(), 1);
-  file.write("/VTKHDF/PointData/held_by", held_by.data(), held_by.size(), 1);
-  file.write("/VTKHDF/PointData/sliding_distance", distance.data(), distance.size(), 1);
+    hold(node.node, 1, node.constraint);
+  file.write("/VTKHDF/PointData/constraint", constraint);
+  file.write("/VTKHDF/PointData/held_by", held_by);
+  file.write("/VTKHDF/PointData/sliding_distance", distance);
 }
 
 }  // namespace
@@ -119,9 +105,7 @@ void write_vtk_arrays(Hdf5File& file, const Model& model)
   file.write_attribute("/VTKHDF", "Version", std::vector<std::int64_t>{ 1, 0 });
   file.write_attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
   write_geometry(file, model);
-  file.make_group("/VTKHDF/CellData");
   write_cell_data(file, model);
-  file.make_group("/VTKHDF/PointData");
   write_point_data(file, model);
 }
 

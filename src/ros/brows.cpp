@@ -1,4 +1,4 @@
-#include "frontalis/ros/brows.hpp"
+#include "frontalis/ros/shading.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,12 +26,7 @@ Point blend(const Point& a, const Point& b, double share)
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// Distance from the face's middle plane [m].
-double distance_from_middle(const Model& model, const Point& local)
-{
-  const auto& map = model.to_face;
-  return std::abs(map.rotation[3] * local[0] + map.rotation[4] * local[1] + map.rotation[5] * local[2] +
-                  map.translation[1]);
-}
+double distance_from_middle(const Model& model, const Point& local) { return std::abs(model.to_face(local)[1]); }
 
 /// The line of the brow on one side, from its inner to its outer end; empty if there are fewer than two landmarks.
 std::vector<Point> brow_line(const Model& model, const std::string& side)

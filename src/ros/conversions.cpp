@@ -4,7 +4,9 @@
 #include "frontalis/runner/face_frame.hpp"
 
 #include <fmt/format.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -14,24 +16,13 @@ namespace frontalis
 namespace
 {
 
-void set_cloud_layout(std::size_t points, sensor_msgs::PointCloud2& out)
+/// Sets the coordinates of a point or vector of a message.
+template <typename Message>
+void set(Message& message, const std::array<float, 3>& coordinates)
 {
-  static const char* const names[] = { "x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity" };
-  out.height = 1;
-  out.width = static_cast<std::uint32_t>(points);
-  out.fields.resize(7);
-  for (std::uint32_t field = 0; field < 7; ++field)
-  {
-    out.fields[field].name = names[field];
-    out.fields[field].offset = field * sizeof(float);
-    out.fields[field].datatype = sensor_msgs::PointField::FLOAT32;
-    out.fields[field].count = 1;
-  }
-  out.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
-  out.point_step = 7 * sizeof(float);
-  out.row_step = out.point_step * out.width;
-  out.is_dense = true;
-  out.data.resize(out.row_step);
+  message.x = coordinates[0];
+  message.y = coordinates[1];
+  message.z = coordinates[2];
 }
 
 }  // namespace
@@ -40,9 +31,8 @@ std::vector<std::array<float, 3>> rest_in_face(const Model& model)
 {
   SkinState skin;
   skin.vertices.reserve(model.skin.vertices.size());
-  for (const auto& vertex : model.skin.vertices)
-    skin.vertices.push_back(
-        { { static_cast<float>(vertex[0]), static_cast<float>(vertex[1]), static_cast<float>(vertex[2]) } });
+  for (const auto& [x, y, z] : model.skin.vertices)
+    skin.vertices.push_back({ { static_cast<float>(x), static_cast<float>(y), static_cast<float>(z) } });
   to_face_frame(model, skin);
   return skin.vertices;
 }
@@ -56,20 +46,10 @@ bool is_publishable(const SkinState& skin, const Model& model)
 shape_msgs::Mesh to_mesh(const Model& model)
 {
   shape_msgs::Mesh out;
-  out.vertices.reserve(model.skin.vertices.size());
   for (const auto& vertex : rest_in_face(model))
-  {
-    geometry_msgs::Point point;
-    point.x = vertex[0];
-    point.y = vertex[1];
-    point.z = vertex[2];
-    out.vertices.push_back(point);
-  }
-  out.triangles.resize(model.skin.triangles.size());
-  for (std::size_t triangle = 0; triangle < out.triangles.size(); ++triangle)
-    for (int corner = 0; corner < 3; ++corner)
-      out.triangles[triangle].vertex_indices[corner] =
-          static_cast<std::uint32_t>(model.skin.triangles[triangle][corner]);
+    set(out.vertices.emplace_back(), vertex);
+  for (const auto& triangle : model.skin.triangles)
+    std::copy(triangle.begin(), triangle.end(), out.triangles.emplace_back().vertex_indices.begin());
   return out;
 }
 
@@ -90,11 +70,8 @@ void to_marker(const Model& model, const SkinShading& shading, const SkinState& 
   for (const auto& triangle : model.skin.triangles)
     for (const auto vertex : triangle)
     {
-      auto& point = out.points[entry];
+      set(out.points[entry], skin.vertices[vertex]);
       auto& colour = out.colors[entry++];
-      point.x = skin.vertices[vertex][0];
-      point.y = skin.vertices[vertex][1];
-      point.z = skin.vertices[vertex][2];
       colour.r = colours[vertex][0];
       colour.g = colours[vertex][1];
       colour.b = colours[vertex][2];
@@ -104,19 +81,22 @@ void to_marker(const Model& model, const SkinShading& shading, const SkinState& 
 
 std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest)
 {
-  std::vector<float> out;
-  for (std::size_t vertex = 0; vertex < rest.size(); ++vertex)
-  {
-    const auto& position = skin.vertices[vertex];
-    out.push_back(
-        std::hypot(position[0] - rest[vertex][0], position[1] - rest[vertex][1], position[2] - rest[vertex][2]));
-  }
+  std::vector<float> out(rest.size());
+  std::transform(rest.begin(), rest.end(), skin.vertices.begin(), out.begin(),
+                 [](const auto& a, const auto& b) { return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]); });
   return out;
 }
 
 void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out)
 {
-  set_cloud_layout(skin.vertices.size(), out);
+  out.height = 1;
+  out.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+  out.is_dense = true;
+  sensor_msgs::PointCloud2Modifier layout(out);
+  constexpr auto number = sensor_msgs::PointField::FLOAT32;
+  layout.setPointCloud2Fields(7, "x", 1, number, "y", 1, number, "z", 1, number, "normal_x", 1, number, "normal_y", 1,
+                              number, "normal_z", 1, number, "intensity", 1, number);
+  layout.resize(skin.vertices.size());
   for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
   {
     const auto& position = skin.vertices[vertex];
@@ -133,11 +113,8 @@ void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out)
   out.poses.resize(skin.landmarks.size());
   for (std::size_t landmark = 0; landmark < out.poses.size(); ++landmark)
   {
-    auto& pose = out.poses[landmark];
-    pose.position.x = skin.landmarks[landmark][0];
-    pose.position.y = skin.landmarks[landmark][1];
-    pose.position.z = skin.landmarks[landmark][2];
-    pose.orientation.w = 1;
+    set(out.poses[landmark].position, skin.landmarks[landmark]);
+    out.poses[landmark].orientation.w = 1;
   }
 }
 
@@ -151,9 +128,7 @@ void to_transforms(const Model& model, const SkinState& skin, const std::string&
     transform.header.stamp = stamp;
     transform.header.frame_id = face_frame;
     transform.child_frame_id = face_frame + "/" + model.landmarks[landmark];
-    transform.transform.translation.x = skin.landmarks[landmark][0];
-    transform.transform.translation.y = skin.landmarks[landmark][1];
-    transform.transform.translation.z = skin.landmarks[landmark][2];
+    set(transform.transform.translation, skin.landmarks[landmark]);
     transform.transform.rotation.w = 1;
   }
 }

@@ -10,45 +10,40 @@ DemoPlayer::DemoPlayer(const Model& model)
 {
   for (const auto& muscle : model.muscles)
     muscles_.push_back(muscle.name);
+  std::vector<float> target(muscles_.size(), 0);
+  const auto add = [&](double time)
+  {
+    first_round_.time.push_back(time);
+    first_round_.activation.push_back(target);
+  };
   for (const auto& entry : model.demo)
   {
     if (!(entry.seconds > 0))
       continue;
-    Phase phase;
-    phase.target.assign(muscles_.size(), 0.0);
+    add(period_);
+    target.assign(muscles_.size(), 0);
     if (entry.expression >= 0)
       for (const auto& [muscle, activation] : model.expressions.at(entry.expression).activation)
-        phase.target.at(muscle) = activation;
-    phase.begin = period_;
-    phase.ramp = std::min(entry.ramp, entry.seconds);
+        target.at(muscle) = activation;
+    add(period_ + std::min(entry.ramp, entry.seconds));
     period_ += entry.seconds;
-    phases_.push_back(phase);
   }
+  // the first round starts relaxed, later ones from the expression of the last phase
+  later_rounds_ = first_round_;
+  if (!empty())
+    later_rounds_.activation.front() = target;
 }
 
 std::map<std::string, double> DemoPlayer::activation(double time) const
 {
   std::map<std::string, double> out;
-  if (phases_.empty())
+  if (empty())
     return out;
-
   const double since = std::max(0.0, time);
   const double round = std::floor(since / period_);
-  const double within = since - round * period_;
-  std::size_t index = 0;
-  while (index + 1 < phases_.size() && within >= phases_[index + 1].begin)
-    ++index;
-
-  // the very first phase starts relaxed, the first phase of later rounds from the expression of the last phase
-  const Phase& phase = phases_[index];
-  const Phase& last = phases_[index > 0 ? index - 1 : phases_.size() - 1];
-  const bool from_rest = index == 0 && round < 1;
-  const double done = phase.ramp > 0 ? std::min(1.0, (within - phase.begin) / phase.ramp) : 1.0;
+  const std::vector<float> value = (round < 1 ? first_round_ : later_rounds_).at(since - round * period_);
   for (std::size_t muscle = 0; muscle < muscles_.size(); ++muscle)
-  {
-    const double start = from_rest ? 0.0 : last.target[muscle];
-    out[muscles_[muscle]] = std::clamp(start + done * (phase.target[muscle] - start), 0.0, 1.0);
-  }
+    out[muscles_[muscle]] = std::clamp(value[muscle], 0.0f, 1.0f);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
 #include "frontalis/ros/conversions.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <fmt/format.h>
 
@@ -23,23 +24,6 @@ void FaceNode::refuse(const char* topic, const std::string& reason)
   ROS_WARN_STREAM_THROTTLE(warning_period, name_ << ": message on ~" << topic << " refused: " << reason);
 }
 
-template <typename Act>
-void FaceNode::take_message(const char* topic, const Act& act)
-{
-  std::string reason;
-  const auto running = runner(&reason);
-  if (!running)
-    return refuse(topic, reason);
-  try
-  {
-    act(*running);
-  }
-  catch (const Error& error)
-  {
-    refuse(topic, error.what());
-  }
-}
-
 template <typename Response, typename Act>
 bool FaceNode::answer(Response& response, const Act& act)
 {
@@ -57,6 +41,15 @@ bool FaceNode::answer(Response& response, const Act& act)
     response.message = error.what();
   }
   return true;
+}
+
+template <typename Act>
+void FaceNode::take_message(const char* topic, const Act& act)
+{
+  std_srvs::Trigger::Response outcome;
+  answer(outcome, act);
+  if (!outcome.success)
+    refuse(topic, outcome.message);
 }
 
 void FaceNode::end_demo(const char* topic)
@@ -87,6 +80,16 @@ void FaceNode::set_activation(const char* topic, const std::vector<std::string>&
                });
 }
 
+void FaceNode::on_muscle_activation(const MuscleActivation& message)
+{
+  set_activation("muscle_activation", message.name, message.activation);
+}
+
+void FaceNode::on_joint_states(const sensor_msgs::JointState& message)
+{
+  set_activation("joint_states", message.name, message.position);
+}
+
 void FaceNode::on_expression(const std_msgs::String& message)
 {
   take_message("expression",
@@ -95,12 +98,9 @@ void FaceNode::on_expression(const std_msgs::String& message)
                  const std::lock_guard<std::mutex> lock(target_mutex_);
                  running.set_expression(message.data);
                  end_demo("expression");
-                 for (auto& [name, value] : target_)
-                   value = 0;
-                 for (const auto& expression : running.model().expressions)
-                   if (expression.name == message.data)
-                     for (const auto& [muscle, value] : expression.activation)
-                       target_[running.model().muscles.at(muscle).name] = value;
+                 const auto activation = expression_activation(running.model(), message.data);
+                 for (std::size_t muscle = 0; muscle < activation.size(); ++muscle)
+                   target_[running.model().muscles[muscle].name] = activation[muscle];
                });
 }
 

@@ -33,23 +33,19 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   updater_.setHardwareID("none");
   updater_.add("simulation", this, &FaceNode::diagnose);
 
-  subscribers_.push_back(private_handle_.subscribe<MuscleActivation>(
-      "muscle_activation", 10,
-      [this](const MuscleActivation::ConstPtr& message)
-      { set_activation("muscle_activation", message->name, message->activation); }));
-  subscribers_.push_back(private_handle_.subscribe<sensor_msgs::JointState>(
-      "joint_states", 10,
-      [this](const sensor_msgs::JointState::ConstPtr& message)
-      { set_activation("joint_states", message->name, message->position); }));
-  subscribers_.push_back(private_handle_.subscribe<std_msgs::String>(
-      "expression", 10, [this](const std_msgs::String::ConstPtr& message) { on_expression(*message); }));
-  subscribers_.push_back(private_handle_.subscribe<geometry_msgs::TransformStamped>(
-      "bone_pose", 10, [this](const geometry_msgs::TransformStamped::ConstPtr& message) { on_bone_pose(*message); }));
-  services_.push_back(private_handle_.advertiseService("reset", &FaceNode::on_reset, this));
-  services_.push_back(private_handle_.advertiseService("pause", &FaceNode::on_pause, this));
-  services_.push_back(private_handle_.advertiseService("step", &FaceNode::on_step, this));
-  services_.push_back(private_handle_.advertiseService("switch_effect", &FaceNode::on_switch_effect, this));
-  services_.push_back(private_handle_.advertiseService("list_muscles", &FaceNode::on_list_muscles, this));
+  const auto subscribe = [this](const char* topic, auto handler)
+  { subscribers_.push_back(private_handle_.subscribe(topic, 10, handler, this)); };
+  subscribe("muscle_activation", &FaceNode::on_muscle_activation);
+  subscribe("joint_states", &FaceNode::on_joint_states);
+  subscribe("expression", &FaceNode::on_expression);
+  subscribe("bone_pose", &FaceNode::on_bone_pose);
+  const auto serve = [this](const char* service, auto handler)
+  { services_.push_back(private_handle_.advertiseService(service, handler, this)); };
+  serve("reset", &FaceNode::on_reset);
+  serve("pause", &FaceNode::on_pause);
+  serve("step", &FaceNode::on_step);
+  serve("switch_effect", &FaceNode::on_switch_effect);
+  serve("list_muscles", &FaceNode::on_list_muscles);
 
   frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(demo_period),
                                                  [this](const ros::WallTimerEvent&) { repeat_frame_and_play_demo(); });
@@ -71,11 +67,9 @@ FaceNode::~FaceNode()
   for (auto& service : services_)
     service.shutdown();
   loader_.join();
-  std::shared_ptr<Runner> last;
-  {
-    const std::lock_guard<std::mutex> lock(runner_mutex_);
-    last.swap(runner_);
-  }
+  const std::shared_ptr<Runner> last = runner();  // destroyed once the mutex is free again
+  const std::lock_guard<std::mutex> lock(runner_mutex_);
+  runner_.reset();
 }
 
 std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& parameters)
@@ -86,12 +80,8 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
     model = std::make_shared<const Model>(read_model(parameters.model));
   else
   {
-    BakeRequest request;
-    request.program = find_program(parameters.program);
-    request.scene = parameters.scene;
-    request.mesh_directory = parameters.mesh_directory;
-    request.accuracy = parameters.accuracy;
-    request.cache = parameters.cache;
+    BakeRequest request = parameters.bake;
+    request.program = find_program(request.program);
     ROS_INFO_STREAM(name_ << ": baking " << request.scene << " with " << request.program);
     const auto log = [this](const std::string& line)
     {
@@ -199,39 +189,31 @@ void FaceNode::log_speed_once()
 
 void FaceNode::repeat_frame_and_play_demo()
 {
-  const auto running = runner();
-  std::string fault;
-  {
-    const std::lock_guard<std::mutex> lock(runner_mutex_);
-    fault = load_fault_;
-  }
-  bool idle = false;
   double time = 0;
   {
-    const std::lock_guard<std::mutex> lock(frame_mutex_);
-    idle = (ros::WallTime::now() - last_published_).toSec() > repetition_period;
+    const std::scoped_lock lock(runner_mutex_, frame_mutex_);
     time = frame_.time;
-    if (idle)
+    if ((ros::WallTime::now() - last_published_).toSec() > repetition_period)
+    {
       last_published_ = ros::WallTime::now();
-    // the frame of a face that stands still is sent again for late subscribers
-    if (idle && running && has_frame_ && frame_finite_)
-      publisher_.publish(frame_, ros::Time::now(), paused_);
-    // a face whose model could not be made has failed; one that is still being baked has not
-    if (idle && !fault.empty())
-      publisher_.publish_fault(fault, ros::Time::now());
+      // the frame of a face that stands still is sent again for late subscribers
+      if (runner_ && has_frame_ && frame_finite_)
+        publisher_.publish(frame_, ros::Time::now(), paused_);
+      // a face whose model could not be made has failed; one that is still being baked has not
+      if (!load_fault_.empty())
+        publisher_.publish_fault(load_fault_, ros::Time::now());
+    }
   }
   // in lock-step ~step sets the demo's activations
-  if (running && !paused_ && parameters_.runner.pace != Pace::lock_step)
+  if (!paused_ && parameters_.runner.pace != Pace::lock_step)
     play_demo(time);
 }
 
 void FaceNode::play_demo(double time)
 {
   const std::lock_guard<std::mutex> lock(target_mutex_);
-  if (!demo_playing_)
-    return;
   const auto running = runner();
-  if (!running)
+  if (!demo_playing_ || !running)
     return;
   const auto activation = demo_->activation(time);
   running->set_activation(activation);

@@ -1,7 +1,5 @@
 #include "frontalis/ros/face_publisher.hpp"
 
-#include "frontalis/ros/brows.hpp"
-
 #include <boost/make_shared.hpp>
 
 #include <atomic>
@@ -9,32 +7,29 @@
 namespace frontalis
 {
 
-namespace
-{
-
-/// The message in `slot` with its header set. If a subscriber in this process still holds the message, it is replaced
-/// by a new one.
 template <typename Message>
-Message& reuse_or_make(boost::shared_ptr<Message>& slot, const std::string& frame, const ros::Time& stamp)
+template <typename Fill>
+void FacePublisher::Topic<Message>::publish(const std::string& frame, const ros::Time& stamp, const Fill& fill)
 {
-  if (!slot || slot.use_count() > 1)
-    slot = boost::make_shared<Message>();
+  if (publisher.getNumSubscribers() == 0)
+    return;
+  if (!message || message.use_count() > 1)
+    message = boost::make_shared<Message>();
   else
     std::atomic_thread_fence(std::memory_order_acquire);
-  slot->header.frame_id = frame;
-  slot->header.stamp = stamp;
-  return *slot;
+  message->header.frame_id = frame;
+  message->header.stamp = stamp;
+  fill(*message);
+  publisher.publish(message);
 }
 
-}  // namespace
-
 FacePublisher::FacePublisher(ros::NodeHandle private_handle)
-    : skin_(private_handle.advertise<visualization_msgs::Marker>("skin", 1)),
-      points_(private_handle.advertise<sensor_msgs::PointCloud2>("skin_points", 1)),
-      field_(private_handle.advertise<sensor_msgs::PointCloud2>("skin_field", 1)),
-      topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
-      landmarks_(private_handle.advertise<geometry_msgs::PoseArray>("landmarks", 1)),
-      state_(private_handle.advertise<SimulationState>("state", 1))
+    : skin_(private_handle, "skin"),
+      points_(private_handle, "skin_points"),
+      field_(private_handle, "skin_field"),
+      landmarks_(private_handle, "landmarks"),
+      state_(private_handle, "state"),
+      topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true))
 {
 }
 
@@ -63,35 +58,20 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   if (!is_publishable(frame.skin, *model_))
     return false;
 
-  if (skin_.getNumSubscribers() > 0)
-  {
-    to_marker(*model_, *shading_, frame.skin, reuse_or_make(skin_message_, face_frame_, stamp));
-    skin_.publish(skin_message_);
-  }
-  if (points_.getNumSubscribers() > 0)
-  {
-    to_point_cloud(frame.skin, distances(frame.skin, rest_), reuse_or_make(points_message_, face_frame_, stamp));
-    points_.publish(points_message_);
-  }
+  const SkinState& skin = frame.skin;
+  skin_.publish(face_frame_, stamp, [&](auto& marker) { to_marker(*model_, *shading_, skin, marker); });
+  points_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), cloud); });
   // a frame that was made before there were subscribers has no field
-  if (shows_field() && frame.field.size() == frame.skin.vertices.size())
-  {
-    to_point_cloud(frame.skin, frame.field, reuse_or_make(field_message_, face_frame_, stamp));
-    field_.publish(field_message_);
-  }
-  if (landmarks_.getNumSubscribers() > 0)
-  {
-    to_poses(frame.skin, reuse_or_make(landmarks_message_, face_frame_, stamp));
-    landmarks_.publish(landmarks_message_);
-  }
-  if (state_.getNumSubscribers() > 0)
-  {
-    SimulationState& state = reuse_or_make(state_message_, face_frame_, stamp);
-    to_state(*model_, frame, state);
-    state.paused = paused;
-    state.backend = backend_;
-    state_.publish(state_message_);
-  }
+  if (frame.field.size() == skin.vertices.size())
+    field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, cloud); });
+  landmarks_.publish(face_frame_, stamp, [&](auto& poses) { to_poses(skin, poses); });
+  state_.publish(face_frame_, stamp,
+                 [&](auto& state)
+                 {
+                   to_state(*model_, frame, state);
+                   state.paused = paused;
+                   state.backend = backend_;
+                 });
   to_transforms(*model_, frame.skin, face_frame_, stamp, landmark_transforms_);
   transforms_.sendTransform(landmark_transforms_);
   return true;
@@ -99,12 +79,12 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
 
 void FacePublisher::publish_fault(const std::string& message, const ros::Time& stamp)
 {
-  if (state_.getNumSubscribers() == 0)
-    return;
-  SimulationState& state = reuse_or_make(state_message_, face_frame_, stamp);
-  state.failed = true;
-  state.message = message;
-  state_.publish(state_message_);
+  state_.publish(face_frame_, stamp,
+                 [&](auto& state)
+                 {
+                   state.failed = true;
+                   state.message = message;
+                 });
 }
 
 }  // namespace frontalis

@@ -25,6 +25,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <vector>
@@ -47,29 +48,20 @@ bool is_program(const fs::path& path)
   return fs::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
 }
 
-/// A folder in the system's temporary folder. The destructor removes it with all that it contains.
-class TemporaryFolder
+/// Makes a folder in the system's temporary folder. It is removed, with all that it contains, with the last owner of
+/// its path.
+std::shared_ptr<const fs::path> temporary_folder()
 {
-public:
-  TemporaryFolder()
-  {
-    std::string pattern = (fs::temp_directory_path() / "frontalis-XXXXXX").string();
-    if (!mkdtemp(pattern.data()))
-      throw Error(fmt::format("{}: cannot make a temporary folder: {}", pattern, std::strerror(errno)));
-    path_ = pattern;
-  }
-  ~TemporaryFolder()
-  {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
-private:
-  fs::path path_;
-};
+  std::string pattern = (fs::temp_directory_path() / "frontalis-XXXXXX").string();
+  if (!mkdtemp(pattern.data()))
+    throw Error(fmt::format("{}: cannot make a temporary folder: {}", pattern, std::strerror(errno)));
+  return { new fs::path(pattern), [](const fs::path* path)
+           {
+             std::error_code ignored;
+             fs::remove_all(*path, ignored);
+             delete path;
+           } };
+}
 
 /// Reads a pipe to its end and hands on each line. A carriage return ends a line too, as programs that rewrite a line
 /// of progress print it instead of a newline.
@@ -224,15 +216,14 @@ std::string default_cache()
 
 Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled)
 {
-  const TemporaryFolder folder;
-  const std::string file = (folder.path() / "model.vtkhdf").string();
+  const auto folder = temporary_folder();
+  const std::string file = (*folder / "model.vtkhdf").string();
   std::vector<std::string> arguments{ "bake", request.scene, "-o", file };
-  if (!request.mesh_directory.empty())
-    arguments.insert(arguments.end(), { "--mesh-dir", request.mesh_directory });
-  if (!request.accuracy.empty())
-    arguments.insert(arguments.end(), { "--accuracy", request.accuracy });
-  if (!request.cache.empty())
-    arguments.insert(arguments.end(), { "--cache", request.cache });
+  for (const auto& [option, value] : { std::pair{ "--mesh-dir", request.mesh_directory },
+                                       { "--accuracy", request.accuracy },
+                                       { "--cache", request.cache } })
+    if (!value.empty())
+      arguments.insert(arguments.end(), { option, value });
   run(request.program, arguments, log, cancelled);
   return read_model(file);
 }

@@ -1,7 +1,6 @@
 #include "frontalis/ros/parameters.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/ros/model_source.hpp"
 
 #include <fmt/format.h>
 
@@ -22,13 +21,13 @@ public:
 
   std::string text(const std::string& key, const std::string& fallback)
   {
-    std::string value;
+    std::string value = fallback;
     int number = 0;
     if (!handle_.hasParam(key) || handle_.getParam(key, value))
-      return handle_.hasParam(key) ? value : fallback;
+      return value;
     // roslaunch turns a text such as 1 into a number
     if (handle_.getParam(key, number))
-      return fmt::format("{}", number);
+      return std::to_string(number);
     add_fault(key, "has the wrong type; allowed is a text");
     return fallback;
   }
@@ -42,11 +41,14 @@ public:
     return found;
   }
 
-  template <typename Found>
-  void check(bool good, const std::string& key, const Found& found, const std::string& allowed)
+  /// A finite number that is not below `least`.
+  template <typename T>
+  T number(const std::string& key, T fallback, const char* type, T least, const char* allowed)
   {
-    if (!good)
+    const T found = value(key, fallback, type);
+    if (!(found >= least) || !std::isfinite(found))
       add_fault(key, fmt::format("found {}; allowed is {}", found, allowed));
+    return found;
   }
 
   /// The value that `value_of` has for the text of a parameter; it throws an Error if it has none.
@@ -64,6 +66,11 @@ public:
     }
   }
 
+  void add_fault(const std::string& key, const std::string& fault)
+  {
+    faults_ += fmt::format("\n{}: {}", handle_.resolveName(key), fault);
+  }
+
   void finish() const
   {
     if (!faults_.empty())
@@ -71,11 +78,6 @@ public:
   }
 
 private:
-  void add_fault(const std::string& key, const std::string& fault)
-  {
-    faults_ += fmt::format("\n{}: {}", handle_.resolveName(key), fault);
-  }
-
   ros::NodeHandle handle_;
   std::string faults_;
 };
@@ -95,30 +97,28 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
 {
   Reader reader(private_handle);
   FaceParameters out;
-  out.scene = reader.text("scene", "");
+  out.bake.scene = reader.text("scene", "");
   out.model = reader.text("model", "");
-  reader.check(out.scene.empty() != out.model.empty(), "scene",
-               out.scene.empty() ? "neither ~scene nor ~model" : "both",
-               "either ~scene (a scene file) or ~model (a baked model)");
-  out.mesh_directory = reader.text("mesh_dir", "");
-  out.accuracy = reader.text("accuracy", "");
-  out.cache = reader.text("cache", default_cache());
-  out.program = reader.text("program", "");
+  if (out.bake.scene.empty() == out.model.empty())
+    reader.add_fault("scene", fmt::format("found {}; allowed is either ~scene (a scene file) or ~model (a baked model)",
+                                          out.model.empty() ? "neither ~scene nor ~model" : "both"));
+  out.bake.mesh_directory = reader.text("mesh_dir", "");
+  out.bake.accuracy = reader.text("accuracy", "");
+  out.bake.cache = reader.text("cache", default_cache());
+  out.bake.program = reader.text("program", "");
 
   out.runner.solver.backend = reader.named("backend", "auto", &backend_from_name);
-  out.runner.solver.threads = reader.value("threads", 0, "a whole number; 0: one per core");
-  reader.check(out.runner.solver.threads >= 0, "threads", out.runner.solver.threads, "0 (one per core) or more");
+  out.runner.solver.threads =
+      reader.number("threads", 0, "a whole number; 0: one per core", 0, "0 (one per core) or more");
   out.runner.pace = reader.named("pace", "real_time", &pace_from_name);
-  out.runner.frame_rate = reader.value("frame_rate", 0.0, "a number [1/s]; 0: the model's");
-  reader.check(std::isfinite(out.runner.frame_rate) && out.runner.frame_rate >= 0, "frame_rate", out.runner.frame_rate,
-               "0 (the model's) or more [1/s]");
-  GuardSettings guard;
-  const int interval = reader.value("guard_interval", -1, "a whole number of time steps; 0: no guard");
-  reader.check(interval >= -1, "guard_interval", interval, "0 (no guard) or more, or -1 (the backend's choice)");
-  guard.interval = std::max(interval, 0);
-  out.runner.guard.reset();
-  if (interval != 0)
-    out.runner.guard = guard;
+  out.runner.frame_rate =
+      reader.number("frame_rate", 0.0, "a number [1/s]; 0: the model's", 0.0, "0 (the model's) or more [1/s]");
+  const int interval = reader.number("guard_interval", -1, "a whole number of time steps; 0: no guard", -1,
+                                     "0 (no guard) or more, or -1 (the backend's choice)");
+  if (interval == 0)
+    out.runner.guard.reset();
+  else
+    out.runner.guard->interval = std::max(interval, 0);
   out.skin_field = reader.named("skin_field", "strain", &skin_field_from_name);
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");

@@ -97,16 +97,10 @@ class Face:
         self.landmarks = None
         self.state = None
         self.expression = rospy.Publisher("/face/expression", String, queue_size=1)
-        self.list_muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
+        self.muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
         self.advance = rospy.ServiceProxy("/face/step", Step)
-        rospy.Subscriber("/face/landmarks", PoseArray, self.take_landmarks)
-        rospy.Subscriber("/face/state", SimulationState, self.take_state)
-
-    def take_landmarks(self, message):
-        self.landmarks = [(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses]
-
-    def take_state(self, message):
-        self.state = message
+        rospy.Subscriber("/face/landmarks", PoseArray, lambda message: setattr(self, "landmarks", message.poses))
+        rospy.Subscriber("/face/state", SimulationState, lambda message: setattr(self, "state", message))
 
     def is_seen(self):
         """Whether rviz has subscribed to the skin."""
@@ -132,9 +126,6 @@ class Face:
                 return
             time.sleep(0.1)
         fail("expression '%s' did not reach the face" % name)
-
-    def muscles(self):
-        return self.list_muscles()
 
 
 def wait_for(what, ready, launch, timeout):
@@ -162,7 +153,7 @@ def is_ready(face):
 
 def movement(face, rest):
     """Upward movement of the landmarks in millimetres, as text."""
-    moved = ["%s %+.1f" % (name, 1e3 * (now[2] - then[2]))
+    moved = ["%s %+.1f" % (name, 1e3 * (now.position.z - then.position.z))
              for name, now, then in zip(face.state.landmark, face.landmarks, rest)]
     return "landmarks up [mm]: " + ", ".join(moved) if moved else ""
 
@@ -192,8 +183,8 @@ def main():
 
     # software rendering, and a ROS master of its own so that no other nodes take part
     os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")
-    os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % free_port()
-    port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]
+    port = str(free_port())
+    os.environ["ROS_MASTER_URI"] = "http://localhost:" + port
     launch = subprocess.Popen(
         ["roslaunch", "-p", port, "frontalis", scene + ".launch", "pace:=lock_step", "demo:=false", "rviz:=true",
          "rviz_args:=--fullscreen"] + arguments

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace frontalis
 {
 namespace
 {
 
-// the rotation of `map` applied to a vector, plus `translated` times its translation: 1 for points, 0 for directions
-std::array<float, 3> transformed(const RigidTransform& map, const std::array<float, 3>& p, double translated)
+std::array<float, 3> rounded(const std::array<double, 3>& p)
 {
-  std::array<float, 3> result{};
-  for (std::size_t i = 0; i < 3; ++i)
-    result[i] = static_cast<float>(map.rotation[3 * i] * p[0] + map.rotation[3 * i + 1] * p[1] +
-                                   map.rotation[3 * i + 2] * p[2] + translated * map.translation[i]);
-  return result;
+  return { { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) } };
 }
 
 bool all_finite(const std::vector<std::array<float, 3>>& vectors)
@@ -31,11 +25,11 @@ bool all_finite(const std::vector<std::array<float, 3>>& vectors)
 void to_face_frame(const Model& model, SkinState& skin)
 {
   for (std::array<float, 3>& vertex : skin.vertices)
-    vertex = transformed(model.to_face, vertex, 1);
+    vertex = rounded(model.to_face(vertex));
   for (std::array<float, 3>& normal : skin.normals)
-    normal = transformed(model.to_face, normal, 0);
+    normal = rounded(model.to_face.turned(normal));
   for (std::array<float, 3>& landmark : skin.landmarks)
-    landmark = transformed(model.to_face, landmark, 1);
+    landmark = rounded(model.to_face(landmark));
 }
 
 bool is_finite(const SkinState& skin)

@@ -1,15 +1,14 @@
-#include "scene/content.hpp"
-
 #include "scene/quantity.hpp"
 
-#include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
+#include "frontalis/scene/read_scene.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
-#include <vector>
+#include <sstream>
+#include <type_traits>
 
 namespace frontalis
 {
@@ -21,200 +20,167 @@ std::string hash_of_file(const std::string& path)
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw Error(path + ": cannot be read; must be a readable mesh file");
-  ContentHash hash;
-  std::vector<char> buffer(std::size_t{ 1 } << 20);
-  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
-    hash.add(buffer.data(), static_cast<std::size_t>(file.gcount()));
-  if (file.bad())
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  if (bytes.bad())
     throw Error(path + ": reading failed; must be a readable mesh file");
-  return hash.text();
+  return content_hash(bytes.str());
 }
 
-// one line of words, each after a blank; texts carry their length, so that different scenes give different lines
-class Line
+/// Lines of values, each after a blank. Strings carry their length, so that different scenes give different lines.
+class Content
 {
 public:
-  Line(std::string& content, const std::string& kind) : content_(content) { content_ += kind; }
-  ~Line() { content_ += '\n'; }
-  Line(const Line&) = delete;
-  Line& operator=(const Line&) = delete;
-
-  Line& add(double value)
+  template <class... Words>
+  void line(const char* kind, const Words&... words)
   {
-    content_ += ' ' + number_text(value);
-    return *this;
+    text_ += '\n';
+    text_ += kind;
+    add(words...);
   }
-  Line& add(const std::string& text)
+  /// Appends values to the last line.
+  template <class... Words>
+  void add(const Words&... words)
   {
-    content_ += fmt::format(" {}:{}", text.size(), text);
-    return *this;
+    (put(words), ...);
   }
-  Line& add(const Vector3& vector) { return add(vector[0]).add(vector[1]).add(vector[2]); }
-  Line& add(const Region& region) { return add(region.lower).add(region.upper); }
-  Line& add(const std::vector<std::string>& texts)
-  {
-    add(static_cast<double>(texts.size()));
-    for (const std::string& text : texts)
-      add(text);
-    return *this;
-  }
-  Line& add(const std::vector<Vector3>& vectors)
-  {
-    add(static_cast<double>(vectors.size()));
-    for (const Vector3& vector : vectors)
-      add(vector);
-    return *this;
-  }
-  Line& add(const std::map<std::string, double>& numbers)
-  {
-    add(static_cast<double>(numbers.size()));
-    for (const auto& [name, value] : numbers)
-      add(name).add(value);
-    return *this;
-  }
+  std::string text() const { return text_ + '\n'; }
 
 private:
-  std::string& content_;
+  void put(double value) { text_ += ' ' + number_text(value); }
+  void put(const std::string& text) { text_ += fmt::format(" {}:{}", text.size(), text); }
+  void put(const Region& region) { add(region.lower, region.upper); }
+  template <class Kind, class = std::enable_if_t<std::is_enum_v<Kind>>>
+  void put(Kind kind)
+  {
+    put(static_cast<double>(kind));
+  }
+  template <class Value>
+  void put(const std::array<Value, 3>& values)
+  {
+    add(values[0], values[1], values[2]);
+  }
+  template <class Value>
+  void put(const std::vector<Value>& values)
+  {
+    put(static_cast<double>(values.size()));
+    for (const Value& value : values)
+      put(value);
+  }
+  void put(const std::map<std::string, double>& numbers)
+  {
+    put(static_cast<double>(numbers.size()));
+    for (const auto& [name, value] : numbers)
+      add(name, value);
+  }
+
+  std::string text_ = "frontalis scene content 1";
 };
 
-void add_surface(const Surface& surface, std::string& content)
+void add_surface(const Surface& surface, Content& content)
 {
-  Line line(content, "surface");
-  line.add(surface.name);
+  content.line("surface", surface.name);
   if (!surface.shape)
   {
-    // the extension decides which format the bytes are in
-    line.add("file").add(std::filesystem::path(surface.file).extension().string());
-    line.add(surface.unit).add(hash_of_file(surface.file));
+    // the extension of the file name determines the mesh format
+    content.add("file", std::filesystem::path(surface.file).extension().string(), surface.unit,
+                hash_of_file(surface.file));
     return;
   }
   const Shape& shape = *surface.shape;
-  line.add("shape").add(static_cast<double>(shape.kind)).add(shape.centre).add(shape.size).add(shape.axis);
-  line.add(shape.radius).add(shape.minor_radius).add(shape.length).add(shape.edge);
-  line.add(shape.part).add(shape.dimensions);
+  content.add("shape", shape.kind, shape.centre, shape.size, shape.axis, shape.radius, shape.minor_radius, shape.length,
+              shape.edge, shape.part, shape.dimensions);
 }
 
-void add_muscle(const SceneMuscle& muscle, std::string& content)
+void add_muscle(const SceneMuscle& muscle, Content& content)
 {
-  Line line(content, "muscle");
-  line.add(muscle.name).add(muscle.volume).add(muscle.fibre);
-  line.add(muscle.stress_reference).add(muscle.passive).add(muscle.tension_length);
-  line.add(muscle.rise_time).add(muscle.fall_time);
+  content.line("muscle", muscle.name, muscle.volume, muscle.fibre, muscle.stress_reference, muscle.passive,
+               muscle.tension_length, muscle.rise_time, muscle.fall_time);
   for (const MuscleEnd& end : { muscle.origin, muscle.insertion })
-    line.add(end.surface).add(end.points);
-  line.add(muscle.ring ? (*muscle.ring ? "ring" : "open") : "");
+    content.add(end.surface, end.points);
+  content.add(muscle.ring ? (*muscle.ring ? "ring" : "open") : "");
   if (muscle.net)
-  {
-    line.add(muscle.net->size[0]).add(muscle.net->size[1]).add(muscle.net->size[2]).add(muscle.net->ring);
-    line.add(muscle.net->points).add(static_cast<double>(muscle.net->weights.size()));
-    for (const double weight : muscle.net->weights)
-      line.add(weight);
-  }
+    content.add(muscle.net->size, muscle.net->ring, muscle.net->points, muscle.net->weights);
 }
 
-void add_anatomy(const Scene& scene, std::string& content)
+void add_anatomy(const Scene& scene, Content& content)
 {
   for (const Surface& surface : scene.surfaces)
     add_surface(surface, content);
-  for (const Volume& volume : scene.volumes)
-  {
-    Line line(content, "volume");
-    line.add(volume.name).add(volume.closed_by).add(volume.inside).add(volume.outside).add(volume.without);
-    line.add(volume.within).add(volume.depth_min).add(volume.depth_max).add(volume.crop);
-    line.add(volume.material).add(volume.priority).add(volume.tissue);
-  }
+  for (const Volume& v : scene.volumes)
+    content.line("volume", v.name, v.closed_by, v.inside, v.outside, v.without, v.within, v.depth_min, v.depth_max,
+                 v.crop, v.material, v.priority, v.tissue);
   for (const SceneMaterial& material : scene.materials)
   {
-    Line line(content, "material");
-    line.add(material.name).add(material.law).add(material.density).add(material.parameters);
-    line.add(material.families[0]).add(material.families[1]).add(material.along);
+    content.line("material", material.name, material.law, material.density, material.parameters, material.families[0],
+                 material.families[1], material.along);
     for (const auto& term : material.viscosity)
-      line.add(term.share).add(term.time);
+      content.add(term.share, term.time);
   }
   for (const Layer& layer : scene.layers)
-    Line(content, "layer")
-        .add(layer.name)
-        .add(layer.surface)
-        .add(layer.volume)
-        .add(layer.material)
-        .add(layer.thickness);
+    content.line("layer", layer.name, layer.surface, layer.volume, layer.material, layer.thickness);
   for (const SceneMuscle& muscle : scene.muscles)
     add_muscle(muscle, content);
 }
 
-void add_restrictions(const Scene& scene, std::string& content)
+void add_restrictions(const Scene& scene, Content& content)
 {
-  for (const SceneConstraint& constraint : scene.constraints)
-  {
-    Line line(content, "constraint");
-    line.add(constraint.name).add(static_cast<double>(constraint.kind)).add(constraint.surfaces);
-    line.add(constraint.within).add(constraint.crop).add(constraint.bone).add(constraint.friction);
-    if (!constraint.on.empty())
-      line.add(constraint.on);
-  }
+  for (const SceneConstraint& c : scene.constraints)
+    if (c.on.empty())
+      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    else
+      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction, c.on);
   for (const SceneLoad& load : scene.loads)
-  {
-    Line line(content, "load");
-    line.add(load.name).add(static_cast<double>(load.kind)).add(load.surface).add(load.value);
-    line.add(load.fixed[0]).add(load.fixed[1]).add(load.fixed[2]);
-    line.add(load.within).add(load.ramp).add(load.crop);
-  }
-  Line(content, "gravity").add(scene.gravity);
-  Line(content, "switched off").add(names_of(scene.switched_off));
+    content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp, load.crop);
+  content.line("gravity", scene.gravity);
+  content.line("switched off", names_of(scene.switched_off));
 }
 
-void add_output(const Scene& scene, std::string& content)
+void add_output(const Scene& scene, Content& content)
 {
-  Line(content, "skin").add(scene.skin.surface).add(scene.skin.crop).add(scene.skin.extrapolation);
+  content.line("skin", scene.skin.surface, scene.skin.crop, scene.skin.extrapolation);
   for (const SceneLandmark& landmark : scene.landmarks)
-    Line(content, "landmark").add(landmark.name).add(landmark.position);
-  Line(content, "frame").add(scene.frame.id).add(scene.frame.origin).add(scene.frame.forward).add(scene.frame.up);
+    content.line("landmark", landmark.name, landmark.position);
+  content.line("frame", scene.frame.id, scene.frame.origin, scene.frame.forward, scene.frame.up);
   for (const auto& [name, activation] : scene.expressions)
-    Line(content, "expression").add(name).add(activation);
+    content.line("expression", name, activation);
   for (const DemoPhase& phase : scene.demo)
-    Line(content, "demo").add(phase.expression).add(phase.ramp).add(phase.seconds);
+    content.line("demo", phase.expression, phase.ramp, phase.seconds);
 }
 
-void add_numerics(const Scene& scene, std::string& content)
+void add_numerics(const Scene& scene, Content& content)
 {
-  Line(content, "time")
-      .add(scene.time.damping)
-      .add(scene.time.scaling)
-      .add(scene.time.frame_rate)
-      .add(scene.time.activation_slew);
+  content.line("time", scene.time.damping, scene.time.scaling, scene.time.frame_rate, scene.time.activation_slew);
   const AccuracyProfile& profile = scene.accuracy;
-  Line(content, "accuracy")
-      .add(profile.voxel)
-      .add(profile.samples)
-      .add(profile.fill_min)
-      .add(profile.time_step_share)
-      .add(static_cast<double>(profile.mass_scaling.kind))
-      .add(profile.mass_scaling.factor)
-      .add(profile.mass_scaling.time_step)
-      .add(profile.assumed_strain ? 1 : 0)
-      .add(profile.integration)
-      .add(profile.precision)
-      .add(profile.time_step)
-      .add(profile.mass_scaling.materials);
-  Line(content, "profile").add(profile.name);
+  const MassScaling& scaling = profile.mass_scaling;
+  content.line("accuracy", profile.voxel, profile.samples, profile.fill_min, profile.time_step_share, scaling.kind,
+               scaling.factor, scaling.time_step, profile.assumed_strain, profile.integration, profile.precision,
+               profile.time_step, scaling.materials);
+  content.line("profile", profile.name);
   for (const AccuracyProfile& known : scene.profiles)
-    Line(content, "measured")
-        .add(known.name)
-        .add(known.measured.error)
-        .add(known.measured.cost)
-        .add(known.measured.machine);
+    content.line("measured", known.name, known.measured.error, known.measured.cost, known.measured.machine);
 }
 
 }  // namespace
 
-std::string canonical_content(const Scene& scene)
+std::string content_hash(const std::string& content)
 {
-  std::string content = "frontalis scene content 1\n";
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char byte : content)
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+// Numbers are in SI units. A hash of the file's bytes replaces the path of each mesh file. Line numbers and the
+// settings of profiles that are not chosen are left out.
+std::string content_of(const Scene& scene)
+{
+  Content content;
   add_anatomy(scene, content);
   add_restrictions(scene, content);
   add_output(scene, content);
   add_numerics(scene, content);
-  return content;
+  return content.text();
 }
 
 }  // namespace frontalis

@@ -2,10 +2,13 @@
 
 #include "frontalis/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <vector>
+#include <iterator>
+#include <regex>
+#include <string_view>
 
 namespace frontalis
 {
@@ -14,64 +17,35 @@ namespace
 
 struct Unit
 {
-  const char* name;
-  double factor;  ///< in SI units
+  Dimension dimension;
+  std::string_view name;
+  double factor;  ///< value of one unit in SI units
 };
 
-const std::vector<Unit>& units_of(Dimension dimension)
+constexpr Unit units[] = {
+  { Dimension::length, "m", 1 },        { Dimension::length, "cm", 1e-2 },      { Dimension::length, "mm", 1e-3 },
+  { Dimension::length, "um", 1e-6 },    { Dimension::length, "in", 0.0254 },    { Dimension::time, "s", 1 },
+  { Dimension::time, "ms", 1e-3 },      { Dimension::time, "us", 1e-6 },        { Dimension::rate, "1/s", 1 },
+  { Dimension::rate, "Hz", 1 },         { Dimension::pressure, "Pa", 1 },       { Dimension::pressure, "kPa", 1e3 },
+  { Dimension::pressure, "MPa", 1e6 },  { Dimension::pressure, "GPa", 1e9 },    { Dimension::density, "kg/m3", 1 },
+  { Dimension::density, "g/cm3", 1e3 }, { Dimension::acceleration, "m/s2", 1 },
+};
+
+/// Returns null if the unit does not exist.
+const Unit* find_unit(Dimension dimension, const std::string& name)
 {
-  static const std::vector<Unit> none;
-  static const std::vector<Unit> length{ { "m", 1 }, { "cm", 1e-2 }, { "mm", 1e-3 }, { "um", 1e-6 }, { "in", 0.0254 } };
-  static const std::vector<Unit> time{ { "s", 1 }, { "ms", 1e-3 }, { "us", 1e-6 } };
-  static const std::vector<Unit> rate{ { "1/s", 1 }, { "Hz", 1 } };
-  static const std::vector<Unit> pressure{ { "Pa", 1 }, { "kPa", 1e3 }, { "MPa", 1e6 }, { "GPa", 1e9 } };
-  static const std::vector<Unit> density{ { "kg/m3", 1 }, { "g/cm3", 1e3 } };
-  static const std::vector<Unit> acceleration{ { "m/s2", 1 } };
-  switch (dimension)
-  {
-    case Dimension::length:
-      return length;
-    case Dimension::time:
-      return time;
-    case Dimension::rate:
-      return rate;
-    case Dimension::pressure:
-      return pressure;
-    case Dimension::density:
-      return density;
-    case Dimension::acceleration:
-      return acceleration;
-    case Dimension::number:
-      break;
-  }
-  return none;
+  const auto same = [&](const Unit& unit) { return unit.dimension == dimension && unit.name == name; };
+  const Unit* const found = std::find_if(std::begin(units), std::end(units), same);
+  return found == std::end(units) ? nullptr : found;
 }
 
-std::string names_of(const std::vector<Unit>& units)
+std::string names_of_units(Dimension dimension)
 {
   std::string names;
   for (const Unit& unit : units)
-    names += (names.empty() ? "" : ", ") + std::string(unit.name);
+    if (unit.dimension == dimension)
+      names.append(names.empty() ? "" : ", ").append(unit.name);
   return names;
-}
-
-std::string expected(Dimension dimension)
-{
-  const std::vector<Unit>& units = units_of(dimension);
-  return units.empty() ? "a number without a unit" : "a number, alone or with one of the units " + names_of(units);
-}
-
-// whether a text is one of the words of YAML and C for infinity and not-a-number
-bool names_not_finite(std::string text)
-{
-  if (!text.empty() && (text[0] == '-' || text[0] == '+'))
-    text.erase(0, 1);
-  if (!text.empty() && text[0] == '.')
-    text.erase(0, 1);
-  for (char& letter : text)
-    if (letter >= 'A' && letter <= 'Z')
-      letter = static_cast<char>(letter - 'A' + 'a');
-  return text == "inf" || text == "infinity" || text == "nan";
 }
 
 std::string trimmed(const std::string& text)
@@ -103,8 +77,16 @@ std::string Bound::text() const
 double parse_quantity(const std::string& text, Dimension dimension, double length_unit)
 {
   const std::string found = trimmed(text);
-  if (names_not_finite(found))
-    throw Error("'" + found + "' is not finite; must be " + expected(dimension));
+  const auto refusal = [&](const std::string& fault)
+  {
+    const std::string names = names_of_units(dimension);
+    return Error("'" + found + "' " + fault + "; must be a number" +
+                 (names.empty() ? " without a unit" : ", alone or with one of the units " + names));
+  };
+  // spellings in YAML and C
+  static const std::regex not_finite("[-+]?\\.?(inf|infinity|nan)", std::regex::icase);
+  if (std::regex_match(found, not_finite))
+    throw refusal("is not finite");
 
   // std::from_chars does not depend on the locale, but does not accept a leading plus
   const char* begin = found.data() + (found.size() > 1 && found[0] == '+' && found[1] != '-' ? 1 : 0);
@@ -112,37 +94,27 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
   double value = 0;
   const std::from_chars_result number = std::from_chars(begin, end, value);
   if (number.ec == std::errc::result_out_of_range)
-    throw Error("'" + found + "' is not finite in double precision; must be " + expected(dimension));
+    throw refusal("is not finite in double precision");
   if (number.ec != std::errc())
-    throw Error("'" + found + "' is not a number; must be " + expected(dimension));
+    throw refusal("is not a number");
 
   const std::string unit = trimmed(std::string(number.ptr, end));
   if (unit.empty())
     value *= dimension == Dimension::length ? length_unit : 1;
+  else if (const Unit* known = find_unit(dimension, unit); known != nullptr)
+    value *= known->factor;
   else
-  {
-    bool known = false;
-    for (const Unit& candidate : units_of(dimension))
-      if (unit == candidate.name)
-      {
-        value *= candidate.factor;
-        known = true;
-        break;
-      }
-    if (!known)
-      throw Error("'" + found + "' has the unknown unit '" + unit + "'; must be " + expected(dimension));
-  }
+    throw refusal("has the unknown unit '" + unit + "'");
   if (!std::isfinite(value))
-    throw Error("'" + found + "' is not finite; must be " + expected(dimension));
+    throw refusal("is not finite");
   return value;
 }
 
 double parse_length_unit(const std::string& text)
 {
-  for (const Unit& unit : units_of(Dimension::length))
-    if (text == unit.name)
-      return unit.factor;
-  throw Error("'" + text + "' is no length unit; allowed are " + names_of(units_of(Dimension::length)));
+  if (const Unit* unit = find_unit(Dimension::length, text); unit != nullptr)
+    return unit->factor;
+  throw Error("'" + text + "' is no length unit; allowed are " + names_of_units(Dimension::length));
 }
 
 std::string number_text(double value)

@@ -6,19 +6,19 @@
 namespace frontalis
 {
 
-/// The quantity of a number in a scene, with the units that it may have; after the semicolon, the default unit.
+/// Physical dimension of a number in a scene file, with the allowed units and the default unit.
 enum class Dimension
 {
-  number,       ///< no unit
-  length,       ///< m, cm, mm, um, in; without one the scene's length unit
-  time,         ///< s, ms, us; s
-  rate,         ///< 1/s, Hz; 1/s
-  pressure,     ///< Pa, kPa, MPa, GPa; Pa
-  density,      ///< kg/m3, g/cm3; kg/m3
-  acceleration  ///< m/s2; m/s2
+  number,       ///< without a unit
+  length,       ///< m, cm, mm, um, in; default: the scene's length unit
+  time,         ///< s, ms, us; default: s
+  rate,         ///< 1/s, Hz; default: 1/s
+  pressure,     ///< Pa, kPa, MPa, GPa; default: Pa
+  density,      ///< kg/m3, g/cm3; default: kg/m3
+  acceleration  ///< m/s2; default: m/s2
 };
 
-/// Range that a number must lie in.
+/// Range of allowed numbers.
 struct Bound
 {
   double lower = -std::numeric_limits<double>::infinity();
@@ -27,22 +27,23 @@ struct Bound
   bool upper_allowed = true;
 
   bool holds(double value) const;
-  std::string text() const;  ///< "greater than 0", "from 0 to 1"
+  std::string text() const;  ///< "greater than 0", "at least 0 and at most 1"
 };
 
 constexpr Bound any_number{};
 constexpr Bound positive{ 0, std::numeric_limits<double>::infinity(), false, true };
-constexpr Bound not_negative{ 0, std::numeric_limits<double>::infinity(), true, true };
-constexpr Bound proportion{ 0, 1, true, true };
+constexpr Bound not_negative{ 0 };
+constexpr Bound at_least_one{ 1 };
+constexpr Bound proportion{ 0, 1 };
 
-/// Number with an optional unit, in SI units. Throws Error saying what was found and what is allowed; numbers that are
-/// not finite are refused.
+/// Parses a finite number with an optional unit and returns it in SI units. `length_unit` [m] applies to lengths
+/// without a unit. Throws Error with what was found and what is allowed.
 double parse_quantity(const std::string& text, Dimension dimension, double length_unit);
 
-/// Metres per length unit. Throws Error naming the units that exist.
+/// Length unit [m] of a name such as "mm". Throws Error naming the units that exist.
 double parse_length_unit(const std::string& text);
 
-/// Shortest text that reads back as the same number, whatever the locale.
+/// Shortest text that reads back as the same number, independent of the locale.
 std::string number_text(double value);
 
 }  // namespace frontalis

@@ -1,9 +1,5 @@
 #include "scene/sections.hpp"
 
-#include "scene/suggestion.hpp"
-
-#include "frontalis/error.hpp"
-
 #include <algorithm>
 #include <filesystem>
 
@@ -40,24 +36,18 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   const Node time_step = mapping.optional("time_step");
   if (node.is_mapping() && uniform.given() == (selective.given() || time_step.given()))
     node.fault(
-        std::string(uniform.given() ? "found uniform and another" : "found none") +
-        " of uniform, selective, time_step; must be 'none', have uniform alone, or selective, time_step or both");
+        "found {} of uniform, selective, time_step; must be 'none', or have either uniform alone, or selective, "
+        "time_step or both",
+        uniform.given() ? "uniform and another" : "none");
   if (uniform.given())
   {
     scaling.kind = MassScaling::Kind::uniform;
-    scaling.factor =
-        uniform.number(Dimension::number, Bound{ 1, std::numeric_limits<double>::infinity(), true, true }, 1);
+    scaling.factor = uniform.number(Dimension::number, at_least_one, 1);
   }
-  if (selective.given())
-  {
+  if (selective.given() || time_step.given())
     scaling.kind = MassScaling::Kind::selective;
-    scaling.materials = selective.references(names.materials);
-  }
-  if (time_step.given())
-  {
-    scaling.kind = MassScaling::Kind::selective;
-    scaling.time_step = time_step.number(Dimension::time, positive, 0);
-  }
+  scaling.materials = selective.references(names.materials);
+  scaling.time_step = time_step.number(Dimension::time, positive, 0);
 }
 
 AccuracyProfile read_profile(const std::string& name, const Node& node, const SceneNames& names)
@@ -72,13 +62,14 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   profile.time_step_share = mapping.optional("time_step_share")
                                 .number(Dimension::number, Bound{ 0, 1, false, true }, profile.time_step_share);
   read_mass_scaling(mapping.optional("mass_scaling"), profile.mass_scaling, names);
-  if (const Node hourglass = mapping.optional("hourglass"); hourglass.given())
-    profile.assumed_strain = hourglass.choice({ "scalar", "assumed_strain" }) == "assumed_strain";
+  std::string hourglass = "scalar";
   const auto choose = [&mapping](const std::string& key, const std::vector<std::string>& allowed, std::string& chosen)
   {
     if (const Node node_of_key = mapping.optional(key); node_of_key.given())
       chosen = node_of_key.choice(allowed);
   };
+  choose("hourglass", { "scalar", "assumed_strain" }, hourglass);
+  profile.assumed_strain = hourglass == "assumed_strain";
   choose("integration", { "one_point", "selective_reduced" }, profile.integration);
   choose("precision", { "single", "compensated", "double" }, profile.precision);
   choose("time_step", { "element", "assembled" }, profile.time_step);
@@ -88,8 +79,7 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
     profile.measured.error = measured.required("error", "a length").number(Dimension::length, positive, 0);
     profile.measured.cost =
         measured.required("cost", "wall seconds per simulated second").number(Dimension::number, positive, 0);
-    if (const Node machine = measured.optional("machine"); machine.given())
-      profile.measured.machine = machine.text();
+    profile.measured.machine = measured.optional("machine").text();
   }
   return profile;
 }
@@ -100,7 +90,7 @@ bool is_profile_file(const std::string& accuracy)
   return extension == ".yaml" || extension == ".yml";
 }
 
-// a file with the one profile NAME: {...}, as it stands under `accuracy`
+// reads a file with one profile, NAME: {...}, in the format of the scene's section `accuracy`
 AccuracyProfile read_profile_file(const std::string& path, double length_unit, const SceneNames& names)
 {
   const YAML::Node yaml = load_yaml(path, "accuracy profile", "one profile, NAME: {voxel: ...}");
@@ -117,7 +107,13 @@ AccuracyProfile read_profile_file(const std::string& path, double length_unit, c
   return profile;
 }
 
-// takes the voxel edge of the options in place of the profile's
+auto find_profile(Scene& scene, const std::string& name)
+{
+  return std::find_if(scene.profiles.begin(), scene.profiles.end(),
+                      [&](const AccuracyProfile& profile) { return profile.name == name; });
+}
+
+// replaces the voxel edge of the chosen profile by that of the options, if they have one
 void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
@@ -136,11 +132,10 @@ void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
   if (!(edge > 0))
     return;
   scene.accuracy.voxel = { edge, edge, edge };
-  // the measurement was made with other voxels
+  // the measured error and cost hold for the original voxels only
   scene.accuracy.measured = {};
-  for (AccuracyProfile& profile : scene.profiles)
-    if (profile.name == scene.accuracy.name)
-      profile.measured = {};
+  if (const auto profile = find_profile(scene, scene.accuracy.name); profile != scene.profiles.end())
+    profile->measured = {};
 }
 
 }  // namespace
@@ -173,9 +168,9 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
-    // it replaces a profile of the same name
-    const auto same = [&](const AccuracyProfile& profile) { return profile.name == scene.accuracy.name; };
-    scene.profiles.erase(std::remove_if(scene.profiles.begin(), scene.profiles.end(), same), scene.profiles.end());
+    // the profile of the file replaces that of the same name in the scene
+    if (const auto same = find_profile(scene, scene.accuracy.name); same != scene.profiles.end())
+      scene.profiles.erase(same);
     scene.profiles.push_back(scene.accuracy);
     override_voxel(node, options, scene);
     return;
@@ -193,16 +188,11 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   }
   if (chosen.empty())
     return;
-  bool found = false;
-  for (const AccuracyProfile& profile : scene.profiles)
-    if (profile.name == chosen)
-    {
-      scene.accuracy = profile;
-      found = true;
-    }
-  if (!found)
+  if (const auto found = find_profile(scene, chosen); found != scene.profiles.end())
+    scene.accuracy = *found;
+  else
     (chosen_by ? *chosen_by : node)
-        .fault("no accuracy profile is called '" + chosen + "'; the profiles are " +
+        .fault("no accuracy profile is called '{}'; the profiles are {}", chosen,
                list_with_suggestion(chosen, profiles));
   override_voxel(node, options, scene);
 }

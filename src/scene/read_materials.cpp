@@ -16,7 +16,6 @@ std::vector<std::string> names_of_laws()
   return names;
 }
 
-// the directions of two families of fibres
 void read_families(const Node& node, std::array<Vector3, 2>& families)
 {
   const std::vector<Node> entries = node.entries();
@@ -26,7 +25,6 @@ void read_families(const Node& node, std::array<Vector3, 2>& families)
     families[f] = entries[f].direction({ 1, 0, 0 });
 }
 
-// the terms of a Prony series
 void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& terms)
 {
   const std::vector<Node> entries = node.entries();
@@ -44,7 +42,7 @@ void read_viscosity(const Node& node, std::vector<SceneMaterial::ViscousTerm>& t
     terms.push_back(term);
   }
   if (!(sum < 1))
-    node.fault("the shares add up to {}; must stay below 1, or nothing is left of the stiffness", sum);
+    node.fault("the shares add up to {}; must stay below 1, because the rest is the stiffness at rest", sum);
 }
 
 double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
@@ -62,7 +60,7 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   return value;
 }
 
-// one fibre's direction, or those of two families, which may follow a surface
+// reads one fibre direction or those of two fibre families, which may follow a surface
 void read_directions(int count, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   if (count == 1)
@@ -80,7 +78,7 @@ void read_directions(int count, Mapping& mapping, const SceneNames& names, Scene
   }
 }
 
-// what the law asks for, in SI units
+// reads the parameters [SI units] and directions of the law
 void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   const physics::MaterialDescription& description = physics::description_of(law);
@@ -104,30 +102,19 @@ void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& nam
 
 void read_materials(const Node& node, Scene& scene, SceneNames& names)
 {
-  names.materials.complete = node.is_mapping();
-  for (const auto& [name, entry] : node.named_pairs())
+  const auto read = [&](const Node& entry, Mapping& mapping, SceneMaterial& material)
   {
-    SceneMaterial material;
-    material.name = name;
-    material.line = entry.line();
-    names.materials.names.push_back(name);
-    {
-      Mapping mapping(entry);
-      const Node law = mapping.optional("law");
-      if (law.given())
-        material.law = law.choice(names_of_laws());
-      if (const auto known = physics::law_named(material.law); !known)
-        mapping.ignore_rest();
-      else
-      {
-        read_law(*known, entry, mapping, names, material);
-        read_viscosity(mapping.optional("viscosity"), material.viscosity);
-        material.density =
-            mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
-      }
-    }
-    scene.materials.push_back(material);
-  }
+    const Node law = mapping.optional("law");
+    if (law.given())
+      material.law = law.choice(names_of_laws());
+    const auto known = physics::law_named(material.law);
+    if (!known)
+      return mapping.ignore_rest();
+    read_law(*known, entry, mapping, names, material);
+    read_viscosity(mapping.optional("viscosity"), material.viscosity);
+    material.density = mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
+  };
+  read_named(node, scene.materials, names.materials, read);
 }
 
 }  // namespace frontalis

@@ -1,13 +1,11 @@
 #include "scene/sections.hpp"
 
-#include "scene/suggestion.hpp"
-
 namespace frontalis
 {
 namespace
 {
 
-/// A surface's name, a point, or a list of points.
+/// Reads the name of a surface, a point, or a list of points.
 MuscleEnd read_end(const Node& node, const SceneNames& names)
 {
   MuscleEnd end;
@@ -17,13 +15,9 @@ MuscleEnd read_end(const Node& node, const SceneNames& names)
     return end;
   }
   const auto entries = node.entries();
-  if (!entries.empty() && entries.front().is_list())
-  {
-    for (const Node& entry : entries)
-      end.points.push_back(entry.vector(Dimension::length, any_number, {}));
-  }
-  else
-    end.points.push_back(node.vector(Dimension::length, any_number, {}));
+  const bool one = entries.empty() || !entries.front().is_list();
+  for (const Node& point : one ? std::vector<Node>{ node } : entries)
+    end.points.push_back(point.vector(Dimension::length, any_number, {}));
   return end;
 }
 
@@ -31,12 +25,11 @@ ControlNet read_net(const Node& node)
 {
   ControlNet net;
   Mapping mapping(node);
-  const Node size =
-      mapping.required("size", "three whole numbers: control points along, across and through the muscle");
+  const std::string expected = "three whole numbers: control points along, across and through the muscle";
+  const Node size = mapping.required("size", expected);
   const auto sizes = size.entries();
   if (size.is_list() && sizes.size() != 3)
-    size.fault("found a list of {}; must be three whole numbers: control points along, across and through the muscle",
-               sizes.size());
+    size.fault("found a list of {}; must be {}", sizes.size(), expected);
   for (std::size_t a = 0; sizes.size() == 3 && a < 3; ++a)
     net.size[a] = sizes[a].integer(2, 100, 2);
   net.ring = mapping.optional("ring").boolean(false);
@@ -57,7 +50,7 @@ ControlNet read_net(const Node& node)
   return net;
 }
 
-/// The keys that say where the fibres run: at most one way may be used.
+/// Reads the keys that define the fibres. A muscle may use at most one of the four alternatives.
 void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
 {
   const Node fibre = mapping.optional("fibre"), net = mapping.optional("net"), ring = mapping.optional("ring"),
@@ -92,29 +85,22 @@ void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
 
 void read_muscles(const Node& node, Scene& scene, SceneNames& names)
 {
-  for (const auto& [name, entry] : node.named_pairs())
+  const auto read = [&](const Node& entry, Mapping& mapping, SceneMuscle& muscle)
   {
-    SceneMuscle muscle;
-    muscle.name = name;
-    muscle.line = entry.line();
-    names.muscles.names.push_back(name);
-    {
-      Mapping mapping(entry);
-      const Node volume = mapping.optional("volume");
-      muscle.volume = volume.given() ? volume.reference(names.volumes) : name;
-      if (!volume.given() && entry.is_mapping() && names.volumes.complete && !names.volumes.has(name))
-        volume.fault("missing, and no volume is called '" + name + "'; the volumes are " +
-                     list_with_suggestion(name, names.volumes.names));
-      read_fibres(mapping, names, muscle);
-      muscle.stress_reference =
-          mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
-      muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, 0);
-      muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, 0);
-      muscle.passive = mapping.optional("passive").boolean(muscle.passive);
-      muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
-    }
-    scene.muscles.push_back(muscle);
-  }
+    const Node volume = mapping.optional("volume");
+    muscle.volume = volume.given() ? volume.reference(names.volumes) : muscle.name;
+    if (!volume.given() && entry.is_mapping() && names.volumes.complete && !names.volumes.has(muscle.name))
+      volume.fault("missing, and no volume is called '{}'; the volumes are {}", muscle.name,
+                   list_with_suggestion(muscle.name, names.volumes.names));
+    read_fibres(mapping, names, muscle);
+    muscle.stress_reference =
+        mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
+    muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, 0);
+    muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, 0);
+    muscle.passive = mapping.optional("passive").boolean(muscle.passive);
+    muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
+  };
+  read_named(node, scene.muscles, names.muscles, read);
   names.muscles.complete = !node.given() || node.is_mapping();
 }
 
@@ -131,9 +117,7 @@ void read_expressions(const Node& node, Scene& scene, SceneNames& names)
     std::map<std::string, double>& activation = scene.expressions[name];
     for (const auto& [muscle, value] : entry.pairs())
     {
-      if (names.muscles.complete && !names.muscles.has(muscle))
-        value.fault("no muscle is called '" + muscle + "'; the muscles are " +
-                    list_with_suggestion(muscle, names.muscles.names));
+      value.check_known(muscle, names.muscles);
       if (value.is_null())
         value.fault("found nothing; must be an activation from 0 to 1");
       else
@@ -156,7 +140,7 @@ void read_demo(const Node& node, Scene& scene, const SceneNames& names)
     if (phase.ramp > phase.seconds)
     {
       if (ramp.given())
-        ramp.fault(ramp.found() + "; must be at most 'seconds', which holds the ramp");
+        ramp.fault(ramp.found() + "; must be at most 'seconds', which includes the ramp");
       else
         phase.ramp = phase.seconds;
     }

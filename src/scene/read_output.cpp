@@ -1,5 +1,6 @@
 #include "scene/sections.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -17,19 +18,15 @@ void read_frame(const Node& node, FaceFrame& frame)
   frame.forward = mapping.optional("forward").direction(frame.forward);
   frame.up = up.direction(frame.up);
 
-  // the part of `up` along `forward` is removed
+  // make `up` orthogonal to `forward`
   const Vector3& f = frame.forward;
   const double along = frame.up[0] * f[0] + frame.up[1] * f[1] + frame.up[2] * f[2];
-  Vector3 across{ frame.up[0] - along * f[0], frame.up[1] - along * f[1], frame.up[2] - along * f[2] };
+  const Vector3 across{ frame.up[0] - along * f[0], frame.up[1] - along * f[1], frame.up[2] - along * f[2] };
   const double length = std::hypot(across[0], across[1], across[2]);
   if (length < 1e-6)
-  {
-    const Node& place = up.given() ? up : node;
-    place.fault("up is parallel to forward; must point another way");
-    return;
-  }
-  for (std::size_t i = 0; i < 3; ++i)
-    frame.up[i] = across[i] / length;
+    (up.given() ? up : node).fault("up is parallel to forward; must point another way");
+  else
+    frame.up = { across[0] / length, across[1] / length, across[2] / length };
 }
 
 void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names)
@@ -60,11 +57,34 @@ void read_time(const Node& node, SceneTime& time)
     return;
   Mapping mapping(node);
   time.damping = mapping.optional("damping").number(Dimension::rate, not_negative, time.damping);
-  time.scaling = mapping.optional("scaling").number(
-      Dimension::number, Bound{ 1, std::numeric_limits<double>::infinity(), true, true }, time.scaling);
+  time.scaling = mapping.optional("scaling").number(Dimension::number, at_least_one, time.scaling);
   time.frame_rate = mapping.optional("frame_rate").number(Dimension::rate, positive, time.frame_rate);
   time.activation_slew =
       mapping.optional("activation_slew").number(Dimension::rate, not_negative, time.activation_slew);
+}
+
+void read_effects(const Node& node, Scene& scene)
+{
+  if (!node.given())
+    return;
+  Mapping mapping(node);
+  EffectSet present = EffectSet::all();
+  const bool has_friction =
+      std::any_of(scene.constraints.begin(), scene.constraints.end(),
+                  [](const SceneConstraint& constraint)
+                  { return constraint.kind == SceneConstraint::Kind::sliding && constraint.friction > 0; });
+  present = present.with(Effect::friction, has_friction);
+  for (const Effect effect : every_effect())
+    if (const Node entry = mapping.optional(name_of(effect)); entry.given())
+      scene.switched_off = scene.switched_off.with(effect, entry.choice({ "on", "off" }) == "off");
+  try
+  {
+    check_switched_off(scene.switched_off, present);
+  }
+  catch (const Error& error)
+  {
+    node.fault(error.what());
+  }
 }
 
 }  // namespace frontalis

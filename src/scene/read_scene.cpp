@@ -1,10 +1,8 @@
 #include "frontalis/scene/read_scene.hpp"
 
-#include "scene/content.hpp"
 #include "scene/sections.hpp"
 
-#include "frontalis/error.hpp"
-
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -25,26 +23,13 @@ std::string read_text(const std::string& path, const std::string& what)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-void read_unit(const Node& node)
-{
-  try
-  {
-    if (const std::string text = node.text(); !text.empty())
-      node.context().length_unit = parse_length_unit(text);
-  }
-  catch (const Error& error)
-  {
-    node.fault(error.what());
-  }
-}
-
 void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 {
   Mapping mapping(root);
   SceneNames names;
-  // the unit comes first: every length needs it
-  read_unit(mapping.required("unit", "the length unit of plain numbers: m, cm, mm, um or in"));
-  scene.unit = root.context().length_unit;
+  // the unit is read first because all lengths depend on it
+  scene.unit = read_length_unit(mapping.required("unit", "the length unit of plain numbers: m, cm, mm, um or in"), 1);
+  root.context().length_unit = scene.unit;
   const Node mesh_directory = mapping.optional("mesh_dir");
   read_frame(mapping.optional("frame"), scene.frame);
   read_surfaces(mapping.required("surfaces", "a mapping of surfaces"), mesh_directory, options, scene, names);
@@ -65,6 +50,43 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 }
 
 }  // namespace
+
+double read_length_unit(const Node& node, double fallback)
+{
+  try
+  {
+    const std::string text = node.text();
+    return text.empty() ? fallback : parse_length_unit(text);
+  }
+  catch (const Error& error)
+  {
+    node.fault(error.what());
+  }
+  return fallback;
+}
+
+std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier)
+{
+  const Node node = mapping.required("name", "a name");
+  std::string name = node.name();
+  if (!name.empty() && std::find(earlier.begin(), earlier.end(), name) != earlier.end())
+    node.fault("'" + name + "' is there already; names must differ");
+  earlier.push_back(name);
+  return name;
+}
+
+std::string one_of(const Node& entry, Mapping& mapping, const std::vector<std::string>& keys)
+{
+  std::vector<std::string> there;
+  std::copy_if(keys.begin(), keys.end(), std::back_inserter(there), [&](const auto& key) { return mapping.has(key); });
+  if (there.size() == 1)
+    return there[0];
+  if (entry.is_mapping())
+    entry.fault("found {} of {}; must have exactly one", there.empty() ? "none" : fmt::format("{}", there.size()),
+                fmt::join(keys, ", "));
+  mapping.ignore_rest();
+  return {};
+}
 
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected)
 {
@@ -96,10 +118,8 @@ Scene read_scene(const std::string& path, const SceneOptions& options)
   read_root(Node(yaml, "", 1, context), options, scene);
   if (!context.faults.empty())
     throw Error(context.faults.text());
-  scene.content = canonical_content(scene);
+  scene.content = content_of(scene);
   return scene;
 }
-
-std::string content_of(const Scene& scene) { return canonical_content(scene); }
 
 }  // namespace frontalis

@@ -1,51 +1,34 @@
 #include "scene/sections.hpp"
 
-#include "frontalis/error.hpp"
-
+#include <algorithm>
 #include <filesystem>
-#include <utility>
 
 namespace frontalis
 {
 namespace
 {
 
-const std::vector<std::pair<std::string, Shape::Kind>>& shape_kinds()
-{
-  static const std::vector<std::pair<std::string, Shape::Kind>> kinds{
-    { "box", Shape::Kind::box },           { "sphere", Shape::Kind::sphere }, { "ellipsoid", Shape::Kind::ellipsoid },
-    { "cylinder", Shape::Kind::cylinder }, { "torus", Shape::Kind::torus },   { "forehead", Shape::Kind::forehead },
-  };
-  return kinds;
-}
-
 double read_length(const Node& node) { return node.number(Dimension::length, positive, 0); }
 
 void read_forehead(Mapping& mapping, Shape& shape)
 {
   shape.part = mapping.required("part", "a part of the forehead").choice(forehead_parts());
-  const Node dimensions = mapping.optional("dimensions");
-  for (const auto& [name, node] : dimensions.named_pairs())
+  for (const auto& [name, node] : mapping.optional("dimensions").named_pairs())
     shape.dimensions[name] = read_length(node);
 }
 
 Shape read_shape(const Node& kind_node, Mapping& mapping)
 {
-  std::vector<std::string> names;
-  for (const auto& kind : shape_kinds())
-    names.push_back(kind.first);
-  const std::string name = kind_node.choice(names);
-
+  // in the order of Shape::Kind
+  static const std::vector<std::string> kinds{ "box", "sphere", "ellipsoid", "cylinder", "torus", "forehead" };
+  const std::string name = kind_node.choice(kinds);
   Shape shape;
   if (name.empty())
   {
     mapping.ignore_rest();
     return shape;
   }
-  for (const auto& kind : shape_kinds())
-    if (kind.first == name)
-      shape.kind = kind.second;
-
+  shape.kind = static_cast<Shape::Kind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
   const std::string length = "a length greater than 0";
   if (shape.kind == Shape::Kind::forehead)
     read_forehead(mapping, shape);
@@ -80,7 +63,7 @@ Shape read_shape(const Node& kind_node, Mapping& mapping)
   return shape;
 }
 
-// where mesh files are looked for; checked when the first file is read, since shapes need no folder
+// Folder of the mesh files. Its existence is checked when the first file is read, since shapes need no folder.
 class MeshFolder
 {
 public:
@@ -115,7 +98,7 @@ public:
     return path.string();
   }
 
-  /// Records the files that are missing: one fault per file, but one in all where the folder itself must be wrong.
+  /// Records one fault per missing file, or a single fault if all are missing, because then the folder is wrong.
   void report(const Node& surfaces) const
   {
     const std::string remedy = "; must be relative to the mesh directory '" + folder_.string() +
@@ -160,47 +143,27 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
                    SceneNames& names)
 {
   MeshFolder folder(mesh_directory, options, scene.file);
-  names.surfaces.complete = node.is_mapping();
-  for (const auto& [name, entry] : node.named_pairs())
+  const auto read = [&](const Node& entry, Mapping& mapping, Surface& surface)
   {
-    Surface surface;
-    surface.name = name;
-    surface.line = entry.line();
     surface.unit = node.context().length_unit;
-    names.surfaces.names.push_back(name);
+    // ask only for the key that is present: messages about unknown keys list all keys that were asked for
+    const bool shape = mapping.has("shape");
+    if (shape == mapping.has("file"))
     {
-      Mapping mapping(entry);
-      // asked for only if it is there, so that messages on unknown keys do not offer both
-      const Node absent(entry.path(), entry.line(), entry.context());
-      const Node shape = mapping.has("shape") ? mapping.optional("shape") : absent;
-      const Node file = mapping.has("file") ? mapping.optional("file") : absent;
-      if (shape.given() == file.given())
-      {
-        if (entry.is_mapping())
-          entry.fault(
-              std::string(shape.given() ? "found both 'file' and 'shape'" : "found neither 'file' nor 'shape'") +
-              "; a surface has one of them");
-        mapping.ignore_rest();
-      }
-      else if (shape.given())
-        surface.shape = read_shape(shape, mapping);
-      else
-      {
-        surface.file = folder.resolve(file);
-        const Node unit = mapping.optional("unit");
-        try
-        {
-          if (const std::string text = unit.text(); !text.empty())
-            surface.unit = parse_length_unit(text);
-        }
-        catch (const Error& error)
-        {
-          unit.fault(error.what());
-        }
-      }
+      if (entry.is_mapping())
+        entry.fault("found {} 'file' {} 'shape'; a surface has one of them", shape ? "both" : "neither",
+                    shape ? "and" : "nor");
+      mapping.ignore_rest();
     }
-    scene.surfaces.push_back(surface);
-  }
+    else if (shape)
+      surface.shape = read_shape(mapping.optional("shape"), mapping);
+    else
+    {
+      surface.file = folder.resolve(mapping.optional("file"));
+      surface.unit = read_length_unit(mapping.optional("unit"), surface.unit);
+    }
+  };
+  read_named(node, scene.surfaces, names.surfaces, read);
   folder.report(node);
 }
 

@@ -1,6 +1,5 @@
 #include "scene/sections.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -50,50 +49,32 @@ Region read_region(const Node& node)
   return region;
 }
 
-std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier)
-{
-  const Node node = mapping.required("name", "a name");
-  std::string name = node.name();
-  if (!name.empty() && std::find(earlier.begin(), earlier.end(), name) != earlier.end())
-    node.fault("'" + name + "' is there already; names must differ");
-  earlier.push_back(name);
-  return name;
-}
-
 void read_volumes(const Node& node, Scene& scene, SceneNames& names)
 {
-  names.volumes.complete = node.is_mapping();
-  for (const auto& [name, entry] : node.named_pairs())
+  const auto read = [&](const Node& entry, Mapping& mapping, Volume& volume)
   {
-    Volume volume;
-    volume.name = name;
-    volume.line = entry.line();
-    names.volumes.names.push_back(name);
-    {
-      Mapping mapping(entry);
-      const Node closed_by = mapping.optional("closed_by");
-      const Node inside = mapping.optional("inside");
-      const Node within = mapping.optional("within");
-      volume.closed_by = closed_by.references(names.surfaces);
-      volume.inside = inside.references(names.surfaces);
-      volume.outside = mapping.optional("outside").references(names.surfaces);
-      volume.without = mapping.optional("without").references(names.surfaces);
-      if (within.given())
-        read_depth(within, volume, names);
-      if (entry.is_mapping() && !closed_by.given() && !inside.given() && !within.given())
-        entry.fault("found no bound; must have at least one of closed_by, inside, within");
+    const Node closed_by = mapping.optional("closed_by");
+    const Node inside = mapping.optional("inside");
+    const Node within = mapping.optional("within");
+    volume.closed_by = closed_by.references(names.surfaces);
+    volume.inside = inside.references(names.surfaces);
+    volume.outside = mapping.optional("outside").references(names.surfaces);
+    volume.without = mapping.optional("without").references(names.surfaces);
+    if (within.given())
+      read_depth(within, volume, names);
+    if (entry.is_mapping() && !closed_by.given() && !inside.given() && !within.given())
+      entry.fault("found no bound; must have at least one of closed_by, inside, within");
 
-      volume.crop = read_region(mapping.optional("crop"));
-      volume.tissue = mapping.optional("tissue").boolean(false);
-      const Node material = volume.tissue ? mapping.required("material", "the name of a material, as for all tissue")
-                                          : mapping.optional("material");
-      volume.material = material.reference(names.materials);
-      volume.priority = mapping.optional("priority").integer(-1000, 1000, volume.tissue ? 0 : 1);
-    }
+    volume.crop = read_region(mapping.optional("crop"));
+    volume.tissue = mapping.optional("tissue").boolean(false);
+    const Node material = volume.tissue ? mapping.required("material", "the name of a material, as for all tissue")
+                                        : mapping.optional("material");
+    volume.material = material.reference(names.materials);
+    volume.priority = mapping.optional("priority").integer(-1000, 1000, volume.tissue ? 0 : 1);
     if (volume.tissue)
-      names.tissue_volumes.names.push_back(name);
-    scene.volumes.push_back(volume);
-  }
+      names.tissue_volumes.names.push_back(volume.name);
+  };
+  read_named(node, scene.volumes, names.volumes, read);
   names.tissue_volumes.complete = names.volumes.complete && !node.context().faults.any_at(node.path());
   if (names.tissue_volumes.complete && names.tissue_volumes.names.empty())
     node.fault("no volume is tissue; at least one must have 'tissue: true'");
@@ -101,13 +82,8 @@ void read_volumes(const Node& node, Scene& scene, SceneNames& names)
 
 void read_layers(const Node& node, Scene& scene, const SceneNames& names)
 {
-  std::vector<std::string> earlier;
-  for (const Node& entry : node.entries())
+  const auto read = [&](const Node&, Mapping& mapping, Layer& layer)
   {
-    Layer layer;
-    layer.line = entry.line();
-    Mapping mapping(entry);
-    layer.name = read_unique_name(mapping, earlier);
     layer.surface = mapping.required("surface", "the name of a surface").reference(names.surfaces);
     const Node volume = mapping.required("volume", "the name of a tissue volume");
     layer.volume = volume.reference(names.volumes);
@@ -115,8 +91,8 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names)
       volume.reference(names.tissue_volumes);
     layer.material = mapping.required("material", "the name of a material").reference(names.materials);
     layer.thickness = mapping.required("thickness", "a length").number(Dimension::length, positive, 0);
-    scene.layers.push_back(layer);
-  }
+  };
+  read_list(node, scene.layers, read);
 }
 
 }  // namespace frontalis

@@ -22,7 +22,7 @@ struct SceneNames
   Names expressions{ "expression", { "relax" }, true };
 };
 
-// one function per section, in the order of the calls; each takes the section's node, given or not
+// One function per section, in the order in which the file is read. The section may be absent.
 void read_frame(const Node& node, FaceFrame& frame);
 void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
                    SceneNames& names);
@@ -32,7 +32,7 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);
 void read_constraints(const Node& node, Scene& scene, const SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
-/// After everything that effects come from.
+/// Must be called after read_constraints(), because friction is an effect.
 void read_effects(const Node& node, Scene& scene);
 void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene);
@@ -41,13 +41,54 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
 void read_expressions(const Node& node, Scene& scene, SceneNames& names);
 void read_demo(const Node& node, Scene& scene, const SceneNames& names);
 
-/// {lower: [x, y, z], upper: [x, y, z]}, either of them and each number optional.
+/// Reads {lower: [x, y, z], upper: [x, y, z]}. One of the two lists may be missing, and numbers may be null.
 Region read_region(const Node& node);
 
-/// The mapping of a file that holds a `what`. Throws Error: no such file, not YAML, not what is expected.
+/// Reads the mapping in a YAML file, which messages describe by `what` and `expected`. Throws Error if it cannot.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
-/// The `name` of a list's entry, which must differ from the earlier ones; adds it to them.
+/// Reads the name of a length unit and returns the unit [m]; `fallback` if the value is absent or wrong.
+double read_length_unit(const Node& node, double fallback);
+
+/// Returns the only one of `keys` that the mapping has. If it has none or several, records a fault, accepts all keys
+/// and returns an empty text.
+std::string one_of(const Node& entry, Mapping& mapping, const std::vector<std::string>& keys);
+
+/// Reads the key `name` of a list entry, which must differ from the `earlier` names, and adds it to them.
 std::string read_unique_name(Mapping& mapping, std::vector<std::string>& earlier);
+
+/// Reads a section whose keys are the names of its items, and adds these to `names`. read(entry, mapping, item) reads
+/// all fields of an item except its name and line.
+template <class Item, class Read>
+void read_named(const Node& node, std::vector<Item>& items, Names& names, const Read& read)
+{
+  names.complete = node.is_mapping();
+  for (const auto& [name, entry] : node.named_pairs())
+  {
+    Item item;
+    item.name = name;
+    item.line = entry.line();
+    names.names.push_back(name);
+    Mapping mapping(entry);
+    read(entry, mapping, item);
+    items.push_back(item);
+  }
+}
+
+/// Reads a section that is a list of items with a key `name`. `read` is as for read_named().
+template <class Item, class Read>
+void read_list(const Node& node, std::vector<Item>& items, const Read& read)
+{
+  std::vector<std::string> earlier;
+  for (const Node& entry : node.entries())
+  {
+    Item item;
+    item.line = entry.line();
+    Mapping mapping(entry);
+    item.name = read_unique_name(mapping, earlier);
+    read(entry, mapping, item);
+    items.push_back(item);
+  }
+}
 
 }  // namespace frontalis

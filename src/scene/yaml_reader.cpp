@@ -1,11 +1,10 @@
 #include "scene/yaml_reader.hpp"
 
-#include "scene/suggestion.hpp"
-
 #include "frontalis/error.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace frontalis
 {
@@ -21,7 +20,51 @@ bool is_name(const std::string& text)
   return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
 }
 
+bool contains(const std::vector<std::string>& texts, const std::string& text)
+{
+  return std::find(texts.begin(), texts.end(), text) != texts.end();
+}
+
+// Levenshtein distance: least number of letters to insert, delete or replace
+std::size_t edit_distance(const std::string& a, const std::string& b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{ 0 });
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j)
+    {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({ replaced, row[j] + 1, row[j + 1] + 1 });
+    }
+  }
+  return row.back();
+}
+
 }  // namespace
+
+std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words)
+{
+  std::string text;
+  const std::string* closest = nullptr;
+  std::size_t least = std::max<std::size_t>(word.size() < 4 ? 1 : 2, word.size() / 3) + 1;
+  for (const std::string& candidate : words)
+  {
+    text += (text.empty() ? "" : ", ") + candidate;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least)
+    {
+      least = distance;
+      closest = &candidate;
+    }
+  }
+  if (closest != nullptr)
+    text += " (did you mean '" + *closest + "'?)";
+  return text.empty() ? "none" : text;
+}
 
 void Faults::add(int line, const std::string& key, const std::string& fault)
 {
@@ -49,7 +92,7 @@ std::string Faults::text() const
   return text;
 }
 
-bool Names::has(const std::string& name) const { return std::find(names.begin(), names.end(), name) != names.end(); }
+bool Names::has(const std::string& name) const { return contains(names, name); }
 
 std::string Node::found() const
 {
@@ -62,96 +105,87 @@ std::string Node::found() const
   return "found '" + yaml_.Scalar() + "'";
 }
 
-bool Node::is_triple(const std::string& expected) const
+std::vector<Node> Node::triple(const std::string& expected) const
 {
-  if (is_list() && yaml_.size() == 3)
-    return true;
+  if (!given_ || (is_list() && yaml_.size() == 3))
+    return entries();
   fault("{}; must be {}", is_list() ? fmt::format("found a list of {}", yaml_.size()) : found(), expected);
-  return false;
+  return {};
 }
 
-bool Node::scalar(std::string& text, const std::string& expected) const
+std::optional<std::string> Node::scalar(const std::string& expected) const
 {
-  if (!yaml_.IsScalar() || yaml_.Scalar().empty())
-  {
-    fault(found() + "; must be " + expected);
-    return false;
-  }
-  text = yaml_.Scalar();
-  return true;
+  if (!given_)
+    return std::nullopt;
+  if (yaml_.IsScalar() && !yaml_.Scalar().empty())
+    return yaml_.Scalar();
+  fault(found() + "; must be " + expected);
+  return std::nullopt;
 }
 
-std::string Node::text(const std::string& fallback) const
+void Node::check_name(const std::string& name) const
 {
-  std::string text;
-  return given_ && scalar(text, "a text") ? text : fallback;
+  if (!is_name(name))
+    fault("'" + name + "' is no name; a name consists of letters, digits and _");
 }
+
+std::string Node::text() const { return scalar("a text").value_or(""); }
 
 std::string Node::name() const
 {
-  std::string text;
-  if (!given_ || !scalar(text, "a name"))
-    return {};
-  if (!is_name(text))
-    fault("'" + text + "' is no name; a name consists of letters, digits and _");
-  return text;
+  const std::optional<std::string> text = scalar("a name");
+  if (text)
+    check_name(*text);
+  return text.value_or("");
 }
 
 std::string Node::choice(const std::vector<std::string>& allowed) const
 {
-  std::string text;
-  if (!given_ || !scalar(text, "one of " + list_with_suggestion("", allowed)))
-    return {};
-  if (std::find(allowed.begin(), allowed.end(), text) != allowed.end())
-    return text;
-  fault("found '" + text + "'; allowed are " + list_with_suggestion(text, allowed));
+  const std::optional<std::string> text = scalar("one of " + list_with_suggestion("", allowed));
+  if (!text || contains(allowed, *text))
+    return text.value_or("");
+  fault("found '" + *text + "'; allowed are " + list_with_suggestion(*text, allowed));
   return {};
 }
 
 bool Node::boolean(bool fallback) const
 {
-  std::string text;
-  if (!given_ || !scalar(text, "true or false"))
-    return fallback;
-  if (text != "true" && text != "false")
-  {
-    fault(found() + "; must be true or false");
-    return fallback;
-  }
-  return text == "true";
+  const std::optional<std::string> text = scalar("true or false");
+  if (!text || *text == "true" || *text == "false")
+    return text ? *text == "true" : fallback;
+  fault(found() + "; must be true or false");
+  return fallback;
 }
 
 int Node::integer(int lower, int upper, int fallback) const
 {
   const std::string expected = fmt::format("a whole number from {} to {}", lower, upper);
-  std::string text;
-  if (!given_ || !scalar(text, expected))
+  const std::optional<std::string> text = scalar(expected);
+  if (!text)
     return fallback;
-  std::optional<double> value;
+  double value = std::nan("");
   try
   {
-    value = parse_quantity(text, Dimension::number, 1);
+    value = parse_quantity(*text, Dimension::number, 1);
   }
   catch (const Error&)
   {
-    value.reset();
+    value = std::nan("");  // leads to the fault below
   }
-  if (!value || *value < lower || *value > upper || *value != std::floor(*value))
-  {
-    fault(found() + "; must be " + expected);
-    return fallback;
-  }
-  return static_cast<int>(*value);
+  if (value >= lower && value <= upper && value == std::floor(value))
+    return static_cast<int>(value);
+  fault(found() + "; must be " + expected);
+  return fallback;
 }
 
 double Node::number(Dimension dimension, const Bound& bound, double fallback) const
 {
-  std::string text;
-  if (!given_ || !scalar(text, "a number"))
+  const std::optional<std::string> text = scalar("a number");
+  if (!text)
     return fallback;
   try
   {
-    const double value = parse_quantity(text, dimension, context_->length_unit);
+    const double value = parse_quantity(*text, dimension, context_->length_unit);
     if (bound.holds(value))
       return value;
     fault(found() + "; must be " + bound.text());
@@ -165,30 +199,23 @@ double Node::number(Dimension dimension, const Bound& bound, double fallback) co
 
 std::array<double, 3> Node::vector(Dimension dimension, const Bound& bound, const std::array<double, 3>& fallback) const
 {
-  if (!given_)
-    return fallback;
-  if (!is_triple("a list of three numbers"))
-    return fallback;
   std::array<double, 3> vector = fallback;
-  const std::vector<Node> components = entries();
-  for (std::size_t i = 0; i < 3; ++i)
+  const std::vector<Node> components = triple("a list of three numbers");
+  for (std::size_t i = 0; i < components.size(); ++i)
     vector[i] = components[i].number(dimension, bound, fallback[i]);
   return vector;
 }
 
 std::optional<std::array<std::optional<double>, 3>> Node::open_vector(Dimension dimension) const
 {
-  if (!given_)
-    return std::nullopt;
-  if (!is_triple("a list of three, each a number or null"))
+  const std::vector<Node> components = triple("a list of three, each a number or null");
+  if (components.empty())
     return std::nullopt;
   std::array<std::optional<double>, 3> vector;
-  const std::vector<Node> components = entries();
   for (std::size_t i = 0; i < 3; ++i)
     if (!components[i].is_null())
     {
-      const double nothing = std::nan("");
-      const double value = components[i].number(dimension, any_number, nothing);
+      const double value = components[i].number(dimension, any_number, std::nan(""));
       if (std::isnan(value))
         return std::nullopt;
       vector[i] = value;
@@ -205,34 +232,32 @@ std::array<double, 3> Node::direction(const std::array<double, 3>& fallback) con
     fault("found a zero vector; must have a direction");
     return fallback;
   }
-  // divided by its largest component first, so that no square overflows
-  const double x = vector[0] / largest;
-  const double y = vector[1] / largest;
-  const double z = vector[2] / largest;
+  // divide by the largest component first, so that no square overflows
+  const double x = vector[0] / largest, y = vector[1] / largest, z = vector[2] / largest;
   const double length = std::sqrt(x * x + y * y + z * z);
   return { x / length, y / length, z / length };
 }
 
 std::string Node::reference(const Names& names) const
 {
-  std::string text;
-  if (!given_ || !scalar(text, "a name (" + names.kind + ")"))
-    return {};
-  if (!names.has(text) && names.complete)
-    fault("no " + names.kind + " is called '" + text + "'; the " + names.kind + "s are " +
-          list_with_suggestion(text, names.names));
+  const std::string text = scalar("a name (" + names.kind + ")").value_or("");
+  if (!text.empty())
+    check_known(text, names);
   return text;
+}
+
+void Node::check_known(const std::string& name, const Names& names) const
+{
+  if (!names.has(name) && names.complete)
+    fault("no {0} is called '{1}'; the {0}s are {2}", names.kind, name, list_with_suggestion(name, names.names));
 }
 
 std::vector<std::string> Node::references(const Names& names) const
 {
   std::vector<std::string> result;
-  if (!given_)
-    return result;
-  if (!yaml_.IsSequence())
+  if (!is_list())
   {
-    std::string text;
-    if (scalar(text, "a name (" + names.kind + ") or a list of such"))
+    if (scalar("a name (" + names.kind + ") or a list of such names"))
       result.push_back(reference(names));
     return result;
   }
@@ -241,11 +266,9 @@ std::vector<std::string> Node::references(const Names& names) const
   for (const Node& entry : entries())
   {
     const std::string name = entry.reference(names);
-    if (name.empty())
-      continue;
-    if (std::find(result.begin(), result.end(), name) != result.end())
+    if (contains(result, name))
       entry.fault("'" + name + "' is named twice; once is enough");
-    else
+    else if (!name.empty())
       result.push_back(name);
   }
   return result;
@@ -281,11 +304,11 @@ std::vector<std::pair<std::string, Node>> Node::pairs() const
     const int line = line_of(pair.first, line_);
     if (!pair.first.IsScalar())
     {
-      context_->faults.add(line, path_, "found a key that is no text; keys are texts");
+      context_->faults.add(line, path_, "found a key that is not a text; keys must be texts");
       continue;
     }
     const std::string& key = pair.first.Scalar();
-    const std::string path = path_.empty() ? key : path_ + "." + key;
+    const std::string path = child_path(key);
     const auto earlier =
         std::find_if(result.begin(), result.end(), [&](const auto& other) { return other.first == key; });
     if (earlier != result.end())
@@ -301,8 +324,7 @@ std::vector<std::pair<std::string, Node>> Node::named_pairs() const
 {
   std::vector<std::pair<std::string, Node>> result = pairs();
   for (const auto& [key, node] : result)
-    if (!is_name(key))
-      node.fault("'" + key + "' is no name; a name consists of letters, digits and _");
+    node.check_name(key);
   return result;
 }
 
@@ -310,10 +332,10 @@ Mapping::Mapping(const Node& node) : node_(node), pairs_(node.pairs()) {}
 
 Mapping::~Mapping()
 {
-  if (!judged_)
+  if (!reports_unknown_keys_)
     return;
   for (const auto& [key, node] : pairs_)
-    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
+    if (!contains(asked_, key))
       node.fault("unknown key; allowed are " + list_with_suggestion(key, asked_));
 }
 
@@ -328,13 +350,13 @@ Node Mapping::optional(const std::string& key)
   for (const auto& pair : pairs_)
     if (pair.first == key)
       return pair.second;
-  return Node(node_.path().empty() ? key : node_.path() + "." + key, node_.line(), node_.context());
+  return Node(node_.child_path(key), node_.line(), node_.context());
 }
 
 Node Mapping::required(const std::string& key, const std::string& expected)
 {
   Node node = optional(key);
-  // a value that is no mapping at all has been reported already
+  // a value that is not a mapping has been reported already
   if (!node.given() && node_.is_mapping())
     node.fault("missing; must be " + expected);
   return node;

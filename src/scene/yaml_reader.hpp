@@ -14,6 +14,9 @@
 namespace frontalis
 {
 
+/// "a, b, c", followed by " (did you mean 'b'?)" if one of the words is close to `word`; "none" without words.
+std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words);
+
 /// Faults of one file, collected so that a user sees all of them at once.
 class Faults
 {
@@ -41,21 +44,21 @@ private:
 struct ReadingContext
 {
   Faults faults;
-  double length_unit = 1;  ///< metres per plain number
+  double length_unit = 1;  ///< unit of lengths given as plain numbers [m]
 };
 
-/// Names that a section defines, for references to them.
+/// Names that a section defines and others refer to.
 struct Names
 {
-  std::string kind;  ///< "surface"
+  std::string kind;  ///< singular noun for messages, such as "surface"
   std::vector<std::string> names;
-  bool complete = true;  ///< false: the section could not be read whole, so an unknown name may be a consequence
+  bool complete = true;  ///< false: the section has faults, so that unknown names may result from them
 
   bool has(const std::string& name) const;
 };
 
-/// A value of the file, or the absence of one, with its dotted path and line. Each reading function returns `fallback`
-/// if the value is absent or wrong; if it is wrong, it records a fault.
+/// A value of the file, or an absent one, with its dotted path and line. If the value is absent or wrong, each reading
+/// function returns `fallback` or an empty text; if it is wrong, it also records a fault.
 class Node
 {
 public:
@@ -90,36 +93,40 @@ public:
   /// Whether a fault was found in this value.
   bool faulty() const { return context_->faults.any_at(path_); }
 
-  std::string text(const std::string& fallback = {}) const;
+  std::string text() const;
   std::string name() const;  ///< text of [A-Za-z0-9_]+
-  /// One of `allowed`; empty if wrong or absent.
+  /// One of `allowed`.
   std::string choice(const std::vector<std::string>& allowed) const;
   bool boolean(bool fallback) const;
   int integer(int lower, int upper, int fallback) const;
   double number(Dimension dimension, const Bound& bound, double fallback) const;
   std::array<double, 3> vector(Dimension dimension, const Bound& bound, const std::array<double, 3>& fallback) const;
-  /// Three numbers of which some may be null; `std::nullopt` if the value is wrong or absent.
+  /// Three numbers, each of which may be null; `std::nullopt` if the value is wrong or absent.
   std::optional<std::array<std::optional<double>, 3>> open_vector(Dimension dimension) const;
   /// Vector of length 1; a zero vector is a fault.
   std::array<double, 3> direction(const std::array<double, 3>& fallback) const;
 
-  /// The name of something defined elsewhere; one that is not known is a fault.
+  /// One of `names`; an unknown name is a fault.
   std::string reference(const Names& names) const;
-  /// One name or a list of different ones.
+  /// Records a fault if `name` is not among `names`, unless these are incomplete.
+  void check_known(const std::string& name, const Names& names) const;
+  /// One of `names` or a list of several different ones.
   std::vector<std::string> references(const Names& names) const;
 
-  /// Entries of a list; a value that is no list is a fault.
+  /// Entries of a list; a value that is not a list is a fault.
   std::vector<Node> entries() const;
-  /// Entries of a mapping; double keys and a value that is no mapping are faults.
+  /// Entries of a mapping; repeated keys and a value that is not a mapping are faults.
   std::vector<std::pair<std::string, Node>> pairs() const;
   /// Like pairs(), but the keys must be names.
   std::vector<std::pair<std::string, Node>> named_pairs() const;
 
   std::string found() const;  ///< for messages: "found a list", "found 'text'"
+  std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
 
 private:
-  bool is_triple(const std::string& expected) const;  ///< if not, records a fault
-  bool scalar(std::string& text, const std::string& expected) const;
+  std::vector<Node> triple(const std::string& expected) const;  ///< entries of a list of three, else none
+  std::optional<std::string> scalar(const std::string& expected) const;
+  void check_name(const std::string& name) const;
 
   YAML::Node yaml_;
   std::string path_;
@@ -141,14 +148,14 @@ public:
   bool has(const std::string& key) const;
   Node optional(const std::string& key);
   Node required(const std::string& key, const std::string& expected);
-  /// Accepts all other keys, for use if it is not known which are allowed.
-  void ignore_rest() { judged_ = false; }
+  /// Accepts all other keys: for values whose allowed keys cannot be determined because of a fault.
+  void ignore_rest() { reports_unknown_keys_ = false; }
 
 private:
   Node node_;
   std::vector<std::pair<std::string, Node>> pairs_;
   std::vector<std::string> asked_;
-  bool judged_ = true;
+  bool reports_unknown_keys_ = true;
 };
 
 }  // namespace frontalis

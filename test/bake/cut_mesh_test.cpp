@@ -1,4 +1,4 @@
-#include "bake/mesh/cut_mesh.hpp"
+#include "bake/mesh/surface_mesh.hpp"
 
 #include <gtest/gtest.h>
 

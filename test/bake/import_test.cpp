@@ -1,9 +1,7 @@
 // Meshes that are repaired, and the list of repairs. Meshes that are refused are in test/model/bad.
 
-#include "bake/mesh/load_surface.hpp"
-#include "bake/mesh/mesh_faults.hpp"
-#include "bake/mesh/mesh_repairs.hpp"
 #include "bake/mesh/surface.hpp"
+#include "bake/mesh/mesh_faults.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -210,7 +210,7 @@ TEST(Forehead, HasTheStatedDimensions)
   EXPECT_GT(box.max()[1], 60e-3);
   EXPECT_LT(box.max()[1], 75e-3);
   // the sellion is the origin, and the skin faces forwards
-  const PreparedSurface surface("skin", skin, 0);
+  const PreparedSurface surface("skin", skin);
   EXPECT_LT(surface.tree().closest({ 0, 0, 0 }).distance, 0.2e-3);
   double area_x = 0;
   for (const Triangle& t : skin.triangles)
@@ -220,7 +220,7 @@ TEST(Forehead, HasTheStatedDimensions)
   }
   EXPECT_GT(area_x, 0.01);
   // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
-  const PreparedSurface skull("skull", forehead("skull"), 0);
+  const PreparedSurface skull("skull", forehead("skull"));
   double thinnest = 1, thickest = 0;
   for (const Vector3& v : skin.vertices)
   {
@@ -253,7 +253,7 @@ TEST(Forehead, SkinIsEvenlyTriangulated)
 
 TEST(Forehead, MusclesLieBetweenSkinAndBone)
 {
-  const PreparedSurface tissue("tissue", forehead("tissue"), 0);
+  const PreparedSurface tissue("tissue", forehead("tissue"));
   for (const char* part : { "frontalis_left", "frontalis_right", "corrugator_left", "corrugator_right", "procerus" })
   {
     const TriangleMesh mesh = forehead(part);

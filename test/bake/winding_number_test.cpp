@@ -76,7 +76,7 @@ TEST(WindingNumber, AgreesWithTheExactSumOnASphereWithHoles)
 
 TEST(WindingNumber, VariationBoundHoldsAwayFromTheSurface)
 {
-  const PreparedSurface surface("ball", sphere_with_holes(), 0);
+  const PreparedSurface surface("ball", sphere_with_holes());
   ASSERT_FALSE(surface.closed());
   const double radius = 0.02;
   int checked = 0;
@@ -121,7 +121,7 @@ TEST(SurfaceDistance, IsExactWithTheRightSign)
 {
   TriangleMesh mesh = make_shape(*box_surface("box", { 0, 0, 0 }, { 2, 2, 2 }, 0.3).shape);
   join_vertices(mesh);
-  const PreparedSurface surface("box", mesh, 0);
+  const PreparedSurface surface("box", mesh);
   ASSERT_TRUE(surface.closed());
   for (const Vector3d& p : points(2000, 2))
   {

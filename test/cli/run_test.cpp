@@ -326,6 +326,15 @@ TEST(RunScene, shortens_the_documented_bar)
   EXPECT_GT(read_ply(frames + "/skin_0001.ply").vertices.size(), 7U);
 }
 
+TEST(RunScene, lists_its_arrays_as_json_without_the_stages_of_the_bake)
+{
+  const TemporaryFolder folder;
+  const ProgramResult result = run_program({ "effects", example_scene(folder), "--arrays", "--json" });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_FALSE(json_from(result.output).empty());
+  expect_contains(result.errors, "voxels ...");
+}
+
 TEST(RunScene, baked_first_it_moves_the_same)
 {
   const TemporaryFolder folder;

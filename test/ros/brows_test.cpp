@@ -1,4 +1,4 @@
-#include "frontalis/ros/brows.hpp"
+#include "frontalis/ros/shading.hpp"
 
 #include <gtest/gtest.h>
 

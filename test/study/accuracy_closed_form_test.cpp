@@ -1,5 +1,5 @@
 #include "frontalis/error.hpp"
-#include "frontalis/study/closed_form.hpp"
+#include "frontalis/study/accuracy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
 #include "frontalis/study/voxel_model.hpp"
-#include "study/accuracy/accuracy_comparison.hpp"
-#include "study/accuracy/accuracy_front.hpp"
+#include "study/accuracy/accuracy_bench.hpp"
 
 #include <gtest/gtest.h>
 

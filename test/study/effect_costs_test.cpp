@@ -1,7 +1,5 @@
 #include "frontalis/study/effect_costs.hpp"
 
-#include "frontalis/study/effect_presence.hpp"
-
 #include "solver/effect_scene.hpp"
 
 #include <gtest/gtest.h>

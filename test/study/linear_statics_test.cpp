@@ -1,4 +1,4 @@
-#include "frontalis/study/linear_statics.hpp"
+#include "frontalis/study/statics.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -16,32 +16,31 @@ struct BakeReport
   {
     std::string name;
     double seconds = 0;
-    double peak_memory = 0;  ///< largest memory of the process until the stage's end [bytes]
+    double peak_memory = 0;  ///< peak memory of the process since its start, at the end of the stage [bytes]
   };
-  /// Volumes of a muscle [m3]. `voxels` is what the model carries. The others are measured on the surfaces, without
-  /// voxels: from the lengths of parallel lines inside the muscle, and from points on them that are tested for bone,
-  /// skin and depth.
+  /// Volumes of a muscle [m3]. `voxels` is its volume in the model. All others are integrated, without voxels, over
+  /// points on parallel lines through the muscle's surfaces.
   struct MuscleVolume
   {
     std::string name;
     double voxels = 0;
     double mesh = 0;         ///< inside the muscle's surfaces
-    double in_tissue = 0;    ///< of it: in the tissue and within the muscle's own limits
-    double in_bone = 0;      ///< clipped: inside surfaces that the tissue lies outside of
-    double beyond_skin = 0;  ///< clipped: outside the surfaces that the tissue lies inside of
-    double elsewhere = 0;    ///< clipped: by a depth or a crop
-    double nurbs = 0;        ///< inside the NURBS volume of its fibres; 0 if it has none
+    double in_tissue = 0;    ///< the part of `mesh` in the tissue and within the muscle's own limits
+    double in_bone = 0;      ///< clipped part inside a surface that bounds the tissue or the muscle from within
+    double beyond_skin = 0;  ///< clipped part outside the surfaces that enclose the tissue
+    double elsewhere = 0;    ///< part clipped by a range of depth or a crop
+    double nurbs = 0;        ///< inside the NURBS volume fitted to its fibres; 0 if there is none
   };
   std::vector<Stage> stages;
-  std::vector<MuscleVolume> muscles;  ///< of muscles made of surfaces, if `measure_muscles` is set
-  bool measure_muscles = false;       ///< set by the caller before the bake; takes seconds
-  std::vector<std::string> findings;  ///< what was repaired, clipped, removed or left out, one sentence each
+  std::vector<MuscleVolume> muscles;  ///< of muscles bounded by surfaces, if `measure_muscles` is set
+  bool measure_muscles = false;       ///< set by the caller before the bake, which then takes seconds longer
+  std::vector<std::string> findings;  ///< repairs, clippings and omissions, one sentence each
 };
 
-/// Called with the stage's name and the proportion done, 0..1; returning false interrupts the bake.
+/// Called with the name of the stage and the proportion of it that is done, 0..1. To interrupt the bake, return false.
 using BakeProgress = std::function<bool(const std::string& stage, double done)>;
 
-/// Builds the model of a scene. Throws Error naming the surface or volume, the place and the remedy.
+/// Builds the model of a scene. Throws Error naming the surface or volume, the position and the remedy.
 Model bake(const Scene& scene, BakeReport* report = nullptr, const BakeProgress& progress = {});
 
 }  // namespace frontalis

@@ -117,15 +117,15 @@ struct Model
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
 
-/// Fills nodes and voxel_nodes from voxels. Voxels must be sorted by k, j, i and unique; throws Error otherwise.
-void build_nodes(Model& model);
-
-/// Position of a node at rest, in local coordinates [m].
+/// Position of a node at rest, local [m].
 inline std::array<double, 3> rest_position(const Model& model, std::size_t node)
 {
   const auto& n = model.nodes[node];
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
+
+/// Fills nodes and voxel_nodes from voxels. Voxels must be sorted by k, j, i and unique; throws Error otherwise.
+void build_nodes(Model& model);
 
 /// Checks that indices are in range, arrays have matching lengths and numbers are finite; throws Error naming the
 /// array.

@@ -21,11 +21,27 @@ struct Binding
   std::vector<std::array<float, 3>> coordinates;  ///< in the voxel, 0..1 inside, along x, y, z
 };
 
-/// Rigid map from local coordinates to another frame: p = rotation * local + translation; rotation row by row.
+/// Rigid map from local coordinates to another frame.
 struct RigidTransform
 {
-  std::array<double, 9> rotation{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
-  std::array<double, 3> translation{ { 0, 0, 0 } };  ///< [m]
+  std::array<double, 9> rotation{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };  ///< row by row
+  std::array<double, 3> translation{ { 0, 0, 0 } };                 ///< [m]
+
+  /// The rotation applied to a vector.
+  template <class Number>
+  std::array<double, 3> turned(const std::array<Number, 3>& v) const
+  {
+    const auto row = [&](std::size_t i)
+    { return rotation[i] * v[0] + rotation[i + 1] * v[1] + rotation[i + 2] * v[2]; };
+    return { { row(0), row(3), row(6) } };
+  }
+  /// The map applied to a point [m].
+  template <class Number>
+  std::array<double, 3> operator()(const std::array<Number, 3>& p) const
+  {
+    const auto t = turned(p);
+    return { { t[0] + translation[0], t[1] + translation[1], t[2] + translation[2] } };
+  }
 };
 
 }  // namespace frontalis

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/model/model.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <map>
 #include <string>
@@ -18,21 +18,15 @@ public:
   explicit DemoPlayer(const Model& model);
 
   /// Whether the model has no demo.
-  bool empty() const { return phases_.empty(); }
+  bool empty() const { return !(period_ > 0); }
   /// Duration of one round [s].
   double period() const { return period_; }
   /// The activation of every muscle, 0..1, at a simulated time [s]. Times below 0 count as 0.
   std::map<std::string, double> activation(double time) const;
 
 private:
-  struct Phase
-  {
-    std::vector<double> target;  ///< activation of every muscle
-    double begin = 0;            ///< [s] after the start of the round
-    double ramp = 0;             ///< [s]
-  };
   std::vector<std::string> muscles_;
-  std::vector<Phase> phases_;
+  ActivationCurve first_round_, later_rounds_;
   double period_ = 0;
 };
 

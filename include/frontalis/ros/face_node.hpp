@@ -51,6 +51,8 @@ private:
 
   // inputs
   void set_activation(const char* topic, const std::vector<std::string>& names, const std::vector<double>& values);
+  void on_muscle_activation(const MuscleActivation& message);
+  void on_joint_states(const sensor_msgs::JointState& message);
   void on_expression(const std_msgs::String& message);
   void on_bone_pose(const geometry_msgs::TransformStamped& message);
   /// Calls `act` with the runner. Logs a warning if there is no runner yet or if `act` throws an Error.

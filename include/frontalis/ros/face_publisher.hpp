@@ -1,7 +1,6 @@
 #pragma once
 
 #include "frontalis/ros/conversions.hpp"
-#include "frontalis/ros/shading.hpp"
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -32,7 +31,7 @@ public:
              const std::string& backend);
 
   /// Whether ~skin_field has subscribers. Any thread may call this at any time.
-  bool shows_field() const { return field_.getNumSubscribers() > 0; }
+  bool shows_field() const { return field_.publisher.getNumSubscribers() > 0; }
 
   /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
@@ -44,7 +43,26 @@ public:
   const Model* model() const { return model_.get(); }
 
 private:
-  ros::Publisher skin_, points_, field_, topology_, landmarks_, state_;
+  /// A topic, and the memory of its latest message.
+  template <typename Message>
+  struct Topic
+  {
+    Topic(ros::NodeHandle& handle, const char* name) : publisher(handle.advertise<Message>(name, 1)) {}
+
+    /// Publishes a message that `fill` fills, if the topic has subscribers. If a subscriber in this process still holds
+    /// the latest message, a new one takes its place.
+    template <typename Fill>
+    void publish(const std::string& frame, const ros::Time& stamp, const Fill& fill);
+
+    ros::Publisher publisher;
+    boost::shared_ptr<Message> message{};
+  };
+
+  Topic<visualization_msgs::Marker> skin_;
+  Topic<sensor_msgs::PointCloud2> points_, field_;
+  Topic<geometry_msgs::PoseArray> landmarks_;
+  Topic<SimulationState> state_;
+  ros::Publisher topology_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 
@@ -53,11 +71,6 @@ private:
   std::string backend_;
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
-
-  boost::shared_ptr<visualization_msgs::Marker> skin_message_;
-  boost::shared_ptr<sensor_msgs::PointCloud2> points_message_, field_message_;
-  boost::shared_ptr<geometry_msgs::PoseArray> landmarks_message_;
-  boost::shared_ptr<SimulationState> state_message_;
   std::vector<geometry_msgs::TransformStamped> landmark_transforms_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/ros/model_source.hpp"
 #include "frontalis/runner/runner.hpp"
 
 #include <ros/node_handle.h>
@@ -12,13 +13,9 @@ namespace frontalis
 /// The private parameters of the node (doc/ros.md), checked.
 struct FaceParameters
 {
-  std::string scene;                         ///< scene file to bake; either this or the model is given
-  std::string model;                         ///< baked model file
-  std::string mesh_directory;                ///< ~mesh_dir; empty: the folder that the scene names
-  std::string accuracy;                      ///< accuracy profile of the scene; empty: its default
-  std::string cache;                         ///< folder that keeps baked models; empty: no cache
-  std::string program;                       ///< path of `frontalis`; empty: see find_program
-  RunnerSettings runner;                     ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
+  std::string model;      ///< baked model file; empty: a scene is baked
+  BakeRequest bake;       ///< ~scene, ~mesh_dir, ~accuracy, ~cache, ~program (as find_program takes it)
+  RunnerSettings runner;  ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
   SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
   std::string face_id;                       ///< the face frame is face_<id>; empty: the model's
   std::string parent_frame = "map";          ///< of the face frame; empty: no static transform

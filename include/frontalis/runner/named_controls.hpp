@@ -23,4 +23,13 @@ std::vector<float> expression_activation(const Model& model, const std::string& 
 void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
                      std::vector<RigidTransform>& bones);
 
+/// Activations over time, linear between knots and constant after the last one.
+struct ActivationCurve
+{
+  std::vector<double> time;  ///< ascending from 0 [s], on the clock of the activations
+  std::vector<std::vector<float>> activation;
+
+  std::vector<float> at(double seconds) const;
+};
+
 }  // namespace frontalis

@@ -12,7 +12,7 @@ namespace frontalis
 
 using Vector3 = std::array<double, 3>;
 
-/// Axis-aligned box in scene coordinates [m]; a side that is not given lies at infinity.
+/// Axis-aligned box in scene coordinates [m]. By default all sides lie at infinity.
 struct Region
 {
   Vector3 lower{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
@@ -21,7 +21,7 @@ struct Region
                  std::numeric_limits<double>::infinity() };
 };
 
-/// A surface that the package makes itself. Which fields count depends on the kind; lengths in metres.
+/// A built-in surface. A kind uses `edge` and the fields named beside it; lengths in metres.
 struct Shape
 {
   enum class Kind
@@ -31,7 +31,7 @@ struct Shape
     ellipsoid,  ///< centre, size (semi-axes)
     cylinder,   ///< centre, axis, radius, length; closed by caps
     torus,      ///< centre, axis, radius (of the ring), minor_radius (of the tube)
-    forehead    ///< part (skin, skull, rim, or a muscle of the generated forehead), forehead dimensions
+    forehead    ///< part (one of forehead_parts()), dimensions
   };
   Kind kind = Kind::box;
   Vector3 centre{ 0, 0, 0 };
@@ -40,7 +40,7 @@ struct Shape
   double radius = 0;
   double minor_radius = 0;
   double length = 0;
-  double edge = 0;   ///< wanted edge length of the triangles [m]; 0: chosen from the size
+  double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size
   std::string part;  ///< forehead only
   /// Dimensions of the generated forehead [m] by name; those not given have the defaults of doc/scene.md.
   std::map<std::string, double> dimensions;
@@ -49,15 +49,15 @@ struct Shape
 struct Surface
 {
   std::string name;
-  std::string file;            ///< path, resolved against the mesh directory or the scene's; empty for a shape
-  std::optional<Shape> shape;  ///< set where file is empty
+  std::string file;            ///< path, relative to the mesh directory or the scene's folder; empty for a shape
+  std::optional<Shape> shape;  ///< set if `file` is empty
   double unit = 1;             ///< metres per unit of the mesh (files only)
   int line = 0;                ///< line in the scene file, for messages of the bake
 };
 
-/// A set of points: inside the collection `closed_by` taken together (if given), inside at least one of `inside`
-/// (if given), outside each of `outside` and of `without`, at a depth in [depth_min, depth_max] below the surface
-/// `within` (if given) with none of the surfaces `outside` on the straight way there, and inside `crop`.
+/// The set of points that meet all of these conditions; a condition with an empty field does not apply. The point lies
+/// inside the surface formed by all of `closed_by`, inside at least one of `inside`, outside all of `outside` and
+/// `without`, inside `crop`, and depth_min to depth_max [m] below `within`, with none of `outside` in between.
 struct Volume
 {
   std::string name;
@@ -69,16 +69,16 @@ struct Volume
   double depth_min = 0;
   double depth_max = 0;
   Region crop;
-  std::string material;  ///< empty: the volume fills nothing and only bounds something
-  int priority = 0;     ///< at a point in several volumes the highest priority wins; volumes of equal priority share it
-  bool tissue = false;  ///< voxels are made where tissue volumes are; other volumes only change what fills them
+  std::string material;  ///< empty: the volume does not change the material of the tissue
+  int priority = 0;      ///< where volumes overlap, the highest priority wins; equal priorities share the space
+  bool tissue = false;   ///< voxels are made in tissue volumes only; other volumes change their material or add fibres
   int line = 0;
 };
 
-/// Parts of the generated forehead: `skin`, `skull` (both face outwards; open sheets), `rim` (joins the edges of skin
-/// and bone) and its pieces `rim_upper`, `rim_lower`, `rim_lateral`; `tissue` (closed: skin, rim and the bone below
-/// them); the muscles `frontalis_left`, `frontalis_right`, `corrugator_left`, `corrugator_right`, `procerus` and the
-/// tendon sheet `galea` (closed, following the curvature).
+/// Parts of the generated forehead. Open surfaces: `skin` and `skull`, which face outwards, and `rim`, which joins the
+/// edges of skin and bone, with its pieces `rim_upper`, `rim_lower` and `rim_lateral`. Closed surfaces: `tissue` (skin,
+/// rim and the bone below the skin), the muscles `frontalis_left`, `frontalis_right`, `corrugator_left`,
+/// `corrugator_right` and `procerus`, and the tendon sheet `galea`.
 const std::vector<std::string>& forehead_parts();
 
 }  // namespace frontalis

@@ -20,29 +20,29 @@ struct SceneConstraint
   std::string name;
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
-  double within = -1;  ///< nodes at most this far outside the surface are restricted [m]; < 0: 0.75 voxel edges
+  double within = -1;  ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
   Region crop;
-  std::string bone;     ///< rigid nodes, or the surface that nodes slide on, follow this bone; empty: they stand still
-  double friction = 0;  ///< sliding and contact: Coulomb's coefficient
-  std::string on;       ///< contact: the surface of the tissue that touches; empty: the skin's
+  std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
+  double friction = 0;  ///< sliding and contact: Coulomb friction coefficient
+  std::string on;       ///< contact: surface of the tissue that touches; empty: the skin
   int line = 0;
 };
 
-/// Load or prescribed motion on a named surface; all ramp linearly from 0 over `ramp` seconds.
+/// Load or prescribed displacement on a surface. It grows linearly from 0 during the first `ramp` seconds.
 struct SceneLoad
 {
   enum class Kind
   {
-    traction,     ///< value: force per area of the surface at rest [Pa], of constant direction
+    traction,     ///< value: force per area of the undeformed surface [Pa]; its direction is constant
     pressure,     ///< value[0]: pressure [Pa] against the outward normal of the deformed surface
-    displacement  ///< value: displacement [m] of the nodes near the surface; components not in `fixed` stay free
+    displacement  ///< value: displacement of nodes near the surface [m]; components not `fixed` are free
   };
   std::string name;
   Kind kind = Kind::traction;
   std::string surface;
   Vector3 value{ 0, 0, 0 };
   std::array<bool, 3> fixed{ true, true, true };
-  double within = -1;  ///< displacement only, as for constraints
+  double within = -1;  ///< displacement only: as SceneConstraint::within
   double ramp = 0;     ///< [s]
   Region crop;
   int line = 0;

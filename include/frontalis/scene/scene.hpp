@@ -15,18 +15,18 @@ namespace frontalis
 struct SceneSkin
 {
   std::string surface;
-  Region crop;               ///< the skin is cut at its sides
-  double extrapolation = 0;  ///< farthest that a vertex may lie outside its voxel [m]; 0: two voxels
+  Region crop;               ///< the published skin is cut at the sides of this box
+  double extrapolation = 0;  ///< largest distance of a vertex from its voxel [m]; 0: two voxel edges
 };
 
 struct SceneLandmark
 {
   std::string name;
-  Vector3 position{ 0, 0, 0 };  ///< scene coordinates [m]; taken to the closest point of the skin
+  Vector3 position{ 0, 0, 0 };  ///< scene coordinates [m]; moved to the closest point of the skin
   int line = 0;
 };
 
-/// Where the published frame (REP-155 face frame: origin at the sellion, x out of the face, z up) stands in the scene.
+/// Pose in the scene of the published frame (REP-155 face frame: origin at the sellion, x out of the face, z up).
 struct FaceFrame
 {
   std::string id = "face";
@@ -40,62 +40,61 @@ struct MassScaling
   enum class Kind
   {
     none,
-    uniform,   ///< every density times `factor`
-    selective  ///< voxels with one of `materials` (none given: all) get mass until they allow `time_step`
+    uniform,   ///< every density is multiplied by `factor`
+    selective  ///< mass is added to voxels with one of `materials` (empty: all) to reach `time_step`
   };
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::string> materials;
-  double time_step = 0;  ///< that they must allow [s]; 0: as much as the other voxels allow
+  double time_step = 0;  ///< critical time step that these voxels get [s]; 0: that of all other voxels
 };
 
-/// What `frontalis accuracy` found for a setting; doc/accuracy.md.
+/// Result of the command `frontalis accuracy` for a profile; see doc/accuracy.md.
 struct MeasuredAccuracy
 {
-  double error = 0;     ///< of the skin, RMS [m]; 0: not measured
+  double error = 0;     ///< RMS error of the skin's vertices [m]; 0: not measured
   double cost = 0;      ///< wall seconds per simulated second; 0: not measured
-  std::string machine;  ///< on which it was measured
+  std::string machine;  ///< computer on which the cost was measured
 };
 
-/// One named setting of accuracy against time.
+/// A named compromise between accuracy and computing time.
 struct AccuracyProfile
 {
   std::string name;
   Vector3 voxel{ 1e-3, 1e-3, 1e-3 };  ///< voxel edges [m]
   int samples = 4;                    ///< sample points per voxel edge in boundary voxels
-  double fill_min = 0.2;              ///< a voxel with less tissue than this proportion is dropped
-  double time_step_share = 0.9;       ///< share of the critical time step that is used
+  double fill_min = 0.2;              ///< voxels with a smaller proportion of tissue are left out
+  double time_step_share = 0.9;       ///< time step as a proportion of the critical time step
   MassScaling mass_scaling;
-  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of one stiffness per voxel
+  bool assumed_strain = false;            ///< hourglass control: assumed strain instead of a scalar stiffness
   std::string integration = "one_point";  ///< or selective_reduced
-  std::string precision = "single";       ///< compensated, double: of the CPU backend
-  std::string time_step = "element";      ///< critical time step: bounded at nodes, or of the assembled model
+  std::string precision = "single";       ///< or compensated, double; used by the CPU backend
+  std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
   MeasuredAccuracy measured;
 };
 
-/// Time settings.
 struct SceneTime
 {
   double damping = 0;      ///< mass-proportional damping coefficient [1/s]
-  double scaling = 1;      ///< time scaling: the motion is played this many times faster in simulated time
+  double scaling = 1;      ///< time scaling: simulated motions are this many times as fast as real ones
   double frame_rate = 30;  ///< skins published per wall second [1/s]
-  /// Fastest change of a muscle's activation, on the clock on which activations are given [1/s]; 0: no limit.
+  /// Largest rate of change of a muscle's activation [1/s], before time scaling; 0: no limit.
   double activation_slew = 0;
 };
 
-/// One entry of the demonstration: hold an expression for some seconds; the change into it is a linear ramp.
+/// One phase of the demonstration: a linear ramp to an expression, which is then held.
 struct DemoPhase
 {
   std::string expression;
-  double ramp = 0.3;     ///< [s] simulated
-  double seconds = 1.0;  ///< [s] simulated, ramp included
+  double ramp = 0.3;     ///< duration of the ramp [simulated s]
+  double seconds = 1.0;  ///< duration of the phase, including the ramp [simulated s]
 };
 
-/// What to simulate, as the user wrote it, in SI units. doc/scene.md documents the file key by key.
+/// Contents of a scene file, in SI units. doc/scene.md documents every key of the file.
 struct Scene
 {
   std::string file;
-  double unit = 1e-3;  ///< metres per plain number of the file; messages give lengths and places in it
+  double unit = 1e-3;  ///< length unit of plain numbers in the file and of lengths in messages [m]
   std::vector<Surface> surfaces;
   std::vector<Volume> volumes;
   std::vector<SceneMaterial> materials;
@@ -109,12 +108,11 @@ struct Scene
   Vector3 gravity{ 0, 0, 0 };  ///< scene coordinates [m/s2]
   EffectSet switched_off;      ///< effects that the bake leaves out
   SceneTime time;
-  AccuracyProfile accuracy;  ///< the profile chosen
+  AccuracyProfile accuracy;  ///< the chosen profile
   std::vector<AccuracyProfile> profiles;
-  std::map<std::string, std::map<std::string, double>> expressions;  ///< preset -> muscle -> activation 0..1
+  std::map<std::string, std::map<std::string, double>> expressions;  ///< expression -> muscle -> activation 0..1
   std::vector<DemoPhase> demo;
-  std::string content;  ///< everything that decides the bake, as canonical text with the hashes of its files: the key
-                        ///< of cached models
+  std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
 };
 
 }  // namespace frontalis

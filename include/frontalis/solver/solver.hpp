@@ -3,7 +3,6 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model.hpp"
 #include "frontalis/solver/allocation.hpp"
-#include "frontalis/solver/energy_ledger.hpp"
 #include "frontalis/solver/reaction.hpp"
 #include "frontalis/solver/solver_state.hpp"
 

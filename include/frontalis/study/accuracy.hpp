@@ -1,11 +1,11 @@
 #pragma once
 
+#include "frontalis/byte_archive.hpp"
 #include "frontalis/scene/scene.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@
 namespace frontalis
 {
 
-/// A setting of all knobs that trade accuracy for time.
+/// A value for every parameter ("knob") that trades accuracy for computing time.
 struct AccuracySetting
 {
   AccuracyProfile profile;
@@ -23,103 +23,101 @@ struct AccuracySetting
   Backend backend = "cpu";
 };
 
-/// Activations that grow from rest over a ramp and are then held; times are on the clock of the activations [s].
+/// Activations that grow linearly from 0 during `ramp` and stay constant during `hold` [s, before time scaling].
 struct ActivationHistory
 {
-  std::vector<float> activation;
-  double ramp = 0.3;
-  double hold = 0.3;
+  std::vector<float> activation;  ///< value of each muscle after the ramp, 0..1
+  double ramp = 0.3, hold = 0.3;
 };
 
-/// Makes the models of a study.
 struct ModelMaker
 {
-  std::function<std::string(const AccuracySetting&)> content;  ///< all that the model depends on, as text
-  std::function<Model(const AccuracySetting&)> bake;           ///< throws Error if the setting has no model
+  std::function<std::string(const AccuracySetting&)> content;  ///< text that identifies the model
+  std::function<Model(const AccuracySetting&)> bake;           ///< throws Error if there is no such model
 };
 
 struct AccuracyPlan
 {
-  /// The closed form of the settled displacement [m] of a point of the skin [m], both in the face frame. If it is
-  /// given, settled skins are compared with it, and there is no reference of finer voxels.
-  std::function<std::array<double, 3>(const std::array<double, 3>&)> exact;
-  AccuracySetting standard;               ///< each knob is varied from here
-  std::vector<AccuracyProfile> profiles;  ///< the scene's own, which are measured too
-  std::vector<std::string> knobs;         ///< knobs to vary, without combinations; empty: all
-  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the reference has the last
+  /// Closed form of the displacement at equilibrium [m] at a rest position on the skin [m], both in the face frame. If
+  /// set, errors are computed against it at equilibrium only, and no reference solution with finer voxels is needed.
+  std::function<Vector3(const Vector3&)> exact;
+  AccuracySetting standard;               ///< the baseline; each sweep varies one of its knobs
+  std::vector<AccuracyProfile> profiles;  ///< profiles of the scene, measured as further settings
+  std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all, and combinations
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` only the reference has the last
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
-  std::string folder;      ///< where finished variants are kept
+  std::string folder;      ///< where results of finished settings are stored
   double budget = 0;       ///< wall seconds that the study may take; 0: no limit
   bool quick = false;      ///< fewer settings per knob
   int threads = 0;         ///< CPU threads; 0: one per core
 };
 
-/// Distance of a published skin from the reference's [m].
+/// Difference of skin displacements from those of the reference or the closed form [m]; `rms` is weighted by area.
 struct SkinError
 {
-  double rms = NAN;  ///< weighted by area
-  double largest = NAN;
+  double rms = NAN, largest = NAN;
+};
+
+/// The cost of one setting on one machine, measured in one run.
+struct VariantCost
+{
+  std::string machine;      ///< processor or device, number of threads; empty: not measured
+  double step = NAN;        ///< wall seconds per step, median of repeated timings
+  double spread = NAN;      ///< interquartile range of these timings over their median
+  double processors = NAN;  ///< processor time that the solver got while timed, over the most possible
+  double skin = NAN;        ///< wall seconds per published skin
+  double memory = NAN;      ///< host memory of model and solver [bytes]
+  double build = NAN;       ///< wall seconds to bake the model
+
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }  ///< other programs disturbed it
+  void archive(ByteArchive& archive);
 };
 
 /// The figures of one setting.
-struct AccuracyRow
+struct AccuracyRow : VariantCost
 {
-  std::string name;  ///< its differences from the standard setting
+  std::string name;  ///< differences from the standard setting in words
   AccuracySetting setting;
-  std::string fault;        ///< why there are no figures (unstable, no model); empty: no fault
-  SkinError error;          ///< in the worst phase of the history, settled included
-  SkinError settled;        ///< once settled
-  double averaged = NAN;    ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
-  double landmark = NAN;    ///< largest error of a landmark in any phase [m]
-  double energy = NAN;      ///< imbalance of the energy ledger over its largest term
-  double cost = NAN;        ///< wall seconds per simulated second, skins published at the scene's frame rate
-  double spread = NAN;      ///< distance of the quartiles of repeated timings over their median
-  double processors = NAN;  ///< share of its processors that the solver got while it was timed
-  double step = NAN;        ///< wall seconds per step, median
-  double steps = NAN;       ///< steps per simulated second
-  double memory = NAN;      ///< host memory of model and solver [bytes]
-  double build = NAN;       ///< wall seconds to make the model
+  std::string fault;      ///< why there are no figures (unstable, no model); empty if there are figures
+  SkinError error;        ///< largest over all phases of the history and the settled state
+  SkinError settled;      ///< in the settled state
+  double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
+  double landmark = NAN;  ///< largest error of a landmark in any phase [m]
+  double energy = NAN;    ///< imbalance of the energy ledger over its largest term
+  double cost = NAN;      ///< wall seconds per simulated second, skins published at the scene's frame rate
+  double steps = NAN;     ///< steps per simulated second
   double voxels = NAN;
-  bool noisy = false;  ///< spread above 20 %, or other programs took more than a fifth of the processors
-
-  /// Whether a profile of a scene file can express the setting.
-  bool is_profile(const AccuracySetting& standard) const
-  {
-    return setting.poisson == 0 && setting.time_scaling == 1 && setting.backend == standard.backend;
-  }
 };
 
 /// The rows that vary one knob.
 struct KnobLine
 {
-  std::string knob;
-  std::vector<std::size_t> rows;
+  std::string knob, words;        ///< names on the command line and in plots
+  std::vector<std::size_t> rows;  ///< indices into AccuracyFindings::rows
 };
 
 struct AccuracyFindings
 {
-  bool complete = true;  ///< false: the study was interrupted; finished variants are kept
+  bool complete = true;  ///< false: interrupted; results of finished settings are stored
   std::vector<AccuracyRow> rows;
   std::vector<KnobLine> knobs;
-  std::vector<std::size_t> front;  ///< the Pareto front: rows that none beats in both error and cost, cheapest first
+  std::vector<std::size_t> front;  ///< indices of rows that none beats in cost and error (Pareto front), cheapest first
   AccuracySetting standard, reference;
-  bool closed_form = false;    ///< skins are compared with the closed form instead of the reference
-  double motion = 0;           ///< RMS displacement of the reference's skin in the phase where it is largest [m]
-  double reference_error = 0;  ///< [m], estimated
-  double averaged_over = 0;    ///< standard deviation of the Gaussian [m]; 0: nothing was averaged
+  bool closed_form = false;    ///< errors are against the closed form instead of the reference
+  double motion = 0;           ///< largest RMS displacement of the reference's skin in any phase [m]
+  double reference_error = 0;  ///< estimated RMS error of the reference [m]
+  double averaged_over = 0;    ///< standard deviation of the Gaussian that averages displacements [m]; 0: none
   double order = NAN;          ///< observed order of convergence in the voxel edge
-  bool extrapolated = false;   ///< whether the order is good enough to extrapolate with (0.5 to 2.5)
   std::string machine;
-  std::vector<std::string> notes;  ///< sentences about checks of the reference, and what was left out
+  std::vector<std::string> notes;  ///< sentences about checks of the reference and settings that were left out
 };
 
-/// Called with the name of the present stage, the share of it that is done and an estimate of the wall seconds left;
-/// returning false interrupts the study.
-using AccuracyProgress = std::function<bool(const std::string& stage, double done, double seconds_left)>;
+/// Called with the name of the setting being measured, its completed fraction (0..1) and an estimate of the wall
+/// seconds for the settings queued after it. Returning false interrupts the study.
+using AccuracyProgress = std::function<bool(const std::string& setting, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
-
 /// Measures the error and the cost of each setting. Throws Error on unknown knobs, a budget that is too small for a
 /// comparison, a reference that diverges and a folder that cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
@@ -137,5 +135,16 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 /// most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
+
+/// A body whose equilibrium is known in closed form, and the plan of its study.
+struct ClosedForm
+{
+  std::string name;
+  AccuracyPlan plan;
+  ModelMaker maker;
+};
+
+/// "cantilever", "stretched_block" and "active_bar"; accuracy_closed_forms.cpp has their sources.
+std::vector<ClosedForm> closed_forms();
 
 }  // namespace frontalis

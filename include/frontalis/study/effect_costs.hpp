@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/effect.hpp"
 #include "frontalis/model/effects.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/step_time.hpp"
@@ -11,14 +12,12 @@
 namespace frontalis
 {
 
-/// The cost of one effect of a model.
 struct EffectCost
 {
   Effect effect;
   EffectPresence presence;
-  std::size_t bytes = 0;  ///< size of the solver's arrays for it
-  /// Time per step [s] that the effect adds: with it less without it. For elasticity, which every model needs: the time
-  /// per step without all other effects.
+  std::size_t bytes = 0;  ///< size of the solver's arrays for this effect
+  /// Time per step [s] that the effect adds; for elasticity the time per step of the model without other effects.
   Spread step;
 };
 
@@ -31,12 +30,34 @@ struct EffectCosts
   std::vector<EffectCost> effects;
 };
 
-/// The same voxels with neo-Hookean materials of the same moduli at rest, one-point integration, scalar hourglass
-/// control, and no effect but elasticity.
+/// The same voxels with neo-Hookean elasticity as the only effect, one-point integration and scalar hourglass control.
 Model plain_model(const Model& model);
 
-/// Compares the model with itself without each of its effects; `timer` measures the time per step.
+/// Times the model and copies that each lack one of its effects; `timer` measures the time per step.
 EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
                             const StepTimer& timer);
+
+/// The cost of an effect that a fraction of the voxels have (for sliding and friction: of the nodes of one face).
+struct PresenceCost
+{
+  Effect effect;
+  double share;  ///< this fraction, 0..1
+  Spread step;   ///< time per step that the effect adds [s]; friction is compared with frictionless sliding
+  double base;   ///< time per step without the effect [s]
+};
+
+/// Measures a dense block of 64 x 40 x 40 voxels in which a contiguous fraction along y has one effect. Returns one
+/// entry per presence_shares() for each effect that single voxels or nodes may have.
+std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds);
+std::vector<double> presence_shares();  ///< ascending from 0 to 1
+
+/// Seconds per step of a model with its first muscle at activation 0.75 and the others at 0, and with all at 0.75.
+struct ActivationCost
+{
+  double one = 0, all = 0;
+  double spread = 0;  ///< of `all` - `one`: half of the interquartile range [s]
+};
+ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
+                                  const StepTimer& timer);
 
 }  // namespace frontalis

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -23,12 +24,12 @@ struct Plot
   };
   struct Curve
   {
-    std::string name;  ///< in the legend; empty: the curve is not in it
+    std::string name;  ///< in the legend; empty: not in the legend
     std::vector<double> x{}, y{};
     Style style = Style::line_and_points;
     std::vector<std::string> labels{};                ///< beside the points; empty: none
-    std::string label_place = "left offset 0.7,0.7";  ///< of the labels beside their points, in gnuplot's words
-    bool coloured_labels = false;                     ///< in the colour of the curve
+    std::string label_place = "left offset 0.7,0.7";  ///< offset of labels from their points, in gnuplot's syntax
+    bool coloured_labels = false;                     ///< labels have the colour of the curve
 
     void add(double at_x, double at_y)
     {
@@ -43,15 +44,20 @@ struct Plot
   /// Limits of each axis; equal: gnuplot chooses them.
   std::array<double, 2> x_range{}, y_range{};
   std::vector<double> x_ticks{}, y_ticks{};  ///< numbers on the axes; empty: gnuplot chooses them
-  std::vector<std::string> x_names{};        ///< written at x = 0, 1, 2, ... instead of numbers
-  double shaded_below = 0;                   ///< y under which the plot is grey; 0: nowhere
-  std::string key = "top right";             ///< place of the legend in gnuplot's words; "below ...": under the axes
+  std::vector<std::string> x_names{};        ///< labels at x = 0, 1, 2, ... instead of numbers
+  double shaded_below = 0;                   ///< the plot is grey below this y; 0: nowhere
+  std::string key = "top right";  ///< position of the legend in gnuplot's syntax; "below ...": under the axes
   std::vector<Curve> curves{};
   int width = 800, height = 500;  ///< pixels
 };
 
-/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error with gnuplot's message if it fails. Where
-/// gnuplot is missing it throws too, and leaves PATH.gnuplot, which can be drawn on another machine.
+/// Writes PATH.png and PATH.svg; `path` has no extension. Throws Error if gnuplot fails or is missing, and leaves
+/// PATH.gnuplot, which gnuplot can draw on another machine.
 void write_plot(const Plot& plot, const std::string& path);
+
+/// File names without extension, and their plots.
+using Plots = std::vector<std::pair<std::string, Plot>>;
+/// Writes plots to a folder. Returns markdown that shows them, for a file next to the folder.
+std::string write_plots(const Plots& plots, const std::string& folder);
 
 }  // namespace frontalis

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/check.hpp"
 #include "frontalis/study/plot.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -15,25 +15,24 @@
 namespace frontalis
 {
 
-/// The result of a hard case.
+/// The result of a StabilityCase.
 struct Trial
 {
-  std::int64_t voxels = 0;                                          ///< voxels of its largest model
-  std::int64_t steps = 0;                                           ///< time steps of all its motions
+  std::int64_t voxels = 0;                                          ///< number of voxels of its largest model
+  std::int64_t steps = 0;                                           ///< number of time steps of all its motions
   double worst_jacobian = std::numeric_limits<double>::infinity();  ///< smallest J = det F
-  /// Largest imbalance of the energy ledger and largest hourglass energy, over the ledger's largest term; NaN: there
-  /// was no ledger.
+  /// Largest imbalance of the energy ledger and largest hourglass energy, over its largest term; NaN: no ledger.
   double energy_error = std::numeric_limits<double>::quiet_NaN();
   double hourglass_share = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t rollbacks = 0;                       ///< how often the guard went back
-  Checks checks;                                    ///< all must pass
-  std::string stopped;                              ///< the guard's report if it stopped the motion, which it may
-  std::string failure;                              ///< why the case ended early; empty: it did not
-  std::string skipped;                              ///< why it was not run; empty: it ran
-  std::vector<std::pair<std::string, Plot>> plots;  ///< file name without extension, plot
-  double seconds = 0;                               ///< wall time
+  std::int64_t rollbacks = 0;  ///< how often the guard returned to an earlier state
+  Checks checks;               ///< all must pass
+  std::string stopped;         ///< the guard's report if it stopped the motion, which is no failure
+  std::string failure;         ///< an error that ended the case or a fault of its file; empty: none
+  std::string skipped;         ///< why the case was not run; empty: it ran
+  Plots plots;
+  double seconds = 0;  ///< wall time
 
-  bool passed() const;  ///< true for a skipped case too
+  bool passed() const;  ///< also true for a skipped case
 };
 
 /// Thrown by a case that cannot run here, with the reason.
@@ -46,11 +45,11 @@ struct StabilitySettings
 {
   Backend backend = "cpu";
   bool long_runs = false;  ///< run every case in full length, even if it has a short form
-  /// The model of the scene `name` in config; throws Skipped if there is none.
+  /// Returns the model of config/NAME.yaml; throws Skipped if there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;
   /// Called with the model of each motion before it begins.
   std::function<void(const Model&)> model = [](const Model&) {};
-  /// Called with the share of a motion that is done, 0..1; may throw to end the run.
+  /// Called with the completed fraction of a motion, 0..1; may throw to end the run.
   std::function<void(double done)> watch = [](double) {};
 };
 
@@ -60,24 +59,24 @@ struct StabilityCase
   std::string name;
   bool quick;        ///< part of the short set
   std::string hard;  ///< what makes the case hard, in a few words
-  std::string text;  ///< markdown: the motion and what it has to fulfil
+  std::string text;  ///< markdown: the motion and the requirements on it
   std::function<void(const StabilitySettings&, Trial&)> run;
 };
 
 /// All cases, in the order of the document; descriptions, sizes, times and bounds are read from FOLDER/NAME.yaml.
-/// Throws Error if a file is missing or wrong.
+/// Throws Error if a file is missing or invalid.
 std::vector<StabilityCase> stability_cases(const std::string& folder);
 
-/// Runs a case. An Error that it throws becomes a failure.
+/// Runs a case. If it throws Error, the trial has its text as `failure`.
 Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings);
 
 /// The heading of trial_line(), and one line per case.
 std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
-/// Trials with their cases, as JSON, as a table in markdown, and as FOLDER/stability.md with its plots in
-/// FOLDER/stability/. The document includes the text of FOLDER/stability/elsewhere.md. Throws Error if a file cannot
-/// be written or gnuplot is missing.
+/// Trials with their cases, as JSON, as a markdown table, and as FOLDER/stability.md with its plots in
+/// FOLDER/stability/. The document includes the text of FOLDER/stability/elsewhere.md. write_stability() throws Error
+/// if a file cannot be written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;
 std::string trials_json(const Trials& trials);
 std::string trials_markdown(const Trials& trials);

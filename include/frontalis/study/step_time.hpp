@@ -14,40 +14,49 @@ struct TimedSolver
   Controls controls;
 };
 
-/// Seconds that one step of each solver takes; one row per turn.
+/// Wall or processor seconds per step: one row per turn, one column per solver.
 using StepTimes = std::vector<std::vector<double>>;
 
-/// Times one step of each solver in turn (first, second, ..., first, second, ...) for about so many wall seconds in
-/// all, at least five turns, so that a disturbance of the machine meets all of them alike. Before that it brings the
-/// solvers to their controls over a tenth of a simulated second and lets them calm down for as long; a solver that
-/// would take more than `patience` wall seconds for it (0: `seconds`) stays at the controls that it has reached.
-/// `processor_time`: counts the time that the process had of a processor instead of wall time, so that other programs
-/// do not count; right only where the solver works in the calling thread (see works_alone).
+/// Times the solvers in turn (first, second, ..., first, second, ...) for about `seconds` of wall time in total and at
+/// least five turns, so that a disturbance of the machine affects all of them alike. Before this, each solver moves to
+/// its controls during 0.1 s of simulated time and calms down for 0.1 s. A solver that needs more than `patience` wall
+/// seconds for that (0: `seconds`) keeps the controls that it has reached. `processor_time`: measure the processor time
+/// of this process, which excludes other programs; correct only for solvers that work in the calling thread.
 StepTimes time_in_turn(const std::vector<TimedSolver>& solvers, double seconds, bool processor_time = false,
                        double patience = 0);
 
-/// What studies of costs get their times from, so that tests can give them a timer of their own.
+/// The function with which studies measure time per step; tests replace it.
 using StepTimer = std::function<StepTimes(const std::vector<TimedSolver>&)>;
-/// time_in_turn() on the clock that suits solvers of these settings.
+/// time_in_turn() with processor time if works_alone(settings), otherwise with wall time.
 StepTimer step_timer(const SolverSettings& settings, double seconds);
 
-/// Time of a steady clock, and what this process has had of all processors [s].
+/// Reading of a steady clock, and processor time that all threads of this process have used [s].
 double wall_seconds();
 double processor_seconds();
 
 /// Whether a solver of these settings works in the calling thread alone.
 bool works_alone(const SolverSettings& settings);
 
-/// Median, and half of the distance between the quartiles.
+/// Median, and half of the interquartile range.
 struct Spread
 {
   double median = 0;
   double half = 0;
 };
 Spread spread_of(std::vector<double> values);
-/// Of the differences between two columns, turn by turn.
+/// Spread of the differences between two columns, turn by turn.
 Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less);
-/// Of one column.
+/// Spread of one column.
 Spread spread_of(const StepTimes& times, std::size_t column);
+
+// Reference speeds of the machine. Figures of the solver from the same run are compared with them.
+
+/// Bytes per second that large copies read and write, all threads together; median of several.
+double copy_bandwidth(int threads);
+
+/// Element updates per second of a bare loop: a dense block of edge^3 equal neo-Hookean voxels on plain arrays,
+/// hourglass stiffness and central differences, no muscles, constraints or checks, with the widest vector instructions
+/// of the processor; median of several.
+double bare_loop(int edge, int threads, double seconds);
 
 }  // namespace frontalis

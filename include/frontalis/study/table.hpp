@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,8 +10,8 @@
 namespace frontalis
 {
 
-/// The results of a study, row by row, as text, markdown, CSV or JSON. Numbers have six digits in text and markdown; in
-/// CSV and JSON they have as many as it takes to read the same number again. NaN is an empty cell (JSON: null).
+/// The results of a study as text, markdown, CSV or JSON. Numbers have six significant digits in text and markdown, and
+/// in CSV and JSON all that are needed to restore them. NaN is an empty cell (JSON: null).
 class Table
 {
 public:
@@ -22,9 +23,6 @@ public:
   /// Throws Error if there are not as many cells as columns.
   void add(std::vector<Cell> row);
 
-  const std::vector<std::string>& columns() const { return columns_; }
-  const std::vector<std::vector<Cell>>& rows() const { return rows_; }
-
   std::string text() const;      ///< columns aligned by spaces
   std::string markdown() const;  ///< a pipe table
   std::string csv() const;       ///< RFC 4180
@@ -35,22 +33,61 @@ private:
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// A number in so many significant digits; empty if it is NaN.
+/// A computed figure, the expected one and the largest error that passes.
+struct Check
+{
+  std::string name;
+  std::string unit;
+  double expected = 0;
+  double found = 0;
+  double bound = 0;  ///< of error(); NaN: no bound, the figure is only shown
+  bool relative = true;
+
+  double error() const;  ///< |found - expected|, divided by |expected| if relative
+  bool passed() const { return !(error() > bound) && error() == error(); }
+  std::string verdict() const;                 ///< "pass", "FAIL", or "shown" if there is no bound
+  std::string error_text(double value) const;  ///< an error or a bound, in percent if relative; NaN: empty
+};
+
+/// The checks of a case; each function adds one.
+struct Checks : std::vector<Check>
+{
+  void relative(const std::string& name, const std::string& unit, double expected, double found, double bound)
+  {
+    push_back({ name, unit, expected, found, bound, true });
+  }
+  void absolute(const std::string& name, const std::string& unit, double expected, double found, double bound)
+  {
+    push_back({ name, unit, expected, found, bound, false });
+  }
+};
+
+/// The heading of check_line(), and one line per check; `name` is that of its case.
+std::string check_heading();
+std::string check_line(const std::string& name, const Check& check);
+
+/// Slope of log y against log x by least squares: the order at which an error y falls with a voxel edge x.
+double slope(const std::vector<double>& x, const std::vector<double>& y);
+
+/// The zero of an increasing function between `low` and `high`, by bisection.
+double zero_between(double low, double high, const std::function<double(double)>& increasing, int halvings = 60);
+
+/// A number with `digits` significant digits; empty if it is NaN.
 std::string readable(double value, int digits = 6);
 
 /// A length [m] with its unit: "0.2 mm".
 std::string millimetres(double metres, int digits = 3);
 
-/// Markdown with its lines broken at spaces to at most so many columns; rows of tables stay whole.
+/// Markdown with lines broken at spaces after at most `columns` characters; rows of tables stay whole.
 std::string wrapped(const std::string& text, std::size_t columns = 120);
 
 /// JSON indented by one space per level, with a line break at its end.
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// Makes a folder and those above it; throws Error naming it.
+/// Creates a folder and its parents; throws Error with its path.
 void make_folder(const std::string& path);
 
-/// Writes a file whole or not at all; throws Error naming it.
+/// Writes a file completely or not at all; throws Error with its path.
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace frontalis

@@ -1,11 +1,9 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
-#include "frontalis/study/check.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,20 +16,16 @@ struct Finding
 {
   Checks checks;
   std::vector<std::pair<std::string, Table>> tables;  ///< caption, table
-  std::vector<std::pair<std::string, Plot>> plots;    ///< file name without extension, plot; its title is the caption
+  Plots plots;                                        ///< their titles are their captions
   std::string skipped;                                ///< why nothing was checked; empty: the case ran
-};
-
-struct VerificationSettings
-{
-  Backend backend = "cpu";  ///< of the motions; figures of single elements come from the reference backend
 };
 
 struct VerificationCase
 {
   std::string name;
   bool quick;  ///< takes at most some seconds and belongs to the short set
-  std::function<Finding(const VerificationSettings&)> run;
+  /// `backend` computes the motions; figures of single elements come from the reference backend.
+  void (*run)(const Backend& backend, Finding& finding);
 };
 
 /// All cases, in the order of the manual.
@@ -40,8 +34,8 @@ std::vector<VerificationCase> verification_cases();
 /// Findings, each with the name of its case.
 using Findings = std::vector<std::pair<std::string, Finding>>;
 std::string findings_json(const Findings& findings);
-/// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/, from where it takes the texts of all
-/// cases (text.md). Throws Error if a file cannot be read or written, or gnuplot is missing.
+/// Writes the manual to `path` (FOLDER/NAME.md) and its plots to FOLDER/NAME/. The texts of the cases are read from
+/// FOLDER/NAME/text.md. Throws Error if a file cannot be read or written, or gnuplot is missing.
 void write_manual(const Findings& findings, const std::string& path);
 
 }  // namespace frontalis

@@ -1,13 +1,7 @@
-#include "bake/fibres/fibre_coordinates.hpp"
-
 #include "frontalis/error.hpp"
-#include "bake/fibres/coordinate_range.hpp"
 #include "bake/fibres/grid_field.hpp"
-#include "bake/fibres/surface_direction.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace frontalis
 {
@@ -27,7 +21,7 @@ CornerField corners_of(const MuscleGrid& grid, const Eigen::VectorXd& nodal)
   return field;
 }
 
-/// Harmonic field around the hole, in revolutions: the azimuth and its harmonic correction.
+/// Harmonic field around the hole, in revolutions: the azimuth plus a correction that minimises its energy.
 CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField& field)
 {
   const Vector3d aside = std::abs(hole.axis[0]) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
@@ -57,7 +51,7 @@ CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField
   return azimuth;
 }
 
-/// Nodes at an end of the muscle: those about as near to it as the nearest one.
+/// Nodes at an end of the muscle: those at most 0.75 cell edges farther from it than the nearest node.
 std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3d&)>& distance)
 {
   std::vector<double> distances;
@@ -77,7 +71,7 @@ Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, co
   std::vector<std::int32_t> shared;
   std::set_intersection(origin.begin(), origin.end(), insertion.begin(), insertion.end(), std::back_inserter(shared));
   if (!shared.empty())
-    throw Error("its origin and insertion are at the same place; they must be apart");
+    throw Error("its origin and insertion are at the same place; they must be different");
   std::vector<std::pair<std::int32_t, double>> fixed;
   fixed.reserve(origin.size() + insertion.size());
   for (const std::int32_t n : origin)
@@ -89,13 +83,10 @@ Eigen::VectorXd between_ends(const MuscleGrid& grid, const FibreGuide& guide, co
 
 double at(const std::array<double, 8>& corners, const std::array<double, 8>& weights)
 {
-  double value = 0;
-  for (std::size_t b = 0; b < 8; ++b)
-    value += weights[b] * corners[b];
-  return value;
+  return std::inner_product(weights.begin(), weights.end(), corners.begin(), 0.0);
 }
 
-/// Starting fields for subspace iteration, which together are orthogonal to none of the slow modes.
+/// Starting fields for subspace iteration: functions of low order, which overlap with every slow mode.
 Eigen::MatrixXd starting_fields(const MuscleGrid& grid)
 {
   Eigen::MatrixXd fields(grid.nodes.size(), 6);
@@ -142,7 +133,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     trusted = blend(grid, reach, shown, gradients);
   }
 
-  // the field across is nearly constant along the fibres
+  // The small isotropic part lets the field across the muscle be nearly constant along the fibres.
   std::vector<Vector3d> fibres;
   fibres.reserve(trusted.size());
   for (const SurfaceDirection& fibre : trusted)
@@ -167,22 +158,14 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
   for (const MuscleGrid::Sample& sample : grid.samples)
     result.samples.push_back(sample.cell < 0 ? std::array<double, 2>{ none, none }
                                              : coordinates(sample.cell, grid.weights(sample.cell, sample.point)));
-  // stretched so that fibres end where the muscle ends and follow its sides
-  const auto stretch = [&](std::size_t stretched, double ends)
-  {
-    const Stretch table(grid, result.samples, stretched, stretched == 1 && guide.ring, ends);
-    for (auto* points : { &result.cells, &result.samples })
-      for (auto& point : *points)
-        if (!std::isnan(point[0]))
-          table.apply(point);
-  };
+  // stretch the coordinates so that fibres end where the muscle ends and follow its sides
   if (!guide.ring)
   {
-    // the part of the length that an obliquely cut end takes: about half a width
-    stretch(1, std::min(0.45, 1.5 * result.width / result.length));
-    stretch(0, 0);
+    // near an end, which may be cut obliquely, use the limits found 1.5 widths away from it
+    stretch(grid, 1, false, std::min(0.45, 1.5 * result.width / result.length), result);
+    stretch(grid, 0, false, 0, result);
   }
-  stretch(1, 0);
+  stretch(grid, 1, guide.ring.has_value(), 0, result);
   return result;
 }
 

@@ -1,10 +1,4 @@
-#include "bake/fibres/fibre_families.hpp"
-
-#include "frontalis/error.hpp"
-#include "bake/parallel.hpp"
-
-#include <algorithm>
-#include <cmath>
+#include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
 {
@@ -13,7 +7,7 @@ namespace
 
 constexpr std::size_t grain = 1024;
 
-/// The shortest rotation from unit vector `from` to `to`; if they are opposite, about `axis`, normal to `from`.
+/// The shortest rotation from unit vector `from` to `to`. If they are opposite, rotates about `axis`, normal to `from`.
 Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, const Vector3d& axis)
 {
   if (from.dot(to) < -1 + 1e-9)
@@ -21,7 +15,7 @@ Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, c
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }
 
-/// Of the materials in voxel e whose fibres follow a surface, the one with the largest proportion; -1: there is none.
+/// The material with the largest proportion in voxel e among those whose fibres follow a surface; -1 if there is none.
 int main_material(const Scene& scene, const Model& model, std::size_t e)
 {
   int main = -1;
@@ -60,20 +54,15 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
                  normal[e] = surface.pseudonormal(surface.tree().closest(frame.voxel_centre(model, e)));
                });
 
-  // per material: normal of the plane of its fibre families; agreement > 0: it points along the surface's normals
+  // per material: normal of the plane of its fibre families; sum of its cosines with the surface's normals
   std::vector<Vector3d> across(scene.materials.size(), Vector3d::Zero());
   std::vector<double> agreement(across.size(), 0);
   for (std::size_t m = 0; m < across.size(); ++m)
-  {
-    const auto& families = scene.materials[m].families;
-    if (along[m] != nullptr)
-      across[m] = to_vector(families[0]).cross(to_vector(families[1])).normalized();
-  }
+    if (const auto& [first, second] = scene.materials[m].families; along[m] != nullptr)
+      across[m] = to_vector(first).cross(to_vector(second)).normalized();
   for (std::size_t e = 0; e < voxels; ++e)
-  {
     if (main[e] >= 0)
       agreement[main[e]] += across[main[e]].dot(normal[e]);
-  }
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});
@@ -88,9 +77,8 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
     for (std::size_t family = 0; family < 2; ++family)
     {
       const Vector3d turned = rotation * to_vector(scene.materials[m].families[family]);
-      const Vector3d direction = frame.turn(turned.normalized().eval());
-      for (int a = 0; a < 3; ++a)
-        model.material_directions[e][3 * family + a] = static_cast<float>(direction[a]);
+      Eigen::Map<Eigen::Vector3f>(&model.material_directions[e][3 * family]) =
+          frame.turn(turned.normalized().eval()).cast<float>();
     }
   }
 }

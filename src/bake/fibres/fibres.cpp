@@ -1,24 +1,19 @@
 #include "bake/fibres/fibres.hpp"
 
 #include "bake/fibres/fit_nurbs.hpp"
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
-#include "bake/parallel.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {
 namespace
 {
 
-constexpr double wanted_cells = 1500;  // of the grid in a muscle
-// Below this ratio of length to width the shape alone does not decide along which of the two the fibres run.
+constexpr double wanted_cells = 1500;  // in the grid of a muscle
+// Below this ratio of length to width the shape alone does not determine the fibre direction.
 constexpr double least_distinctness = 1.1;
-constexpr double least_kept = 0.9;       // of a muscle, in its largest connected part
-constexpr double largest_misfit = 0.25;  // rms distance of a fitted volume, of the muscle's width
-constexpr double farthest_end = 0.5;     // of an origin or insertion from the muscle, of the muscle's length
+constexpr double least_kept = 0.9;       // least proportion of a muscle in its largest connected component
+constexpr double largest_misfit = 0.25;  // RMS distance of a fitted volume over the muscle's width
+constexpr double farthest_end = 0.5;     // distance of an origin or insertion over the muscle's length
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
@@ -31,7 +26,7 @@ NurbsVolume volume_of(const ControlNet& net)
   return NurbsVolume({ { axis(0), axis(1), axis(2) } }, points, net.weights);
 }
 
-/// Surfaces of a muscle's volume as one mesh.
+/// All surfaces that bound a muscle's volume, as one mesh.
 TriangleMesh mesh_of(const Volumes::Entry& entry, const Volumes& volumes)
 {
   std::vector<std::size_t> bodies = entry.inside;
@@ -45,15 +40,7 @@ TriangleMesh mesh_of(const Volumes::Entry& entry, const Volumes& volumes)
   return mesh;
 }
 
-double distance_to_line(const Vector3d& p, const Vector3d& a, const Vector3d& b)
-{
-  const Vector3d along = b - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::min(1.0, std::max(0.0, (p - a).dot(along) / squared)) : 0;
-  return (p - a - t * along).norm();
-}
-
-/// Distance from an origin or insertion [m]. Throws Error for one that is as far away as the muscle is long.
+/// Distance from an origin or insertion [m]. Throws Error if it is more than half a muscle's length from the muscle.
 std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const char* name, const MuscleGrid& grid,
                                                      const PreparedSurfaces& surfaces)
 {
@@ -68,10 +55,10 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
   else
     distance = [&end](const Vector3d& p)
     {
-      double least = (p - to_vector(end.points.front())).norm();
+      double least = (p - to_vector(end.points.front())).squaredNorm();
       for (std::size_t i = 1; i < end.points.size(); ++i)
-        least = std::min(least, distance_to_line(p, to_vector(end.points[i - 1]), to_vector(end.points[i])));
-      return least;
+        least = std::min(least, squared_distance_to_segment(p, to_vector(end.points[i - 1]), to_vector(end.points[i])));
+      return std::sqrt(least);
     };
   double least = 1e300;
   Box box;
@@ -82,30 +69,24 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
   }
   const double extent = box.diagonal().norm();
   if (least > farthest_end * extent)
-    throw Error(
-        fmt::format("{} is {:.3g} mm away from the muscle, which is {:.3g} mm long; it must be at one of its ends",
-                    name, 1e3 * least, 1e3 * extent));
+    throw failure("{} is {:.3g} mm away from the muscle, which is {:.3g} mm long; it must be at one of its ends", name,
+                  1e3 * least, 1e3 * extent);
   return distance;
 }
 
-struct Fitted
+/// Fits a NURBS volume to a muscle's mesh. `finding` receives a sentence about the quality of the fit.
+MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const PreparedSurfaces& surfaces,
+                        std::string& finding)
 {
-  NurbsVolume volume;
-  double size;  // [m3]
-  std::string finding;
-};
-
-Fitted fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const PreparedSurfaces& surfaces)
-{
-  // coarser cells join strands that lie apart
+  // coarser cells connect separate strands
   MuscleGrid grid = make_muscle_grid(mesh, wanted_cells);
   for (double coarser = 1.5; grid.kept < least_kept && coarser < 4; coarser *= 1.5)
     grid = make_muscle_grid(mesh, wanted_cells, coarser);
   if (grid.kept < least_kept)
-    throw Error(
-        fmt::format("its fibres cannot be found: it is in pieces, the largest of which is {:.0f} % of it; make "
-                    "each piece a muscle of its own, or give 'net' or 'fibre'",
-                    100 * grid.kept));
+    throw failure(
+        "its fibres cannot be found: it is in pieces, the largest of which is {:.0f} % of it; make each piece a muscle "
+        "of its own, or give 'net' or 'fibre'",
+        100 * grid.kept);
 
   FibreGuide guide;
   if (muscle.origin.given())
@@ -121,23 +102,22 @@ Fitted fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const Pre
   }
   const FibreCoordinates coordinates = fibre_coordinates(grid, guide);
   if (coordinates.distinctness < least_distinctness)
-    throw Error(fmt::format("its fibres cannot be found: its shape is only {:.2f} times as long as wide{}",
-                            coordinates.distinctness, remedy));
+    throw failure("its fibres cannot be found: its shape is only {:.2f} times as long as wide{}",
+                  coordinates.distinctness, remedy);
 
-  Fitted fitted{ fit_nurbs(grid, coordinates, guide.ring.has_value()), 0, {} };
-  const NurbsFit fit = measure_fit(fitted.volume, grid, TriangleTree(mesh));
-  fitted.size = fit.volume;
-  fitted.finding = fmt::format(
+  NurbsVolume volume = fit_nurbs(grid, coordinates, guide.ring.has_value());
+  const NurbsFit fit = measure_fit(volume, grid, TriangleTree(mesh));
+  finding = fmt::format(
       "muscle '{}': {} {:.1f} mm long, {:.1f} mm across; NURBS volume {:.4g} cm3 beside {:.4g} cm3 of its surface, of "
       "which it encloses {:.0f} %; rms distance {:.2f} mm",
       muscle.name, guide.ring ? "fibres in rings, on average" : "fibres on average", 1e3 * coordinates.length,
       1e3 * coordinates.width, 1e6 * fit.volume, 1e6 * signed_volume(mesh), 100 * fit.enclosed, 1e3 * fit.distance);
   if (fit.distance > largest_misfit * coordinates.width)
-    throw Error(
-        fmt::format("its fibres cannot be found: no NURBS volume follows its shape (rms distance {:.2f} mm at a "
-                    "width of {:.1f} mm){}",
-                    1e3 * fit.distance, 1e3 * coordinates.width, remedy));
-  return fitted;
+    throw failure(
+        "its fibres cannot be found: no NURBS volume follows its shape (rms distance {:.2f} mm at a width of {:.1f} "
+        "mm){}",
+        1e3 * fit.distance, 1e3 * coordinates.width, remedy);
+  return { Vector3d::Zero(), std::move(volume), fit.volume };
 }
 
 }  // namespace
@@ -161,10 +141,7 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
                    {
                      const auto entry = std::find_if(volumes.entries().begin(), volumes.entries().end(),
                                                      [m](const auto& e) { return e.muscle == static_cast<int>(m); });
-                     Fitted fitted = fit_muscle(muscle, mesh_of(*entry, volumes), surfaces);
-                     fibres[m].volume = std::move(fitted.volume);
-                     fibres[m].fitted_size = fitted.size;
-                     findings[m] = std::move(fitted.finding);
+                     fibres[m] = fit_muscle(muscle, mesh_of(*entry, volumes), surfaces, findings[m]);
                    }
                  }
                  catch (const Error& error)
@@ -190,10 +167,9 @@ void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, con
                    const int muscle = model.fibre_muscle[m];
                    const Vector3d d = frame.turn(fibres[muscle].at(centre));
                    if (!(d.norm() > 0.5))
-                     throw Error(fmt::format(
-                         "{}: its fibres have no direction at {}; control points of its net must not "
-                         "fall together",
-                         place_in_scene(scene, "muscle", scene.muscles[muscle]), place_text(centre, scene.unit)));
+                     throw failure(
+                         "{}: its fibres have no direction at {}; the control points of its net must not coincide",
+                         place_in_scene(scene, "muscle", scene.muscles[muscle]), place_text(centre, scene.unit));
                    Eigen::Map<Eigen::Vector3f>(model.fibre_direction[m].data()) = d.cast<float>();
                  }
                });

@@ -1,28 +1,23 @@
 #pragma once
 
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 #include "bake/fibres/nurbs_volume.hpp"
-#include "bake/mesh/surface.hpp"
-
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace frontalis
 {
 
-/// Where the fibres of a muscle run: one direction everywhere, or along the first parameter of a NURBS volume.
+/// Fibre direction of a muscle: the same everywhere, or along the first parameter of a NURBS volume.
 struct MuscleFibres
 {
-  Vector3d direction{ 0, 0, 0 };  ///< of length 1; used where there is no volume
+  Vector3d direction{ 0, 0, 0 };  ///< unit vector; used if there is no `volume`
   std::optional<NurbsVolume> volume;
-  double fitted_size = 0;  ///< of a volume that was fitted to the muscle [m3]
+  double fitted_size = 0;  ///< size of `volume` if it was fitted to the muscle [m3], else 0
 
   Vector3d at(const Vector3d& p) const { return volume ? volume->fibre(p) : direction; }
 };
 
-/// The fibres of every muscle: those that the scene gives, or a NURBS volume fitted to the muscle's surfaces, whose fit
-/// is reported. Throws Error naming the muscle, why its fibres cannot be found and what to give instead.
+/// The fibres of every muscle: those given in the scene, or a NURBS volume fitted to the muscle's surfaces. Reports the
+/// quality of each fit. Throws Error with the muscle, the reason and the remedy if its fibres cannot be found.
 std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes, const PreparedSurfaces& surfaces,
                                       BakeMonitor& monitor);
 

@@ -1,19 +1,16 @@
 #include "bake/fibres/fit_nurbs.hpp"
 
 #include "frontalis/error.hpp"
-#include "bake/mesh/triangle_tree.hpp"
 
 #include <Eigen/Cholesky>
-
-#include <cmath>
 
 namespace frontalis
 {
 namespace
 {
 
-/// Fits the control points of a tensor-product surface by least squares, with a little bending stiffness, which
-/// determines it where there are no data.
+/// Fits the control points of a tensor-product surface by least squares. A small bending stiffness determines the
+/// surface where there are no data.
 class SurfaceFit
 {
 public:
@@ -26,14 +23,12 @@ public:
 
   void add(const std::array<double, 2>& parameter, const Vector3d& target, double weight)
   {
-    std::array<Eigen::Index, 16> index{};
-    std::array<double, 16> value{};
-    const std::size_t count = basis(parameter, index, value);
-    for (std::size_t i = 0; i < count; ++i)
+    const Terms terms = basis(parameter);
+    for (std::size_t i = 0; i < terms.count; ++i)
     {
-      for (std::size_t j = 0; j < count; ++j)
-        matrix_(index[i], index[j]) += weight * value[i] * value[j];
-      load_.row(index[i]) += weight * value[i] * target.transpose();
+      for (std::size_t j = 0; j < terms.count; ++j)
+        matrix_(terms.index[i], terms.index[j]) += weight * terms.value[i] * terms.value[j];
+      load_.row(terms.index[i]) += weight * terms.value[i] * target.transpose();
     }
   }
 
@@ -46,11 +41,10 @@ public:
       for (int j = 0; j < across; ++j)
         for (int i = axes_[a].closed() ? 0 : 1; i < (axes_[a].closed() ? n : n - 1); ++i)
         {
-          const std::array<Eigen::Index, 3> at{ { place(a, (i + n - 1) % n, j), place(a, i, j),
-                                                  place(a, (i + 1) % n, j) } };
-          const std::array<double, 3> second{ { 1, -2, 1 } };
-          for (std::size_t p = 0; p < 3; ++p)
-            for (std::size_t q = 0; q < 3; ++q)
+          const Eigen::Index at[3] = { place(a, (i + n - 1) % n, j), place(a, i, j), place(a, (i + 1) % n, j) };
+          const double second[3] = { 1, -2, 1 };
+          for (int p = 0; p < 3; ++p)
+            for (int q = 0; q < 3; ++q)
               matrix_(at[p], at[q]) += scale * second[p] * second[q];
         }
     }
@@ -68,12 +62,10 @@ public:
 
   Vector3d at(const std::array<double, 2>& parameter) const
   {
-    std::array<Eigen::Index, 16> index{};
-    std::array<double, 16> value{};
-    const std::size_t count = basis(parameter, index, value);
+    const Terms terms = basis(parameter);
     Vector3d sum{ 0, 0, 0 };
-    for (std::size_t i = 0; i < count; ++i)
-      sum += value[i] * points_[index[i]];
+    for (std::size_t i = 0; i < terms.count; ++i)
+      sum += terms.value[i] * points_[terms.index[i]];
     return sum;
   }
 
@@ -82,18 +74,24 @@ private:
   {
     return axis == 0 ? i * axes_[1].points() + j : j * axes_[1].points() + i;
   }
-  std::size_t basis(const std::array<double, 2>& parameter, std::array<Eigen::Index, 16>& index,
-                    std::array<double, 16>& value) const
+  /// The control points that influence a point of the surface, and their basis functions there.
+  struct Terms
+  {
+    std::size_t count = 0;
+    std::array<Eigen::Index, 16> index;
+    std::array<double, 16> value;
+  };
+  Terms basis(const std::array<double, 2>& parameter) const
   {
     const SplineAxis::Basis a = axes_[0].at(parameter[0]), b = axes_[1].at(parameter[1]);
-    std::size_t count = 0;
+    Terms terms;
     for (int i = 0; i <= axes_[0].degree(); ++i)
-      for (int j = 0; j <= axes_[1].degree(); ++j, ++count)
+      for (int j = 0; j <= axes_[1].degree(); ++j, ++terms.count)
       {
-        index[count] = place(0, a.point[i], b.point[j]);
-        value[count] = a.value[i] * b.value[j];
+        terms.index[terms.count] = place(0, a.point[i], b.point[j]);
+        terms.value[terms.count] = a.value[i] * b.value[j];
       }
-    return count;
+    return terms;
   }
 
   std::array<SplineAxis, 2> axes_;
@@ -101,7 +99,7 @@ private:
   std::vector<Vector3d> points_;
 };
 
-/// The sheet through the middle of the muscle, over (u, v): a fit to the centres of the cells.
+/// Surface through the middle of the muscle as a function of (u, v), fitted to the centres of the cells.
 SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordinates, const SplineAxis& along)
 {
   SurfaceFit sheet(along, SplineAxis(3, 6, false));
@@ -113,7 +111,7 @@ SurfaceFit middle_sheet(const MuscleGrid& grid, const FibreCoordinates& coordina
 
 struct SheetFrame
 {
-  Vector3d tangent, normal;  ///< along u, and across the sheet; length 1
+  Vector3d tangent, normal;  ///< unit vectors along u and normal to the sheet
 };
 
 SheetFrame sheet_frame(const SurfaceFit& sheet, double u, double v)
@@ -133,8 +131,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   const SplineAxis around(3, 12, true);
   const SurfaceFit sheet = middle_sheet(grid, coordinates, along);
 
-  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, back from 1/2 to 1 on the
-  // other.
+  // The second parameter runs around the muscle: from 0 to 1/2 on one side of the sheet, then to 1 on the other.
   struct Datum
   {
     std::array<double, 2> parameter;
@@ -150,7 +147,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       continue;
     const auto [u, v] = coordinates.samples[s];
     const SheetFrame frame = sheet_frame(sheet, u, v);
-    // surfaces across the fibres are ends of the muscle: leave them out
+    // leave out the ends of the muscle, where the surface is across the fibres
     if (std::abs(frame.tangent.dot(sample.normal)) > 0.7)
       continue;
     const Vector3d middle = sheet.at({ u, v });
@@ -175,11 +172,10 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
     surface.solve(0.01);
   }
 
-  // control points of the inner sheet: means of those that face each other across it
+  // inner control points: means of opposite control points of the outer surface
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
-  {
     for (int j = 0; j < n; ++j)
     {
       const Vector3d& outer = surface.points()[i * n + j];
@@ -187,7 +183,6 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       points.push_back(0.5 * (outer + opposite));
       points.push_back(outer);
     }
-  }
   return NurbsVolume({ { along, around, SplineAxis(1, 2, false) } }, points);
 }
 
@@ -208,20 +203,16 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1) });
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1) });
     }
-  // caps: strips between the two sides
+  // caps at the ends: strips that connect opposite points of the outline
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
-  {
     for (const std::int32_t i : { 0, along })
     {
       const std::int32_t a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i, around - j - 1),
                          d = vertex(i, around - j);
       for (const Triangle& t : { Triangle{ a, b, c }, Triangle{ a, c, d } })
-      {
         if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
           mesh.triangles.push_back(i == 0 ? t : Triangle{ t[0], t[2], t[1] });
-      }
     }
-  }
   if (signed_volume(mesh) < 0)
     flip(mesh);
   return mesh;

@@ -6,22 +6,29 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
-#include <cmath>
-
 namespace frontalis
 {
 namespace
 {
 
 using Stiffness = Eigen::Matrix<double, 8, 8>;
-using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
-/// Integrals over the unit cube of the products of shape function derivatives a (rows) and b (columns).
+struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
+{
+  /// Throws Error naming the field if the matrix is singular.
+  Cholesky(const Eigen::SparseMatrix<double>& matrix, const char* field) : SimplicialLDLT(matrix)
+  {
+    if (info() != Eigen::Success)
+      throw Error(std::string("the field ") + field + " cannot be solved for");
+  }
+};
+
+/// [a][b]: integrals over the unit cube of dN_i/dx_a dN_j/dx_b for the trilinear shape functions N (i rows, j columns).
 std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
 {
   const double mass[2][2] = { { 1.0 / 3, 1.0 / 6 }, { 1.0 / 6, 1.0 / 3 } };
   const double stiff[2][2] = { { 1, -1 }, { -1, 1 } };
-  const double mixed[2][2] = { { -0.5, -0.5 }, { 0.5, 0.5 } };  // derivative of the first
+  const double mixed[2][2] = { { -0.5, -0.5 }, { 0.5, 0.5 } };  // derivative of the first shape function
   std::array<std::array<Stiffness, 3>, 3> result;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 3; ++b)
@@ -101,7 +108,7 @@ void GridField::assemble()
 
 Eigen::SparseMatrix<double> GridField::shifted() const
 {
-  // far below the eigenvalue of every mode but the constant one
+  // far below every eigenvalue except that of the constant mode, which is 0
   const double extent = std::cbrt(mass_.sum());
   Eigen::SparseMatrix<double> matrix = matrix_;
   matrix.diagonal() += 1e-7 / (extent * extent) * mass_;
@@ -110,9 +117,7 @@ Eigen::SparseMatrix<double> GridField::shifted() const
 
 GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
 {
-  const Cholesky solver(shifted());
-  if (solver.info() != Eigen::Success)
-    throw Error("the field of its fibres cannot be solved for");
+  const Cholesky solver(shifted(), "of its fibres");
   Modes modes;
   modes.fields = start;
   double before = 0;
@@ -120,7 +125,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
   {
     Eigen::MatrixXd& x = modes.fields;
     x.rowwise() -= (mass_.transpose() * x).eval() / mass_.sum();
-    // Rayleigh-Ritz: the best modes within what the columns span
+    // Rayleigh-Ritz: the best modes in the span of the columns
     const Eigen::MatrixXd gram = x.transpose() * (mass_.asDiagonal() * x);
     const Eigen::MatrixXd energy = x.transpose() * (matrix_ * x);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(energy, gram);
@@ -139,7 +144,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
 
 Eigen::VectorXd GridField::between(const std::vector<std::pair<std::int32_t, double>>& fixed) const
 {
-  // stiff springs hold the given values
+  // penalty method: stiff springs hold the given values
   Eigen::SparseMatrix<double> matrix = shifted();
   Eigen::VectorXd load = Eigen::VectorXd::Zero(mass_.size());
   const double spring = 1e6 * grid_.edge;
@@ -148,10 +153,7 @@ Eigen::VectorXd GridField::between(const std::vector<std::pair<std::int32_t, dou
     matrix.coeffRef(node, node) += spring;
     load(node) = spring * value;
   }
-  const Cholesky solver(matrix);
-  if (solver.info() != Eigen::Success)
-    throw Error("the field between its origin and insertion cannot be solved for");
-  return solver.solve(load);
+  return Cholesky(matrix, "between its origin and insertion").solve(load);
 }
 
 Eigen::VectorXd GridField::balance(const CornerField& field) const
@@ -164,10 +166,7 @@ Eigen::VectorXd GridField::balance(const CornerField& field) const
     for (std::size_t b = 0; b < 8; ++b)
       load(grid_.cell_nodes[c][b]) -= force(b);
   }
-  const Cholesky solver(shifted());
-  if (solver.info() != Eigen::Success)
-    throw Error("the field around its hole cannot be solved for");
-  return solver.solve(load);
+  return Cholesky(shifted(), "around its hole").solve(load);
 }
 
 }  // namespace frontalis

@@ -1,50 +1,48 @@
 #pragma once
 
-#include "bake/fibres/muscle_grid.hpp"
+#include "bake/fibres/fibre_coordinates.hpp"
 
 #include <Eigen/SparseCore>
 
-#include <array>
 #include <utility>
-#include <vector>
 
 namespace frontalis
 {
 
-/// A field given by its values at the corners of each cell. It may jump by whole numbers from cell to cell.
+/// A field given by its values at the corners of each cell. An angle in revolutions may jump by 1 between cells.
 using CornerField = std::vector<std::array<double, 8>>;
 
 /// Gradient at the middle of a cell [1/m].
 Vector3d gradient(const MuscleGrid& grid, const std::array<double, 8>& corners);
 
-/// Scalar fields f on a muscle's grid, by trilinear elements, whose energy is the integral of grad(f) . D grad(f) with
+/// Scalar fields f of trilinear elements on a muscle's grid. Their energy is the integral of grad(f) . D grad(f) with
 /// one tensor D per cell.
 class GridField
 {
 public:
   struct Modes
   {
-    Eigen::VectorXd values;  ///< ascending [1/m2]
-    Eigen::MatrixXd fields;  ///< nodal values, one column per mode; orthogonal to constants
+    Eigen::VectorXd values;  ///< eigenvalues, ascending [1/m2]
+    Eigen::MatrixXd fields;  ///< nodal values, one column per mode; their mean is 0
   };
 
   GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>& tensors);
-  /// D = d d^T + `rest` I for unit directions d. One-point quadrature of the first part avoids locking.
+  /// D = d d^T + `rest` I for unit vectors d. The first term is integrated at one point to avoid locking.
   GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest);
 
-  /// The non-constant eigenmodes with the lowest ratio of energy to mean square, by subspace iteration from `start`:
-  /// one per column of it. Only the first ones are accurate.
+  /// The non-constant eigenmodes with the lowest ratio of energy to mean square, found by subspace iteration. There is
+  /// one mode per column of `start`; only the first ones are accurate.
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
-  /// The field of least energy with given values at some nodes.
+  /// The field of least energy with given values at nodes: pairs (node, value).
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// The field to be added to `field` so that the energy is least.
+  /// The correction with which the energy of `field` plus correction is least.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:
   using Stiffness = Eigen::Matrix<double, 8, 8>;
 
   void assemble();
-  /// The matrix with a little of the mass matrix added, so that it is regular.
+  /// The stiffness matrix plus a small multiple of the mass matrix, which makes it regular.
   Eigen::SparseMatrix<double> shifted() const;
 
   const MuscleGrid& grid_;
@@ -52,5 +50,43 @@ private:
   Eigen::SparseMatrix<double> matrix_;
   Eigen::VectorXd mass_;
 };
+
+/// Fibre direction inferred from the muscle's surface around a cell: along striations or along a narrow muscle. Its
+/// sign is arbitrary.
+struct SurfaceDirection
+{
+  Vector3d direction;
+  double certainty = 0;  ///< 0 to 1
+};
+
+/// Computed from the covariance of the surface's normals within about `reach` [m] of each cell.
+std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double reach);
+
+/// Conductivity of each cell: 1 across its direction and 1 - certainty, but at least 0.02, along it.
+std::vector<Eigen::Matrix3d> conductivities(const std::vector<SurfaceDirection>& directions);
+
+/// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The weight of the surface's
+/// direction is its certainty times the cosine of their angle, which is small where the muscle's end is cut straight.
+std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
+                                    const std::vector<SurfaceDirection>& directions,
+                                    const std::vector<Vector3d>& gradients);
+
+/// Maps a value of a field to the mean distance [m] between its isosurface and that of the field's least value.
+class DistanceTable
+{
+public:
+  /// `periodic`: the field counts revolutions around a ring; only their fractional part is used.
+  DistanceTable(const MuscleGrid& grid, const CornerField& field, bool periodic);
+  double length() const { return distances_.back(); }
+  double operator()(double value) const;
+
+private:
+  std::vector<double> values_, distances_;
+};
+
+/// Rescales the coordinate of index `stretched` so that at every value of the other coordinate it runs from 0 to 1
+/// between its smoothed limits on the muscle's surface. Lines of constant other coordinate keep their shape. `closed`:
+/// the other coordinate runs around a ring. Closer than `ends` to 0 or 1, the limits at that distance are used.
+void stretch(const MuscleGrid& grid, std::size_t stretched, bool closed, double ends, FibreCoordinates& coordinates);
 
 }  // namespace frontalis

@@ -1,7 +1,5 @@
 #include "bake/fibres/muscle_grid.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace frontalis
@@ -11,7 +9,7 @@ namespace
 
 using Eigen::Vector3i;
 
-/// A number for each cell of a box of cells, -1 at first.
+/// One number per cell of a box of cells, initially -1.
 class CellBox
 {
 public:
@@ -28,7 +26,7 @@ private:
   std::vector<std::int32_t> values_;
 };
 
-/// The number of each cell of the grid at its place.
+/// Box with the index of each cell of the grid; -1 in all other cells.
 CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
 {
   CellBox numbers(size);
@@ -37,13 +35,16 @@ CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
   return numbers;
 }
 
-/// The neighbour of a cell across its face 0 to 5.
-Vector3i neighbour(const Vector3i& cell, int face)
+/// Offsets to the neighbours of a cell across its faces.
+std::vector<Vector3i> face_steps()
 {
-  return cell + (face % 2 == 0 ? -1 : 1) * Vector3i::Unit(face / 2);
+  std::vector<Vector3i> steps;
+  for (int face = 0; face < 6; ++face)
+    steps.emplace_back((face % 2 == 0 ? -1 : 1) * Vector3i::Unit(face / 2));
+  return steps;
 }
 
-/// Samples of the surface, so dense that the cells that have one are a closed hull.
+/// Samples the surface so densely that the cells with a sample form a closed hull.
 void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
 {
   for (const Triangle& t : mesh.triangles)
@@ -56,72 +57,55 @@ void sample_surface(const TriangleMesh& mesh, MuscleGrid& grid)
     sample.normal = product.normalized();
     sample.area = 0.5 * product.norm() / (n * n);
     for (int i = 0; i < n; ++i)
-    {
       for (int j = 0; i + j < n; ++j)
-      {
         for (int turned = 0; turned < (i + j + 1 < n ? 2 : 1); ++turned)
         {
           const double s = (i + (1 + turned) / 3.0) / n, r = (j + (1 + turned) / 3.0) / n;
           sample.point = a + s * (b - a) + r * (c - a);
           grid.samples.push_back(sample);
         }
-      }
-    }
   }
 }
 
-// Marks in a CellBox; cells that are enclosed keep the -1.
+// Values in a CellBox while the cells are classified; enclosed cells keep -1.
 constexpr std::int32_t outside = 0, on_surface = 1, visited = -2;
 
-/// Marks the cells that can be reached from the box's border without passing a cell of the surface.
+/// Marks the cells that are connected to the box's border without passing a cell of the surface.
 void flood_outside(CellBox& box)
 {
-  std::vector<Vector3i> front{ Vector3i::Zero() };
-  box.at(front.front()) = outside;
-  while (!front.empty())
+  const auto take = [&box](const Vector3i& place)
   {
-    const Vector3i place = front.back();
-    front.pop_back();
-    for (int face = 0; face < 6; ++face)
-    {
-      const Vector3i next = neighbour(place, face);
-      if (!box.holds(next) || box.at(next) != -1)
-        continue;
-      box.at(next) = outside;
-      front.push_back(next);
-    }
-  }
-}
-
-/// The largest part of the cells that are not outside, connected through faces, edges or corners. `kept` receives its
-/// proportion of all.
-std::vector<Vector3i> largest_part(CellBox& box, double& kept)
-{
-  std::vector<Vector3i> best;
-  std::size_t all = 0;
-  const auto take = [&box](const Vector3i& c)
-  {
-    const bool taken = box.at(c) != outside && box.at(c) != visited;
+    const bool taken = box.holds(place) && box.at(place) == -1;
     if (taken)
-      box.at(c) = visited;
+      box.at(place) = outside;
     return taken;
   };
+  flood<Vector3i>(Vector3i::Zero(), face_steps(), take);
+}
+
+/// Largest connected component of the cells that are not outside; faces, edges and corners connect cells. `kept`
+/// receives the proportion of these cells that are in it.
+std::vector<Vector3i> largest_part(CellBox& box, double& kept)
+{
+  std::vector<Vector3i> steps;
+  for (int s = 0; s < 27; ++s)
+    steps.emplace_back(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
+  const auto take = [&box](const Vector3i& place)
+  {
+    const bool taken = box.holds(place) && box.at(place) != outside && box.at(place) != visited;
+    if (taken)
+      box.at(place) = visited;
+    return taken;
+  };
+  std::vector<Vector3i> best;
+  std::size_t all = 0;
   for (int k = 0; k < box.size()[2]; ++k)
     for (int j = 0; j < box.size()[1]; ++j)
       for (int i = 0; i < box.size()[0]; ++i)
       {
         if (!take({ i, j, k }))
           continue;
-        std::vector<Vector3i> part{ { i, j, k } };
-        for (std::size_t front = 0; front < part.size(); ++front)
-        {
-          for (int s = 0; s < 27; ++s)
-          {
-            const Vector3i next = part[front] + Vector3i(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
-            if (box.holds(next) && take(next))
-              part.push_back(next);
-          }
-        }
+        std::vector<Vector3i> part = flood(Vector3i(i, j, k), steps, take);
         all += part.size();
         if (part.size() > best.size())
           best = std::move(part);
@@ -182,12 +166,12 @@ MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coar
   MuscleGrid grid;
   const Box bounds = bounding_box(mesh);
   const double diagonal = bounds.diagonal().norm();
-  // the wanted number of cells by the muscle's volume, or by its area where it is thinner than a cell
+  // edge for the wanted number of cells: from the volume, or from the area if the muscle is thinner than a cell
   const double wanted_edge =
       std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * surface_area(mesh) / (1.5 * wanted)));
   grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, wanted_edge));
 
-  // the margin of one and a half cells puts surfaces along the axes into the middle of cells
+  // the margin of 1.5 cells puts surfaces that are normal to an axis into the middle of cells
   grid.lower = bounds.min() - Vector3d::Constant(1.5 * grid.edge);
   const Vector3i size =
       ((bounds.max() - grid.lower) / grid.edge).array().ceil().cast<int>().matrix() + Vector3i::Constant(2);
@@ -211,16 +195,12 @@ void smooth(const MuscleGrid& grid, double reach, std::vector<Eigen::Matrix3d>& 
   for (const Vector3i& cell : grid.cells)
     size = size.cwiseMax(cell + Vector3i::Ones());
   CellBox numbers = cell_numbers(grid, size);
+  const std::vector<Vector3i> steps = face_steps();
   std::vector<std::vector<std::int32_t>> neighbours(grid.cells.size());
   for (std::size_t c = 0; c < grid.cells.size(); ++c)
-  {
-    for (int face = 0; face < 6; ++face)
-    {
-      const Vector3i next = neighbour(grid.cells[c], face);
-      if (numbers.holds(next) && numbers.at(next) >= 0)
+    for (const Vector3i& step : steps)
+      if (const Vector3i next = grid.cells[c] + step; numbers.holds(next) && numbers.at(next) >= 0)
         neighbours[c].push_back(numbers.at(next));
-    }
-  }
   // each average over a cell and its six neighbours adds a variance of 2/7 edge^2 along each axis
   const double averages = std::min(200.0, 3.5 * (reach / grid.edge) * (reach / grid.edge));
   std::vector<Eigen::Matrix3d> next(tensors.size());

@@ -1,11 +1,8 @@
 #include "bake/fibres/nurbs_volume.hpp"
 
-#include "frontalis/error.hpp"
+#include "bake/messages.hpp"
 
 #include <Eigen/LU>
-#include <fmt/format.h>
-
-#include <cmath>
 
 namespace frontalis
 {
@@ -32,10 +29,10 @@ void evaluate(double parameter, int degree, const Knots& knots, SplineAxis::Basi
 SplineAxis::SplineAxis(int degree, int points, bool closed) : degree_(degree), points_(points), closed_(closed)
 {
   if (degree < 1 || degree > 3 || points < degree + 1)
-    throw Error(fmt::format(
-        "a spline of degree {} with {} control points; the degree must be 1 to 3, with at least one point more", degree,
-        points));
-  // on a closed axis the first control points are used again at the end
+    throw failure(
+        "a spline of degree {} with {} control points; the degree must be 1 to 3, with at least degree + 1 points",
+        degree, points);
+  // on a closed axis the first control points are repeated at the end
   const int spans = closed ? points : points - degree;
   knots_.resize(spans + 2 * degree + 1);
   for (int k = 0; k < knots_.size(); ++k)
@@ -61,7 +58,7 @@ SplineAxis::Basis SplineAxis::at(double parameter) const
     evaluate<Quadratic>(t, 2, knots_, basis);
   else
     evaluate<Linear>(t, 1, knots_, basis);
-  // on a closed axis control point j has its basis function centred at j / points (degrees 1 and 3)
+  // on a closed axis the basis function of control point j is centred at j / points (degrees 1 and 3)
   const int shift = closed_ ? points_ - (degree_ - 1) / 2 : 0;
   for (int k = 0; k <= degree_; ++k)
     basis.point[k] = closed_ ? (span - degree_ + k + shift) % points_ : span - degree_ + k;
@@ -80,17 +77,13 @@ NurbsVolume::NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vecto
   }
   const std::array<int, 3> count{ { 32, 24, 3 } };
   for (int i = 0; i < count[0]; ++i)
-  {
     for (int j = 0; j < count[1]; ++j)
-    {
       for (int k = 0; k < count[2]; ++k)
       {
         const Vector3d parameter{ (i + 0.5) / count[0], (j + 0.5) / count[1], (k + 0.5) / count[2] };
         sample_parameters_.push_back(parameter);
         samples_.push_back(at(parameter).position);
       }
-    }
-  }
 }
 
 NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
@@ -98,11 +91,10 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
   std::array<SplineAxis::Basis, 3> basis;
   for (std::size_t a = 0; a < 3; ++a)
     basis[a] = axes_[a].at(parameter[a]);
-  // value and derivatives of weight times position, and of the weight
+  // value and three derivatives of the homogeneous coordinates (weight times position, weight)
   std::array<Eigen::Vector4d, 4> sum;
   sum.fill(Eigen::Vector4d::Zero());
   for (int i = 0; i <= axes_[0].degree(); ++i)
-  {
     for (int j = 0; j <= axes_[1].degree(); ++j)
     {
       const double value = basis[0].value[i] * basis[1].value[j];
@@ -119,7 +111,6 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
         sum[3] += value * basis[2].derivative[k] * point;
       }
     }
-  }
   Point result;
   result.position = sum[0].head<3>() / sum[0][3];
   for (int d = 0; d < 3; ++d)
@@ -153,7 +144,7 @@ Vector3d NurbsVolume::closest(const Vector3d& p) const
       for (int b = 0; b < 3; ++b)
         matrix(a, b) = point.derivative[a].dot(point.derivative[b]);
       gradient[a] = point.derivative[a].dot(residual);
-      // a parameter that would leave [0, 1] stays at its end
+      // a parameter at 0 or 1 that would leave [0, 1] stays there
       if (!axes_[a].closed() && ((parameter[a] <= 0 && gradient[a] < 0) || (parameter[a] >= 1 && gradient[a] > 0)))
         gradient[a] = 0;
     }

@@ -5,9 +5,6 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/Splines>
 
-#include <array>
-#include <vector>
-
 namespace frontalis
 {
 
@@ -15,7 +12,7 @@ namespace frontalis
 class SplineAxis
 {
 public:
-  static constexpr int most = 4;  ///< basis functions that are not zero at a parameter, for degree 3
+  static constexpr int most = 4;  ///< largest number of basis functions that are not 0 at a parameter (degree 3)
 
   /// Degree 1 to 3; at least degree + 1 control points.
   SplineAxis(int degree, int points, bool closed);
@@ -49,22 +46,20 @@ public:
     std::array<Vector3d, 3> derivative;
   };
 
-  /// Control points with the index along w fastest and that along u slowest. Weights: one per point, or none for equal
-  /// ones.
+  /// The index of control points runs fastest along w and slowest along u. `weights`: one per point; empty: all equal.
   NurbsVolume(const std::array<SplineAxis, 3>& axes, const std::vector<Vector3d>& points,
               const std::vector<double>& weights = {});
 
   const std::array<SplineAxis, 3>& axes() const { return axes_; }
   Point at(const Vector3d& parameter) const;
-  /// Parameters of the volume's point closest to p, found by Levenberg-Marquardt iteration from the nearest of a table
-  /// of samples.
+  /// Parameters of the volume's point closest to p, by Levenberg-Marquardt iteration from the nearest of samples_.
   Vector3d closest(const Vector3d& p) const;
   /// Unit tangent of the fibre through the closest point to p.
   Vector3d fibre(const Vector3d& p) const;
 
 private:
   std::array<SplineAxis, 3> axes_;
-  std::vector<Eigen::Vector4d> points_;  ///< weight times position, weight
+  std::vector<Eigen::Vector4d> points_;  ///< homogeneous coordinates: weight times position, weight
   std::vector<Vector3d> sample_parameters_, samples_;
 };
 

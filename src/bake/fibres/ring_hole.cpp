@@ -2,23 +2,33 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <cmath>
-#include <vector>
-
 namespace frontalis
 {
 namespace
 {
 
-/// Projection of the cells along an axis onto an image with pixels as wide as cells and a border of two pixels.
+using Pixel = Eigen::Vector2i;
+
+/// Projection of the cells along an axis. Pixels are as wide as cells; a border of two pixels surrounds the muscle.
 struct Image
 {
   Vector3d origin, x, y;
-  double edge = 0;
-  int width = 0, height = 0;
-  std::vector<int> pixels;  ///< 1: muscle, 0: not known yet, -1: outside, from 2 on: number of a hole
+  Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, 2 or more: number of a hole
 
-  int& at(int i, int j) { return pixels[j * width + i]; }
+  /// Marks and returns an unknown pixel and all unknown pixels connected to it.
+  std::vector<Pixel> fill(const Pixel& seed, int mark)
+  {
+    static const std::vector<Pixel> steps{ { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 } };
+    const auto take = [&](const Pixel& p)
+    {
+      const bool taken = p.minCoeff() >= 0 && p[0] < pixels.rows() && p[1] < pixels.cols() && pixels(p[0], p[1]) == 0;
+      if (taken)
+        pixels(p[0], p[1]) = mark;
+      return taken;
+    };
+    take(seed);
+    return flood(seed, steps, take);
+  }
 };
 
 Image project(const MuscleGrid& grid, const Eigen::Matrix3d& axes, const Vector3d& centre)
@@ -26,48 +36,46 @@ Image project(const MuscleGrid& grid, const Eigen::Matrix3d& axes, const Vector3
   Image image;
   image.x = axes.col(1);
   image.y = axes.col(2);
-  image.edge = grid.edge;
-  double low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
-  std::vector<std::array<double, 2>> places;
+  Eigen::AlignedBox2d box;
+  std::vector<Eigen::Vector2d> places;
   for (std::size_t c = 0; c < grid.cells.size(); ++c)
   {
     const Vector3d d = grid.cell_centre(c) - centre;
-    places.push_back({ d.dot(image.x), d.dot(image.y) });
-    for (std::size_t a = 0; a < 2; ++a)
-    {
-      low[a] = std::min(low[a], places.back()[a]);
-      high[a] = std::max(high[a], places.back()[a]);
-    }
+    places.emplace_back(d.dot(image.x), d.dot(image.y));
+    box.extend(places.back());
   }
-  image.origin = centre + (low[0] - 2 * grid.edge) * image.x + (low[1] - 2 * grid.edge) * image.y;
-  image.width = static_cast<int>((high[0] - low[0]) / grid.edge) + 5;
-  image.height = static_cast<int>((high[1] - low[1]) / grid.edge) + 5;
-  image.pixels.assign(image.width * image.height, 0);
-  // the square that a cell covers is turned against the pixels: mark the four nearest
-  for (const auto& place : places)
-    for (int k = 0; k < 4; ++k)
-      image.at(static_cast<int>((place[0] - low[0]) / grid.edge + 1.5) + (k & 1),
-               static_cast<int>((place[1] - low[1]) / grid.edge + 1.5) + (k >> 1)) = 1;
+  image.origin = centre + (box.min()[0] - 2 * grid.edge) * image.x + (box.min()[1] - 2 * grid.edge) * image.y;
+  const Pixel size = (box.sizes() / grid.edge).cast<int>() + Pixel::Constant(5);
+  image.pixels.setZero(size[0], size[1]);
+  // a projected cell is rotated relative to the pixels: mark the four nearest
+  for (const Eigen::Vector2d& place : places)
+  {
+    const Pixel corner = ((place - box.min()) / grid.edge + Eigen::Vector2d::Constant(1.5)).cast<int>();
+    image.pixels.block<2, 2>(corner[0], corner[1]).setOnes();
+  }
   return image;
 }
 
-/// Marks the unknown pixels that are connected to one and returns them.
-std::vector<std::array<int, 2>> flood(Image& image, int i, int j, int mark)
+/// The pixel of a hole that is farthest from its border.
+Pixel innermost(const Image& image, const std::vector<Pixel>& hole)
 {
-  std::vector<std::array<int, 2>> region{ { i, j } };
-  image.at(i, j) = mark;
-  for (std::size_t front = 0; front < region.size(); ++front)
+  const int own = image.pixels(hole.front()[0], hole.front()[1]);
+  Pixel best = hole.front();
+  int farthest = -1;
+  for (const Pixel& pixel : hole)
   {
-    for (int k = 0; k < 4; ++k)
+    int nearest = 1 << 30;
+    for (int j = 0; j < image.pixels.cols(); ++j)
+      for (int i = 0; i < image.pixels.rows(); ++i)
+        if (image.pixels(i, j) != own)
+          nearest = std::min(nearest, (Pixel(i, j) - pixel).squaredNorm());
+    if (nearest > farthest)
     {
-      const int p = region[front][0] + (k == 0) - (k == 1), q = region[front][1] + (k == 2) - (k == 3);
-      if (p < 0 || q < 0 || p >= image.width || q >= image.height || image.at(p, q) != 0)
-        continue;
-      image.at(p, q) = mark;
-      region.push_back({ p, q });
+      farthest = nearest;
+      best = pixel;
     }
   }
-  return region;
+  return best;
 }
 
 }  // namespace
@@ -86,50 +94,25 @@ std::optional<RingHole> find_hole(const MuscleGrid& grid)
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   Image image = project(grid, solver.eigenvectors(), centre);
 
-  flood(image, 0, 0, -1);
-  std::vector<std::array<int, 2>> hole;
-  std::size_t inside = 0;
+  image.fill({ 0, 0 }, -1);
+  auto inside = static_cast<double>((image.pixels == 1).count());
+  std::vector<Pixel> hole;
   int mark = 2;
-  for (int j = 0; j < image.height; ++j)
-    for (int i = 0; i < image.width; ++i)
+  for (int j = 0; j < image.pixels.cols(); ++j)
+    for (int i = 0; i < image.pixels.rows(); ++i)
     {
-      if (image.at(i, j) == 0)
-      {
-        auto region = flood(image, i, j, mark++);
-        inside += region.size();
-        if (region.size() > hole.size())
-          hole = std::move(region);
-      }
-      else if (image.at(i, j) == 1)
-        ++inside;
+      if (image.pixels(i, j) != 0)
+        continue;
+      auto region = image.fill({ i, j }, mark++);
+      inside += static_cast<double>(region.size());
+      if (region.size() > hole.size())
+        hole = std::move(region);
     }
-  if (static_cast<double>(hole.size()) < 0.05 * static_cast<double>(inside))
+  if (static_cast<double>(hole.size()) < 0.05 * inside)
     return {};
-
-  // the pixel of the hole that is farthest from its border
-  const int own = image.at(hole.front()[0], hole.front()[1]);
-  std::array<int, 2> innermost = hole.front();
-  int farthest = -1;
-  for (const auto& pixel : hole)
-  {
-    int nearest = 1 << 30;
-    for (int j = 0; j < image.height; ++j)
-      for (int i = 0; i < image.width; ++i)
-      {
-        const int squared = (i - pixel[0]) * (i - pixel[0]) + (j - pixel[1]) * (j - pixel[1]);
-        if (squared < nearest && image.at(i, j) != own)
-          nearest = squared;
-      }
-    if (nearest > farthest)
-    {
-      farthest = nearest;
-      innermost = pixel;
-    }
-  }
-  RingHole result;
-  result.axis = solver.eigenvectors().col(0);
-  result.centre = image.origin + image.edge * (innermost[0] * image.x + innermost[1] * image.y);
-  return result;
+  const Pixel middle = innermost(image, hole);
+  return RingHole{ image.origin + grid.edge * (middle[0] * image.x + middle[1] * image.y),
+                   solver.eigenvectors().col(0) };
 }
 
 }  // namespace frontalis

@@ -1,10 +1,6 @@
-#include "bake/fibres/surface_direction.hpp"
+#include "bake/fibres/grid_field.hpp"
 
 #include <Eigen/Eigenvalues>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace frontalis
 {
@@ -13,8 +9,8 @@ namespace
 
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
-/// Sums of area n n^T over the normals n within `reach` of each cell, one sum for each axis of an icosahedron with the
-/// normals that are nearest to it.
+/// Sums of area times n n^T over the unit normals n within `reach` [m] of each cell. The normals are divided among the
+/// six axes of an icosahedron by the nearest axis, with one sum per axis.
 std::array<std::vector<Eigen::Matrix3d>, 6> normal_covariances(const MuscleGrid& grid, double reach)
 {
   constexpr double golden = 1.618033988749895;
@@ -49,8 +45,8 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
     Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
     for (const auto& sum : sums)
       all += sum[c];
-    // Only normals within 60 degrees of the main one count: faces that meet at an edge, as those of a slab and of its
-    // ends do, show no fibres.
+    // Only normals within 60 degrees of the principal one count, because edges between faces, such as between a slab
+    // and its ends, do not indicate fibres.
     const Vector3d axis = Solver(all).eigenvectors().col(2);
     Eigen::Matrix3d alike = Eigen::Matrix3d::Zero();
     for (const auto& sum : sums)
@@ -65,7 +61,7 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
       continue;
     }
     const Solver solver(alike / alike.trace());
-    // added to both variances, so that a smooth sheet, where both are next to 0, shows no direction in its plane
+    // added to the variances so that a smooth sheet, where two of them are nearly 0, has no direction in its plane
     constexpr double least_variance = 0.02;
     const Vector3d variance = solver.eigenvalues().cwiseMax(0.0).array() + least_variance;
     const double ratio = variance[0] / variance[1];
@@ -87,7 +83,7 @@ std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
                                     const std::vector<SurfaceDirection>& directions,
                                     const std::vector<Vector3d>& gradients)
 {
-  // n n^T in place of n: the sign of a direction means nothing
+  // average d d^T instead of d, because the sign of a direction is arbitrary
   std::vector<Eigen::Matrix3d> tensors;
   tensors.reserve(directions.size());
   for (std::size_t c = 0; c < directions.size(); ++c)

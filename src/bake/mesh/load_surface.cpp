@@ -1,30 +1,56 @@
-#include "bake/mesh/load_surface.hpp"
-
-#include "frontalis/bake/forehead_shape.hpp"
-#include "frontalis/error.hpp"
-#include "bake/messages.hpp"
-#include "bake/mesh/mesh_repairs.hpp"
-#include "bake/mesh/spread_points.hpp"
 #include "bake/mesh/surface.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "frontalis/bake/forehead_shape.hpp"
+#include "bake/messages.hpp"
+#include "bake/mesh/mesh_faults.hpp"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <filesystem>
 
 namespace frontalis
 {
 namespace
 {
 
-// A closed surface passes through itself if it encloses more than this proportion twice or inside-out, or such a region
-// is deeper than this proportion of its size; an open one, if a group of crossing triangles extends over more than this
-// proportion of it. The limits lie between meshes segmented from images of a real head (at most 0.6 %, 1.7 % and 1.8 %)
-// and surfaces that really overlap, which have ten times as much (doc/baking.md).
+void append(const aiMesh& part, const aiMatrix4x4& transform, double unit, TriangleMesh& mesh)
+{
+  const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+  for (unsigned v = 0; v < part.mNumVertices; ++v)
+  {
+    const aiVector3D p = transform * part.mVertices[v];
+    mesh.vertices.push_back(to_array(unit * Vector3d(p.x, p.y, p.z)));
+  }
+  for (unsigned f = 0; f < part.mNumFaces; ++f)
+    if (const aiFace& face = part.mFaces[f]; face.mNumIndices == 3)
+    {
+      const auto corner = [&](unsigned c) { return base + static_cast<std::int32_t>(face.mIndices[c]); };
+      mesh.triangles.push_back({ corner(0), corner(1), corner(2) });
+    }
+}
+
+void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, double unit, TriangleMesh& mesh)
+{
+  const aiMatrix4x4 transform = parent * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m)
+    append(*scene.mMeshes[node.mMeshes[m]], transform, unit, mesh);
+  for (unsigned c = 0; c < node.mNumChildren; ++c)
+    append(scene, *node.mChildren[c], transform, unit, mesh);
+}
+
+// A surface is refused as self-intersecting above these limits: proportion of the enclosed volume that is enclosed
+// twice or inside-out; depth of such a region over the surface's size; for an open surface, extent of a group of
+// crossing triangles over that of the surface. Meshes segmented from images of a head reach 0.6 %, 1.7 % and 1.8 %;
+// surfaces that really overlap reach ten times as much (doc/baking.md).
 constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// Whether an open mesh is inside-out: its winding number of largest magnitude, in its bounding box, is negative.
+/// Whether an open mesh is inside-out: the winding number with the largest magnitude in its bounding box is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);
@@ -36,14 +62,14 @@ bool open_and_inside_out(const TriangleMesh& mesh)
     if (std::abs(w) > std::abs(strongest))
       strongest = w;
   }
-  // a patch or a dome does not enclose enough to decide
+  // patches and domes, whose winding numbers are weaker, do not enclose enough to decide
   return strongest < -0.75;
 }
 
-/// The regions that crossing pieces of a mesh enclose twice or inside-out.
+/// The regions that a mesh's components with crossing triangles enclose twice or inside-out.
 struct Overlap
 {
-  double share = 0;  ///< volume of these regions over all enclosed volume
+  double share = 0;  ///< volume of these regions over the whole enclosed volume
   double depth = 0;  ///< largest distance of a point of these regions from the surface [m]
   double size = 0;   ///< cube root of the volume that the pieces enclose [m]
   Vector3d deepest{ 0, 0, 0 };
@@ -78,20 +104,19 @@ Overlap find_overlap(const TriangleMesh& mesh, const MeshFaults& faults)
   return overlap;
 }
 
-/// Throws if a fault makes it unclear what the surface encloses.
+/// Throws Error if a fault makes it unclear what the surface encloses.
 void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool closed, double unit)
 {
   if (faults.fins.count > 0)
-    throw Error(
-        fmt::format("at {} an odd number of triangles meet (non-manifold), the first at {}: nothing says which side is "
-                    "inside; take "
-                    "the surplus triangles away in a modelling tool",
-                    count_text(faults.fins.count, "edge", "edges"), place_text(faults.fins.place, unit)));
+    throw failure(
+        "at {} an odd number of triangles meet (non-manifold), the first at {}: it is undefined which side is inside; "
+        "delete the surplus triangles in a modelling tool",
+        count_text(faults.fins.count, "edge", "edges"), place_text(faults.fins.place, unit));
   if (closed && std::abs(signed_volume(mesh)) < 1e-7 * std::pow(surface_area(mesh), 1.5))
-    throw Error(
-        fmt::format("is closed but encloses nothing: it has no thickness at {}; give it one, or use an open sheet "
-                    "that bounds a volume together with others",
-                    place_text(bounding_box(mesh).center(), unit)));
+    throw failure(
+        "is closed but encloses nothing: it has no thickness at {}; give it one, or use an open sheet that bounds a "
+        "volume together with others",
+        place_text(bounding_box(mesh).center(), unit));
   if (faults.crossings.count == 0)
     return;
 
@@ -99,58 +124,82 @@ void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool clos
   const std::string crossing = fmt::format("passes through itself: {} of triangles cross, ",
                                            count_text(faults.crossings.count, "pair", "pairs"));
   if (overlap.share > largest_overlap || overlap.depth > deepest_overlap * overlap.size)
-    throw Error(fmt::format(
-        "{}and {:.2g} % of what it encloses is enclosed twice or from outside, deepest ({}) at {}; "
-        "unite the parts in a modelling tool, or give each a file and a surface of its own",
-        crossing, 100 * overlap.share, length_text(overlap.depth, unit), place_text(overlap.deepest, unit)));
+    throw failure(
+        "{}and {:.2g} % of what it encloses is enclosed twice or from outside, deepest ({}) at {}; unite the parts in "
+        "a modelling tool, or give each a file and a surface of its own",
+        crossing, 100 * overlap.share, length_text(overlap.depth, unit), place_text(overlap.deepest, unit));
   if (!closed && faults.crossing_extent > widest_crossing * bounding_box(mesh).diagonal().norm())
-    throw Error(
-        fmt::format("{}over {} around {}; take one of the sheets away in a modelling tool, or give each a file "
-                    "and a surface of its own",
-                    crossing, length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit)));
+    throw failure(
+        "{}over {} around {}; delete one of the sheets in a modelling tool, or give each a file and a surface of "
+        "its own",
+        crossing, length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit));
 }
 
-std::vector<std::string> describe(const MeshRepairs& repairs)
+using Found = std::function<void(const std::string& sentence)>;
+
+void describe(const MeshRepairs& repairs, const Found& found)
 {
-  std::vector<std::string> findings;
-  const auto add = [&findings](std::size_t count, const char* one, const char* many)
+  const auto add = [&found](std::size_t count, const char* one, const char* many)
   {
     if (count > 0)
-      findings.push_back(count_text(count, one, many));
+      found(count_text(count, one, many));
   };
   add(repairs.collapsed, "triangle with a corner twice left out", "triangles with a corner twice left out");
-  add(repairs.repeated, "triangle that was there already left out", "triangles that were there already left out");
+  add(repairs.repeated, "repeated triangle left out", "repeated triangles left out");
   add(repairs.back_to_back, "pair of triangles back to back left out", "pairs of triangles back to back left out");
   add(repairs.flat, "triangle without area left out", "triangles without area left out");
   add(repairs.turned, "triangle turned to agree with its neighbours",
       "triangles turned to agree with their neighbours");
-  return findings;
 }
 
-std::vector<std::string> describe(const MeshFaults& faults, double unit)
+void describe(const MeshFaults& faults, double unit, const Found& found)
 {
-  std::vector<std::string> findings;
   const auto add = [&](const MeshFaults::Kind& kind, const char* one, const char* many)
   {
     if (kind.count > 0)
-      findings.push_back(fmt::format("{}, {}at {}", count_text(kind.count, one, many),
-                                     kind.count > 1 ? "the first " : "", place_text(kind.place, unit)));
+      found(fmt::format("{}, {}at {}", count_text(kind.count, one, many), kind.count > 1 ? "the first " : "",
+                        place_text(kind.place, unit)));
   };
   add(faults.touching, "edge where bodies touch (non-manifold)", "edges where bodies touch (non-manifold)");
   add(faults.flat, "triangle without area", "triangles without area");
   add(faults.slivers, "sliver", "slivers");
   if (faults.crossings.count > 0)
-    findings.push_back(fmt::format(
-        "{} of triangles cross, the widest group {} at {}", count_text(faults.crossings.count, "pair", "pairs"),
-        length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit)));
+    found(fmt::format("{} of triangles cross, the widest group {} at {}",
+                      count_text(faults.crossings.count, "pair", "pairs"), length_text(faults.crossing_extent, unit),
+                      place_text(faults.crossings.place, unit)));
   if (!faults.holes.empty())
-    findings.push_back(
-        fmt::format("is open: {}, the largest {} around, at {}", count_text(faults.holes.size(), "hole", "holes"),
-                    length_text(faults.holes.front().length, unit), place_text(faults.holes.front().centre, unit)));
-  return findings;
+    found(fmt::format("is open: {}, the largest {} around, at {}", count_text(faults.holes.size(), "hole", "holes"),
+                      length_text(faults.holes.front().length, unit), place_text(faults.holes.front().centre, unit)));
 }
 
 }  // namespace
+
+TriangleMesh import_mesh(const std::string& file, double unit)
+{
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code))
+    throw Error("mesh file " + file + ": there is no such file");
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+  const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
+  if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
+    throw Error("mesh file " + file + no_triangles);
+  if (scene == nullptr)
+    throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
+                "); it must hold triangles or quads, for example as OBJ, STL or PLY");
+  TriangleMesh mesh;
+  if (scene->mRootNode != nullptr)
+    append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
+  if (mesh.triangles.empty())
+    throw Error("mesh file " + file + no_triangles);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!to_vector(mesh.vertices[v]).allFinite())
+      throw failure(
+          "mesh file {}: vertex {} has a coordinate that is infinite or not a number; every coordinate must be finite",
+          file, v);
+  return mesh;
+}
 
 LoadedSurface load_surface(const Surface& surface, double unit)
 {
@@ -172,12 +221,10 @@ LoadedSurface load_surface(const Surface& surface, double unit)
 
   const MeshRepairs repairs = repair_mesh(mesh);
   if (mesh.triangles.empty())
-    throw Error(
-        fmt::format("has no triangle with an area{}, for example at {}; it must be a surface that bounds something",
-                    repairs.back_to_back > 0 ? " that does not lie back to back with another" : "",
-                    place_text(first_corner, unit)));
-  for (const std::string& text : describe(repairs))
-    found(text);
+    throw failure("has no triangle with an area{}, for example at {}; it must be a surface that bounds something",
+                  repairs.back_to_back > 0 ? " that does not lie back to back with another" : "",
+                  place_text(first_corner, unit));
+  describe(repairs, found);
   const MeshFaults faults = find_mesh_faults(mesh);
   const bool closed = unbalanced_edges(mesh).empty();
   if (closed)
@@ -196,8 +243,7 @@ LoadedSurface load_surface(const Surface& surface, double unit)
     found("was inside-out; turned");
   }
   refuse_faults(mesh, faults, closed, unit);
-  for (const std::string& text : describe(faults, unit))
-    found(text);
+  describe(faults, unit, found);
   return loaded;
 }
 

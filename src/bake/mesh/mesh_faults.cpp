@@ -8,10 +8,9 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <iterator>
-#include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -25,7 +24,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using HalfEdgeMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Face = HalfEdgeMesh::Face_index;
 
-constexpr double sliver_height = 0.02;  // of the longest edge
+constexpr double sliver_height = 0.02;  // largest height of a sliver over its longest edge
 
 Vector3d vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
 
@@ -35,14 +34,17 @@ void add(MeshFaults::Kind& kind, const Vector3d& place)
     kind.place = place;
 }
 
+/// Edges as pairs of vertex numbers, the lower one first.
+using EdgeSet = std::set<std::pair<std::size_t, std::size_t>>;
+
 /// Collects the edges that more than two triangles share.
 struct EdgeCollector : processing::Default_orientation_visitor
 {
-  void non_manifold_edge(std::size_t a, std::size_t b, std::size_t) { edges->emplace_back(a, b); }
-  std::vector<std::pair<std::size_t, std::size_t>>* edges = nullptr;
+  void non_manifold_edge(std::size_t a, std::size_t b, std::size_t) { edges->insert(std::minmax(a, b)); }
+  EdgeSet* edges = nullptr;
 };
 
-HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, std::vector<std::pair<std::size_t, std::size_t>>& shared)
+HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, EdgeSet& shared)
 {
   std::vector<Kernel::Point_3> points;
   points.reserve(mesh.vertices.size());
@@ -51,7 +53,7 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, std::vector<std::pair<std:
   std::vector<std::array<std::size_t, 3>> triangles(mesh.triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t)
     std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), triangles[t].begin());
-  // gives bodies that touch vertices of their own, as the half-edge structure needs
+  // gives each of several touching bodies its own vertices, as the half-edge structure requires
   EdgeCollector collector;
   collector.edges = &shared;
   processing::orient_polygon_soup(points, triangles, CGAL::parameters::visitor(collector));
@@ -69,15 +71,9 @@ std::array<Vector3d, 3> corners_of(const HalfEdgeMesh& mesh, Face face)
   return places;
 }
 
-void find_edge_faults(const TriangleMesh& mesh, std::vector<std::pair<std::size_t, std::size_t>> shared,
-                      MeshFaults& faults)
+void find_edge_faults(const TriangleMesh& mesh, const EdgeSet& shared, MeshFaults& faults)
 {
-  // CGAL names an edge once per triangle
-  for (auto& edge : shared)
-    edge = { std::min(edge.first, edge.second), std::max(edge.first, edge.second) };
-  std::sort(shared.begin(), shared.end());
-  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-  std::set<std::pair<std::size_t, std::size_t>> unbalanced;
+  EdgeSet unbalanced;
   for (const auto& edge : unbalanced_edges(mesh))
     unbalanced.insert(std::minmax(edge[0], edge[1]));
   for (const auto& edge : shared)
@@ -119,39 +115,30 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   if (pairs.empty())
     return;
 
-  // groups of crossing triangles, connected where they cross or share an edge: a union-find structure
-  std::vector<std::size_t> group(mesh.number_of_faces(), 0);
-  std::iota(group.begin(), group.end(), std::size_t{ 0 });
-  std::vector<bool> crosses(group.size(), false);
-  const auto leader = [&group](std::size_t face)
-  {
-    while (group[face] != face)
-      face = group[face] = group[group[face]];
-    return face;
-  };
+  // groups of crossing triangles: those connected by crossings or common edges
+  boost::disjoint_sets_with_storage<> groups(mesh.number_of_faces());
+  std::vector<bool> crosses(mesh.number_of_faces(), false);
   for (const auto& [a, b] : pairs)
   {
     crosses[a] = crosses[b] = true;
-    group[leader(a)] = leader(b);
+    groups.union_set(std::size_t{ a }, std::size_t{ b });
     faults.crossing_piece[faults.piece[a]] = true;
     faults.crossing_piece[faults.piece[b]] = true;
   }
   for (const Face face : mesh.faces())
-  {
     for (const auto edge : CGAL::halfedges_around_face(mesh.halfedge(face), mesh))
     {
       const Face other = mesh.face(mesh.opposite(edge));
       if (crosses[face] && other != HalfEdgeMesh::null_face() && crosses[other])
-        group[leader(face)] = leader(other);
+        groups.union_set(std::size_t{ face }, std::size_t{ other });
     }
-  }
   std::map<std::size_t, Box> boxes;
   for (const Face face : mesh.faces())
   {
     if (!crosses[face])
       continue;
     for (const Vector3d& corner : corners_of(mesh, face))
-      boxes[leader(face)].extend(corner);
+      boxes[groups.find_set(std::size_t{ face })].extend(corner);
   }
   for (const auto& [first, box] : boxes)
   {
@@ -192,13 +179,13 @@ std::vector<MeshFaults::Hole> holes_of(const HalfEdgeMesh& mesh)
 MeshFaults find_mesh_faults(const TriangleMesh& mesh)
 {
   MeshFaults faults;
-  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  EdgeSet shared;
   HalfEdgeMesh half_edges = half_edge_mesh(mesh, shared);
   find_edge_faults(mesh, shared, faults);
   find_thin_triangles(half_edges, faults);
   find_pieces(half_edges, faults);
   find_crossings(half_edges, faults);
-  // touching bodies that were taken apart have rims there, which are no holes
+  // touching bodies were separated at their common edges, which then are borders but not holes
   if (!unbalanced_edges(mesh).empty())
     faults.holes = holes_of(half_edges);
   return faults;
@@ -206,7 +193,7 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh)
 
 std::vector<MeshFaults::Hole> find_holes(const TriangleMesh& mesh)
 {
-  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  EdgeSet shared;
   return holes_of(half_edge_mesh(mesh, shared));
 }
 

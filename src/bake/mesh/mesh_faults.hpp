@@ -2,39 +2,54 @@
 
 #include "bake/mesh/surface_mesh.hpp"
 
-#include <vector>
-
 namespace frontalis
 {
 
-/// Faults of a mesh whose equal vertices are joined and whose neighbouring triangles are oriented alike.
+/// Faults of a mesh with joined vertices and consistent orientation.
 struct MeshFaults
 {
   struct Kind
   {
     std::size_t count = 0;
-    Vector3d place{ 0, 0, 0 };  ///< of the first; of crossings: the middle of the widest group [m]
+    Vector3d place{ 0, 0, 0 };  ///< position of the first; of crossings: middle of the widest group [m]
   };
   struct Hole
   {
-    double length = 0;  ///< of its rim [m]
+    double length = 0;  ///< of its border [m]
     Vector3d centre{ 0, 0, 0 };
   };
 
-  Kind fins;       ///< edges of three or more triangles, not as many one way as the other: the inside is undecided
-  Kind touching;   ///< edges of four or more triangles, as many one way as the other: bodies that touch
+  Kind fins;       ///< edges of three or more triangles, whose directions do not balance: the inside is undefined
+  Kind touching;   ///< edges of four or more triangles, whose directions balance: bodies that touch
   Kind flat;       ///< triangles without area
-  Kind slivers;    ///< triangles whose height is less than a fiftieth of their longest edge
+  Kind slivers;    ///< triangles with a height below a fiftieth of their longest edge
   Kind crossings;  ///< pairs of triangles that cross
   double crossing_extent = 0;        ///< box diagonal of the widest connected group of crossing triangles [m]
   std::vector<Hole> holes;           ///< longest first
-  std::vector<std::int32_t> piece;   ///< of each triangle: number of the part of the mesh connected by edges
-  std::vector<bool> crossing_piece;  ///< of each piece: whether a triangle of it crosses another
+  std::vector<std::int32_t> piece;   ///< of each triangle: index of its component, connected by edges
+  std::vector<bool> crossing_piece;  ///< of each piece: whether one of its triangles crosses another
 };
 
-/// By CGAL's Polygon Mesh Processing, which decides by exact predicates.
+/// Uses the exact predicates of CGAL's Polygon Mesh Processing.
 MeshFaults find_mesh_faults(const TriangleMesh& mesh);
 
 std::vector<MeshFaults::Hole> find_holes(const TriangleMesh& mesh);
+
+/// Numbers of triangles that were repaired without changing the shape of a mesh.
+struct MeshRepairs
+{
+  std::size_t collapsed = 0;     ///< removed because two corners are the same vertex
+  std::size_t repeated = 0;      ///< removed because the same triangle exists already
+  std::size_t back_to_back = 0;  ///< pairs of opposite triangles removed, since they enclose nothing
+  std::size_t flat = 0;          ///< removed because they have no area; their neighbour is split at their middle vertex
+  std::size_t turned = 0;        ///< flipped to agree with their neighbours
+};
+
+/// Joins equal vertices and makes these repairs.
+MeshRepairs repair_mesh(TriangleMesh& mesh);
+
+/// Flips the pieces of a closed mesh that are inside-out (their winding number just outside is -1) and returns their
+/// number. `nested` receives the number of pieces that lie inside others and face outwards.
+std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::size_t& nested);
 
 }  // namespace frontalis

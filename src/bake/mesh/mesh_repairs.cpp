@@ -1,12 +1,9 @@
-#include "bake/mesh/mesh_repairs.hpp"
+#include "bake/mesh/mesh_faults.hpp"
 
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <utility>
 
 namespace frontalis
@@ -18,7 +15,7 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
 void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
-  // Triangles with the same corners and opposite orientations cancel each other. One of those that remain is kept.
+  // Triangles with the same corners and opposite orientations cancel each other. One of the rest is kept.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {
@@ -33,13 +30,11 @@ void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   {
     const std::size_t pairs = std::min(by_orientation[0].size(), by_orientation[1].size());
     for (const auto& triangles : by_orientation)
-    {
       for (std::size_t i = 0; i < triangles.size(); ++i)
       {
         keep[triangles[i]] = i == pairs;
         repairs.repeated += i > pairs ? 1 : 0;
       }
-    }
     repairs.back_to_back += pairs;
   }
   if (repairs.repeated + repairs.back_to_back > 0)
@@ -58,23 +53,19 @@ std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
   if (!CGAL::collinear(p[0], p[1], p[2]))
     return 3;
   for (std::size_t c = 0; c < 2; ++c)
-  {
     if (CGAL::collinear_are_ordered_along_line(p[(c + 1) % 3], p[c], p[(c + 2) % 3]))
       return c;
-  }
   return 2;
 }
 
-/// Removes each triangle a, b, c without area, where b lies between a and c: the triangle a, c, d on the other side of
-/// its edge a-c becomes a, b, d and b, c, d, which cover the same points.
+/// Removes each triangle a, b, c without area, where b lies between a and c. The neighbour a, c, d across the edge a-c
+/// is split into a, b, d and b, c, d, which cover the same points.
 void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
   std::vector<std::size_t> flat;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     if (middle_corner(mesh, mesh.triangles[t]) < 3)
       flat.push_back(t);
-  }
   if (flat.empty())
     return;
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::size_t>> at_edge;
@@ -86,7 +77,7 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     enter(t);
   std::vector<bool> keep(mesh.triangles.size(), true);
-  // a neighbour without area is split into two more, so the list grows; the limit makes sure that the loop ends
+  // splitting a neighbour without area adds two such triangles to the list; the limit guarantees termination
   const std::size_t limit = 10 * flat.size() + 100;
   for (std::size_t f = 0; f < flat.size() && f < limit; ++f)
   {
@@ -137,7 +128,7 @@ MeshRepairs repair_mesh(TriangleMesh& mesh)
 
 std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::size_t& nested)
 {
-  // the winding number is taken in front of the largest triangle of each piece
+  // the winding number is evaluated in front of the largest triangle of each piece
   struct Largest
   {
     Vector3d middle{ 0, 0, 0 }, normal{ 0, 0, 0 };  // the normal's length is twice the triangle's area
@@ -169,10 +160,8 @@ std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::in
     nested += outside > 0.5 ? 1 : 0;
   }
   for (std::size_t t = 0; t < piece.size(); ++t)
-  {
     if (turn[piece[t]])
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-  }
   return std::count(turn.begin(), turn.end(), true);
 }
 

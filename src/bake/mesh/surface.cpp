@@ -1,34 +1,18 @@
 #include "bake/mesh/surface.hpp"
 
-#include "frontalis/error.hpp"
-
-#include <cmath>
-#include <map>
+#include "bake/messages.hpp"
 
 namespace frontalis
 {
-namespace
-{
 
-double squared_distance_to_edge(const Vector3d& p, const Vector3d& a, const Vector3d& b)
-{
-  const Vector3d ab = b - a;
-  const double length = ab.squaredNorm();
-  const double t = length > 0 ? std::min(1.0, std::max(0.0, (p - a).dot(ab) / length)) : 0;
-  return (a + t * ab - p).squaredNorm();
-}
-
-}  // namespace
-
-PreparedSurface::PreparedSurface(std::string name, TriangleMesh mesh, int line)
+PreparedSurface::PreparedSurface(std::string name, TriangleMesh mesh)
     : name_(std::move(name)),
       mesh_(std::move(mesh)),
-      line_(line),
       tree_(mesh_),
       box_(bounding_box(mesh_)),
       rim_(unbalanced_edges(mesh_))
 {
-  // an edge's pseudonormal is the sum of its faces' normals, a vertex's that weighted by the faces' angles
+  // pseudonormal of an edge: sum of its faces' normals; of a vertex: their sum, weighted by the faces' angles
   std::map<std::pair<std::int32_t, std::int32_t>, Vector3d> edges;
   vertex_normals_.assign(mesh_.vertices.size(), Vector3d::Zero());
   for (const Triangle& t : mesh_.triangles)
@@ -64,7 +48,7 @@ double PreparedSurface::winding_variation(const Vector3d& p, double radius) cons
   for (const auto& edge : rim_)
   {
     const Vector3d a = vertex(mesh_, edge[0]), b = vertex(mesh_, edge[1]);
-    const double distance = std::sqrt(squared_distance_to_edge(p, a, b)) - radius;
+    const double distance = std::sqrt(squared_distance_to_segment(p, a, b)) - radius;
     if (distance <= 0)
       return 1e300;
     sum += (b - a).norm() / (distance * distance);
@@ -75,10 +59,8 @@ double PreparedSurface::winding_variation(const Vector3d& p, double radius) cons
 bool PreparedSurface::rim_within(const Vector3d& p, double distance) const
 {
   for (const auto& edge : rim_)
-  {
-    if (squared_distance_to_edge(p, vertex(mesh_, edge[0]), vertex(mesh_, edge[1])) < distance * distance)
+    if (squared_distance_to_segment(p, vertex(mesh_, edge[0]), vertex(mesh_, edge[1])) < distance * distance)
       return true;
-  }
   return false;
 }
 
@@ -101,11 +83,84 @@ const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std
                                      const std::string& place)
 {
   for (const auto& surface : surfaces)
-  {
     if (surface->name() == name)
       return *surface;
-  }
   throw Error(place + ": there is no surface '" + name + "'");
+}
+
+PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
+{
+  PreparedSurfaces prepared(scene.surfaces.size());
+  std::vector<LoadedSurface> loaded(scene.surfaces.size());
+  parallel_for(monitor, scene.surfaces.size(), 1,
+               [&](std::size_t s)
+               {
+                 const Surface& surface = scene.surfaces[s];
+                 try
+                 {
+                   loaded[s] = load_surface(surface, scene.unit);
+                 }
+                 catch (const Error& error)
+                 {
+                   throw Error(place_in_scene(scene, "surface", surface) + ": " + error.what());
+                 }
+                 prepared[s] = std::make_unique<PreparedSurface>(surface.name, std::move(loaded[s].mesh));
+               });
+  for (const LoadedSurface& surface : loaded)
+    for (const std::string& finding : surface.findings)
+      monitor.found(finding);
+  return prepared;
+}
+
+TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts)
+{
+  Box box;
+  for (const PreparedSurface* part : parts)
+    box.extend(part->box());
+
+  // winding numbers of each surface at points spread over the box
+  constexpr int points = 400;
+  std::vector<std::vector<double>> winding(parts.size(), std::vector<double>(points));
+  for (int i = 0; i < points; ++i)
+  {
+    const Vector3d p = spread_point(box, i);
+    for (std::size_t s = 0; s < parts.size(); ++s)
+      winding[s][i] = parts[s]->tree().winding_number(p);
+  }
+
+  // The surfaces may be oriented either way. Take the combination whose sums of winding numbers are nearest to whole
+  // numbers, and flip all surfaces if these sums are negative.
+  constexpr std::size_t most_combined_parts = 12;
+  const std::size_t combinations = parts.size() > most_combined_parts ? 1 : std::size_t{ 1 } << (parts.size() - 1);
+  const auto is_flipped = [](std::size_t combination, std::size_t part)
+  { return part > 0 && (combination >> (part - 1) & 1) != 0; };
+  std::size_t best = 0;
+  double least = 1e300;
+  bool negative = false;
+  for (std::size_t combination = 0; combination < combinations; ++combination)
+  {
+    double error = 0, sum = 0;
+    for (std::size_t i = 0; i < points; ++i)
+    {
+      double w = 0;
+      for (std::size_t s = 0; s < parts.size(); ++s)
+        w += is_flipped(combination, s) ? -winding[s][i] : winding[s][i];
+      error += (w - std::round(w)) * (w - std::round(w));
+      sum += w;
+    }
+    if (error < least - 1e-9)
+    {
+      least = error;
+      best = combination;
+      negative = sum < 0;
+    }
+  }
+
+  TriangleMesh mesh;
+  for (std::size_t s = 0; s < parts.size(); ++s)
+    append(mesh, parts[s]->mesh(), is_flipped(best, s) != negative);
+  join_vertices(mesh);
+  return mesh;
 }
 
 }  // namespace frontalis

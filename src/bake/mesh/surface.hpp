@@ -4,35 +4,32 @@
 #include "bake/mesh/triangle_tree.hpp"
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace frontalis
 {
 
-/// A surface of the scene, prepared for closest points, distances and winding numbers: equal vertices are joined and
-/// triangles oriented. Scene coordinates [m].
+/// A surface of the scene, prepared for closest points, distances and winding numbers. Equal vertices are joined and
+/// the triangles are oriented. Scene coordinates [m].
 class PreparedSurface
 {
 public:
-  PreparedSurface(std::string name, TriangleMesh mesh, int line);
+  PreparedSurface(std::string name, TriangleMesh mesh);
 
   const std::string& name() const { return name_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleTree& tree() const { return tree_; }
   const Box& box() const { return box_; }
-  int line() const { return line_; }
   bool closed() const { return rim_.empty(); }
 
   /// Upper bound on how much the winding number changes within `radius` of p if the surface is not crossed: the
-  /// gradient of an open surface's solid angle depends on its rim alone (Biot-Savart). 0 for a closed surface.
+  /// gradient of an open surface's solid angle depends on its border alone (Biot-Savart). 0 for a closed surface.
   double winding_variation(const Vector3d& p, double radius) const;
 
-  /// Whether the distance to the rim of the surface is less than `distance`.
+  /// Whether p is closer than `distance` [m] to the border of the surface.
   bool rim_within(const Vector3d& p, double distance) const;
 
-  /// Distance of p, positive on the side of the outward normals and negative on the other, by the angle-weighted
-  /// pseudonormal of the closest feature (Baerentzen & Aanaes 2005). `closest` is tree()'s answer for p.
+  /// Distance of p [m], positive on the side of the outward normals. The angle-weighted pseudonormal of the closest
+  /// feature gives the sign (Baerentzen & Aanaes 2005). `closest` is the result of tree().closest(p).
   double signed_distance(const Vector3d& p, const ClosestPoint& closest) const;
   /// Unit pseudonormal of the face, edge or corner that a closest point lies on.
   const Vector3d& pseudonormal(const ClosestPoint& closest) const;
@@ -40,10 +37,9 @@ public:
 private:
   std::string name_;
   TriangleMesh mesh_;
-  int line_;
   TriangleTree tree_;
   Box box_;
-  Edges rim_;  ///< empty: the surface is closed
+  Edges rim_;  ///< border edges; empty: the surface is closed
   std::vector<Vector3d> face_normals_;
   std::vector<std::array<Vector3d, 3>> edge_normals_;
   std::vector<Vector3d> vertex_normals_;
@@ -51,22 +47,34 @@ private:
 
 using PreparedSurfaces = std::vector<std::unique_ptr<PreparedSurface>>;
 
-/// Loads or makes every surface of the scene, in the scene's order, and reports what was repaired. Throws Error naming
-/// the surface and what is wrong.
+/// Loads or makes every surface of the scene, in the scene's order, and reports repairs. Throws Error naming the
+/// surface and its fault.
 PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor);
 
 /// The surface called `name`. If there is none, throws Error with a message that begins with `place`.
 const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std::string& name,
                                      const std::string& place);
 
-/// One mesh of several surfaces that close a volume together. Each is flipped as it must be for the winding numbers of
-/// all to be as near to whole numbers as they can be.
+/// Joins surfaces that together enclose a volume. Flips them such that the sums of their winding numbers are as near to
+/// whole numbers as possible.
 TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 
-/// Reads a mesh file of any format that assimp knows; vertices times `unit`. Throws Error naming the file.
+/// Reads a mesh file of any format known to assimp, with coordinates in `unit` [m]. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Closed mesh, normals outwards, of a built-in shape other than the forehead. Throws Error on impossible sizes.
+/// Closed mesh with outward normals of a built-in shape, not for the forehead. Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
+
+struct LoadedSurface
+{
+  TriangleMesh mesh;                  ///< vertices joined, triangles oriented, scene coordinates [m]
+  std::vector<std::string> findings;  ///< repairs and harmless faults, one sentence each
+};
+
+/// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
+/// unit `unit` [m]. Throws Error, with position and remedy, if all triangles have no area, if an odd number of
+/// triangles meet at an edge, if a closed surface encloses nothing, or if a surface passes through itself. Holes are
+/// allowed here; check_openings() refuses those that do harm.
+LoadedSurface load_surface(const Surface& surface, double unit);
 
 }  // namespace frontalis

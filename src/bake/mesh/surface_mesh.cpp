@@ -2,7 +2,6 @@
 
 #include <boost/functional/hash.hpp>
 
-#include <algorithm>
 #include <tuple>
 #include <unordered_map>
 
@@ -11,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-/// A triangle's edge from its lower to its higher vertex number.
+/// An edge of a triangle, stored from its lower to its higher vertex number.
 struct HalfEdge
 {
   std::int32_t low, high, triangle;
@@ -27,13 +26,11 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh)
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     for (std::size_t c = 0; c < 3; ++c)
     {
       const std::int32_t a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
       edges.push_back({ std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b });
     }
-  }
   std::sort(edges.begin(), edges.end());
   return edges;
 }
@@ -49,6 +46,46 @@ void for_each_edge(const std::vector<HalfEdge>& half_edges, const Body& body)
     body(begin, end);
     begin = end;
   }
+}
+
+/// Keeps the part of a mesh below `limit` along an axis (sign +1) or above it (sign -1).
+TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
+{
+  const auto height = [&](std::int32_t v) { return sign * (limit - mesh.vertices[v][axis]); };
+  std::map<std::array<std::int32_t, 2>, std::int32_t> crossings;
+  const auto crossing = [&](std::int32_t a, std::int32_t b)
+  {
+    const auto found = crossings.insert({ { std::min(a, b), std::max(a, b) }, 0 });
+    if (found.second)
+    {
+      // interpolate from the lower vertex number, so that both triangles of an edge get bitwise the same point
+      const auto [p, q] = std::minmax(a, b);
+      const double along = height(p) / (height(p) - height(q));
+      const Vector3d from = vertex(mesh, p), to = vertex(mesh, q);
+      Vector3d point = from + along * (to - from);
+      point[axis] = limit;
+      found.first->second = static_cast<std::int32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(to_array(point));
+    }
+    return found.first->second;
+  };
+  std::vector<Triangle> triangles;
+  for (const Triangle& t : mesh.triangles)
+  {
+    std::vector<std::int32_t> polygon;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const std::int32_t here = t[c], next = t[(c + 1) % 3];
+      if (height(here) >= 0)
+        polygon.push_back(here);
+      if ((height(here) > 0 && height(next) < 0) || (height(here) < 0 && height(next) > 0))
+        polygon.push_back(crossing(here, next));
+    }
+    for (std::size_t c = 2; c < polygon.size(); ++c)
+      triangles.push_back({ polygon[0], polygon[c - 1], polygon[c] });
+  }
+  mesh.triangles = std::move(triangles);
+  return mesh;
 }
 
 }  // namespace
@@ -141,7 +178,7 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
   struct Neighbour
   {
     std::int32_t triangle = -1;
-    bool disagrees = false;  // both triangles run along the edge the same way
+    bool disagrees = false;  // both triangles run along the edge in the same direction
   };
   std::vector<std::array<Neighbour, 3>> neighbours(mesh.triangles.size());
   bool any_wrong = false;
@@ -172,7 +209,6 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
     std::vector<std::size_t> component{ seed };
     turn[seed] = 0;
     for (std::size_t at = 0; at < component.size(); ++at)
-    {
       for (const Neighbour& n : neighbours[component[at]])
       {
         if (n.triangle < 0 || turn[n.triangle] >= 0)
@@ -180,19 +216,16 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
         turn[n.triangle] = static_cast<std::int8_t>(turn[component[at]] ^ (n.disagrees ? 1 : 0));
         component.push_back(n.triangle);
       }
-    }
     std::size_t ones = 0;
     for (const std::size_t t : component)
       ones += turn[t];
     const int wanted = 2 * ones > component.size() ? 0 : 1;
     for (const std::size_t t : component)
-    {
       if (turn[t] == wanted)
       {
         std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
         ++turned;
       }
-    }
   }
   return turned;
 }
@@ -208,11 +241,9 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
 {
   std::vector<std::int32_t> number(mesh.vertices.size(), -1);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-  {
     if (keep[t])
       for (const std::int32_t v : mesh.triangles[t])
         number[v] = 0;
-  }
   TriangleMesh kept;
   if (vertex_of != nullptr)
     vertex_of->clear();
@@ -235,6 +266,47 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
     kept.triangles.push_back(corners);
   }
   return kept;
+}
+
+TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region)
+{
+  TriangleMesh part = mesh;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    if (std::isfinite(region.lower[axis]))
+      part = cut(std::move(part), axis, region.lower[axis], -1);
+    if (std::isfinite(region.upper[axis]))
+      part = cut(std::move(part), axis, region.upper[axis], 1);
+  }
+  return keep_triangles(part, std::vector<bool>(part.triangles.size(), true));
+}
+
+void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
+               const std::function<Vector3d(std::int32_t, std::int32_t)>& at)
+{
+  const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+  for (std::int32_t j = 0; j <= m; ++j)
+    for (std::int32_t i = 0; i <= n; ++i)
+      mesh.vertices.push_back(to_array(at(i, j)));
+  const auto number = [&](std::int32_t i, std::int32_t j) { return base + j * (n + 1) + i; };
+  for (std::int32_t j = 0; j < m; ++j)
+    for (std::int32_t i = 0; i < n; ++i)
+    {
+      const std::int32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
+      const double bd = (vertex(mesh, d) - vertex(mesh, b)).squaredNorm();
+      const double ac = (vertex(mesh, c) - vertex(mesh, a)).squaredNorm();
+      // the shorter diagonal; if both are equal, the diagonals are mirrored about the middle column
+      if (std::abs(ac - bd) < 1e-9 * ac ? n % 2 == 0 && i < n / 2 : ac > bd)
+      {
+        mesh.triangles.push_back({ a, b, d });
+        mesh.triangles.push_back({ b, c, d });
+      }
+      else
+      {
+        mesh.triangles.push_back({ a, b, c });
+        mesh.triangles.push_back({ a, c, d });
+      }
+    }
 }
 
 }  // namespace frontalis

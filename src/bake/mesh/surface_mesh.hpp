@@ -3,9 +3,7 @@
 #include "bake/vector.hpp"
 #include "frontalis/model/surface.hpp"
 
-#include <array>
-#include <cstdint>
-#include <vector>
+#include <functional>
 
 namespace frontalis
 {
@@ -18,11 +16,11 @@ inline std::array<Vector3d, 3> corners(const TriangleMesh& mesh, const Triangle&
   return { vertex(mesh, t[0]), vertex(mesh, t[1]), vertex(mesh, t[2]) };
 }
 
-/// Adds the vertices and triangles of `part`, reversed where `flipped`.
+/// Adds the vertices and triangles of `part`, which are reversed if `flipped`.
 void append(TriangleMesh& mesh, const TriangleMesh& part, bool flipped = false);
 
-/// Edges that triangles do not run along equally often both ways (a hole's rim, a seam): directed as the surplus
-/// triangles run, and repeated for each of them.
+/// Edges along which the triangles do not run equally often in both directions (borders of holes, seams). Each has the
+/// direction of its surplus triangles and is repeated for each of them.
 using Edges = std::vector<std::array<std::int32_t, 2>>;
 
 Edges unbalanced_edges(const TriangleMesh& mesh);
@@ -39,8 +37,8 @@ Box bounding_box(const TriangleMesh& mesh);
 /// number of triangles dropped.
 std::size_t join_vertices(TriangleMesh& mesh);
 
-/// Flips triangles until neighbours agree, separately in each connected component, the larger part of which keeps its
-/// orientation. Returns the number of triangles flipped.
+/// Flips triangles until neighbours are oriented alike. In each connected component the majority of the triangles keeps
+/// its orientation. Returns the number of triangles flipped.
 std::size_t make_orientation_consistent(TriangleMesh& mesh);
 
 void flip(TriangleMesh& mesh);
@@ -49,5 +47,14 @@ void flip(TriangleMesh& mesh);
 /// the old number of each vertex.
 TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& keep,
                             std::vector<std::int32_t>* vertex_of = nullptr);
+
+/// The part of a mesh inside a region. Triangles that extend beyond the region are cut at its sides. Neighbours share
+/// the new vertices, which follow the old ones in the list.
+TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region);
+
+/// Adds a rectangular sheet of points at(i, j), i in 0..n, j in 0..m, as triangles whose normal is d/di x d/dj.
+/// If n is even, diagonals are mirrored about the middle column, so that a symmetric sheet has symmetric triangles.
+void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
+               const std::function<Vector3d(std::int32_t, std::int32_t)>& at);
 
 }  // namespace frontalis

@@ -2,28 +2,24 @@
 
 #include "bake/mesh/surface_mesh.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace frontalis
 {
 
 struct ClosestPoint
 {
   Vector3d point{ 0, 0, 0 };
-  double distance = 0;
+  double distance = 0;         ///< [m]
   std::int32_t triangle = -1;  ///< -1: no triangle lies within the bound
-  /// The part of the triangle that it lies on. 0: the face; 1 to 3: the edge that begins at corner `feature` - 1; 4 to
-  /// 6: the corner `feature` - 4
+  /// Where on the triangle the point lies. 0: face; 1 to 3: edge that begins at corner `feature` - 1; 4 to 6: corner
+  /// `feature` - 4
   std::int8_t feature = 0;
 };
 
 /// Bounding-volume hierarchy over a mesh's triangles for closest points, overlaps with boxes, and the generalised
 /// winding number by the method of Barill et al., Fast winding numbers for soups and clouds, ACM Trans. Graph.
-/// 37(4):43, 2018: far groups of triangles by the Taylor series of the dipole potential about their area centroid (up
-/// to the kernel's second derivative), near triangles by their exact solid angles (van Oosterom & Strackee 1983).
-///
-/// CGAL's AABB tree has no winding numbers, and takes 1.3 to 2.3 times as long to find closest points.
+/// 37(4):43, 2018. Far groups of triangles contribute by the Taylor series of the dipole potential about their area
+/// centroid (up to the kernel's second derivative), near triangles by their exact solid angles (van Oosterom & Strackee
+/// 1983). CGAL's AABB tree has no winding numbers and takes 1.3 to 2.3 times as long to find closest points.
 class TriangleTree
 {
 public:
@@ -31,8 +27,8 @@ public:
 
   const TriangleMesh& mesh() const { return *mesh_; }
 
-  /// The closest point within `bound` of p [m]. `hint` is a triangle that is probably near: it saves time and does not
-  /// change the answer.
+  /// The closest point within `bound` [m] of p. `hint` is a triangle that is probably near; it saves time without
+  /// changing the result.
   ClosestPoint closest(const Vector3d& p, double bound = 1e300, std::int32_t hint = -1) const;
 
   bool overlaps(const Box& box) const;
@@ -41,15 +37,15 @@ public:
   /// Appends the triangles that overlap the box, in ascending order of index.
   void gather(const Box& box, std::vector<std::int32_t>& triangles) const;
 
-  /// 1 inside a closed surface whose normals point outwards, 0 outside; near holes, between 0 and 1.
+  /// 1 inside a closed surface whose normals point outwards, 0 outside it, and between 0 and 1 near a hole.
   double winding_number(const Vector3d& p) const;
 
 private:
   struct Node
   {
     Box box;
-    std::int32_t begin = 0, end = 0;  ///< triangles in order_
-    std::int32_t right = 0;           ///< second child, 0 for a leaf; the first child is the next node
+    std::int32_t begin = 0, end = 0;  ///< range of triangles in order_
+    std::int32_t right = 0;           ///< index of the second child, 0 for a leaf; the first child is the next node
   };
   /// Taylor series of a node's winding number about its area centroid.
   struct Expansion
@@ -57,12 +53,12 @@ private:
     Vector3d centre{ 0, 0, 0 };
     double squared_reach = 0;
     Vector3d dipole{ 0, 0, 0 };
-    std::array<double, 9> first{};    ///< sum of area normal i times offset j from the centre
-    std::array<double, 18> second{};  ///< sum of area normal i times offsets j and k: xx, yy, zz, xy, yz, zx
+    std::array<double, 9> first{};    ///< first moments: sum of area normal i times offset j from the centre
+    std::array<double, 18> second{};  ///< second moments, with offsets j and k: xx, yy, zz, xy, yz, zx
   };
 
   /// Walks down from the root to the children of nodes for which enter(node index) is true, and calls leaf(index in
-  /// order_) for each triangle reached, until a call returns true. Returns whether one did.
+  /// order_) for each triangle reached, until leaf returns true. Returns whether it did.
   template <class Enter, class Leaf>
   bool visit(const Enter& enter, const Leaf& leaf) const
   {
@@ -92,10 +88,9 @@ private:
   std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3d>& centroids);
   Expansion expand(const Node& node) const;
   static double far_field(const Expansion& node, const Vector3d& p);
-  static bool overlaps_triangle(const std::array<Vector3d, 3>& corners, const Box& box);
   const TriangleMesh* mesh_;
   std::vector<std::int32_t> order_;               ///< triangle indices, contiguous for each node
-  std::vector<std::array<Vector3d, 3>> corners_;  ///< corners of the triangles, in the same order
+  std::vector<std::array<Vector3d, 3>> corners_;  ///< corners of the triangles, in the order of order_
   std::vector<Node> nodes_;
   std::vector<Expansion> expansions_;
 };

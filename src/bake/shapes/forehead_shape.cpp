@@ -1,20 +1,220 @@
 #include "frontalis/bake/forehead_shape.hpp"
 
-#include "bake/shapes/forehead_bone.hpp"
-#include "bake/shapes/forehead_muscles.hpp"
-#include "frontalis/error.hpp"
-#include "bake/shapes/sheet_mesh.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
+#include "bake/mesh/surface_mesh.hpp"
+#include "bake/messages.hpp"
 
 namespace frontalis
 {
 namespace
 {
+
+double bell(double x, double width) { return std::exp(-(x / width) * (x / width)); }
+
+/// 0 below 0, 1 above 1, smooth (twice differentiable) between.
+double smooth_step(double x)
+{
+  const double t = std::min(1.0, std::max(0.0, x));
+  return t * t * t * (t * (6 * t - 15) + 10);
+}
+
+/// The generated forehead as a map from (s, z, depth) to space. s is the arc length from the midline, positive to the
+/// subject's left [m], z the height above the sellion [m], depth a proportion of the soft tissue: 0 at the skin, 1 at
+/// the bone.
+class ForeheadMap
+{
+public:
+  explicit ForeheadMap(const ForeheadDimensions& dimensions)
+      : dimensions_(dimensions),
+        // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
+        depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
+  {
+    // the normal from bone to skin is not horizontal: find by iteration the height of the bone below the sellion
+    double z = 0;
+    for (int i = 0; i < 20; ++i)
+      z -= at(0, z, 0)[2];
+    shift_ = -at(0, z, 0)[0];
+  }
+
+  const ForeheadDimensions& dimensions() const { return dimensions_; }
+
+  Vector3d at(double s, double z, double depth) const
+  {
+    constexpr double step = 1e-5;
+    const Vector3d across = bone(s + step, z) - bone(s - step, z);
+    const Vector3d up = bone(s, z + step) - bone(s, z - step);
+    return bone(s, z) + ((1 - depth) * thickness(z)) * across.cross(up).normalized();
+  }
+
+  /// Thickness of the soft tissue [m].
+  double thickness(double z) const
+  {
+    const double over = z - dimensions_.brow_height;
+    return dimensions_.hairline_thickness +
+           (dimensions_.brow_thickness - dimensions_.hairline_thickness) * bell(over, 28e-3);
+  }
+
+  /// Heights [m] of the orbital rim, which is lower at the nasal root, and of the hairline, lower at the temples.
+  double lower_edge(double s) const
+  {
+    const double arc = std::abs(s);
+    const double brow = dimensions_.brow_height;
+    // height of the nasal root, plus the rise to the orbital rim, minus the fall towards the cheek bone
+    return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 4e-3) / 20e-3) -
+           0.35 * brow * smooth_step((arc - 42e-3) / 30e-3);
+  }
+  double upper_edge(double s) const
+  {
+    const double share = std::abs(s) / half_width();
+    return dimensions_.brow_height + dimensions_.height * (1 - 0.35 * smooth_step((share - 0.3) / 0.7));
+  }
+  double half_width() const { return 0.5 * dimensions_.width; }
+
+private:
+  Vector3d bone(double s, double z) const
+  {
+    const ForeheadDimensions& d = dimensions_;
+    const double angle = s / d.half_breadth;
+    const double lean = std::tan(5 * pi / 180);
+    const double above = z - d.brow_height;
+    // the profile leans and curves backwards above the brow and is straight below
+    const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
+
+    // relief along the horizontal normal: the brow ridge, strongest above the medial half of the orbit; the glabella;
+    // the nasal root; the temples
+    const double arc = std::abs(s);
+    const double ridge = d.ridge * bell(above, 9e-3) * (0.45 + 0.55 * bell(arc - 22e-3, 18e-3)) *
+                         (1 - smooth_step((arc - 45e-3) / 25e-3));
+    const double glabella = d.glabella * bell(z - 0.75 * d.brow_height, 9e-3) * bell(s, 11e-3);
+    const double root = 5e-3 * smooth_step((0.7 * d.brow_height - z) / d.brow_height) * bell(s, 20e-3);
+    const double temple = d.temple_flattening * smooth_step((arc - 40e-3) / 35e-3);
+    const double relief = ridge + glabella - root - temple;
+
+    const Vector3d normal = Vector3d{ std::cos(angle) / depth_axis_, std::sin(angle) / d.half_breadth, 0 }.normalized();
+    return Vector3d{ depth_axis_ * std::cos(angle) - setback + shift_, d.half_breadth * std::sin(angle), z } +
+           relief * normal;
+  }
+
+  ForeheadDimensions dimensions_;
+  double depth_axis_;  ///< semi-axis of the horizontal section along x [m]
+  double shift_ = 0;   ///< along x, puts the sellion on the skin at the origin [m]
+};
+
+/// Middle surface of a flat muscle. `place` gives arc length and height [m], `depth` the depth as a proportion of the
+/// soft tissue. a runs from 0 to 1 to the subject's left, b from 0 to 1 upwards or along the fibres.
+struct Sheet
+{
+  std::function<std::array<double, 2>(double, double)> place;
+  std::function<double(double, double)> depth;
+  double thickness, length_a, length_b;  ///< [m]
+};
+
+TriangleMesh thicken(const ForeheadMap& map, const Sheet& sheet, double edge)
+{
+  const auto count = [&](double length)
+  { return 2 * std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * length / edge))); };
+  const std::int32_t n = count(sheet.length_a), m = count(sheet.length_b),
+                     l = std::max(1, static_cast<std::int32_t>(std::ceil(sheet.thickness / edge)));
+  const auto at = [&](std::int32_t i, std::int32_t j, std::int32_t k) -> Vector3d
+  {
+    const double a = static_cast<double>(i) / n, b = static_cast<double>(j) / m;
+    const auto [s, z] = sheet.place(a, b);
+    const double offset = (static_cast<double>(k) / l - 0.5) * sheet.thickness / map.thickness(z);
+    return map.at(s, z, sheet.depth(a, b) + offset);
+  };
+  TriangleMesh mesh;
+  add_sheet(mesh, n, m, [&](std::int32_t i, std::int32_t j) { return at(i, j, 0); });
+  add_sheet(mesh, n, m, [&](std::int32_t i, std::int32_t j) { return at(n - i, j, l); });
+  add_sheet(mesh, n, l, [&](std::int32_t i, std::int32_t k) { return at(n - i, 0, k); });
+  add_sheet(mesh, n, l, [&](std::int32_t i, std::int32_t k) { return at(i, m, k); });
+  add_sheet(mesh, m, l, [&](std::int32_t j, std::int32_t k) { return at(0, j, k); });
+  add_sheet(mesh, m, l, [&](std::int32_t j, std::int32_t k) { return at(n, m - j, k); });
+  return mesh;
+}
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+/// Distance of the frontalis from the midline [m]: 3 mm at the brow (share 0), 12 mm at the upper end (share 1).
+double frontalis_inner(double share) { return mix(3e-3, 12e-3, share * share); }
+
+constexpr double frontalis_width = 38e-3;  // [m]
+
+/// The frontalis runs from the skin of the brow, where it is superficial, up to the galea at two thirds of the height.
+Sheet frontalis(const ForeheadMap& map, double side)
+{
+  const ForeheadDimensions& d = map.dimensions();
+  const auto place = [&d, side](double a, double b)
+  {
+    const double inner = frontalis_inner(b);
+    const double s = side > 0 ? inner + a * frontalis_width : -inner - (1 - a) * frontalis_width;
+    // the insertion follows the brow: lower at its lateral end
+    const double out = (std::abs(s) - inner) / frontalis_width;
+    const double low = d.brow_height - 2e-3 - 3e-3 * out * out;
+    return std::array<double, 2>{ s, mix(low, d.brow_height + 2.0 / 3 * d.height - 6e-3 * out * out, b) };
+  };
+  const auto depth = [](double, double b) { return mix(0.38, 0.55, std::min(1.0, b / 0.35)); };
+  return { place, depth, d.muscle_thickness, frontalis_width, 2.0 / 3 * d.height };
+}
+
+/// The corrugator runs from the bone at the medial end of the brow obliquely up and out to the skin over the mid brow.
+Sheet corrugator(const ForeheadMap& map, double side)
+{
+  const ForeheadDimensions& d = map.dimensions();
+  const double angle = 20 * pi / 180;
+  const double length = 35e-3;
+  const auto place = [&d, side, angle, length](double a, double b)
+  {
+    // along: 0 at the origin (medial), 1 at the insertion (lateral); the muscle fans out
+    const double along = side > 0 ? a : 1 - a;
+    const double across = (b - 0.5) * mix(8e-3, 12e-3, along);
+    const double s = 4e-3 + along * length * std::cos(angle) - across * std::sin(angle);
+    const double z = 0.75 * d.brow_height + along * length * std::sin(angle) + across * std::cos(angle);
+    return std::array<double, 2>{ side * s, z };
+  };
+  const auto depth = [side](double a, double) { return mix(0.9, 0.3, side > 0 ? a : 1 - a); };
+  return { place, depth, d.muscle_thickness, length, 12e-3 };
+}
+
+/// The procerus runs in the midline from the nasal bone up to the skin between the brows.
+Sheet procerus(const ForeheadMap& map)
+{
+  const ForeheadDimensions& d = map.dimensions();
+  const auto place = [](double a, double b) {
+    return std::array<double, 2>{ mix(-5e-3, 5e-3, a), mix(-1.5e-3, 23.5e-3, b) };
+  };
+  const auto depth = [](double, double b) { return mix(0.85, 0.3, b); };
+  return { place, depth, d.muscle_thickness, 10e-3, 25e-3 };
+}
+
+/// Tendon sheet from the upper edge of the frontales, and from the gap between them, to the hairline.
+Sheet galea(const ForeheadMap& map)
+{
+  const ForeheadDimensions& d = map.dimensions();
+  const auto place = [&map, &d](double a, double b)
+  {
+    const double half = std::min(52e-3, map.half_width());
+    const double s = mix(-half, half, a);
+    const double arc = std::abs(s);
+    // the lower edge follows the upper edge of the frontales and extends down into the gap between them
+    const double top = d.brow_height + 2.0 / 3 * d.height - 3e-3;
+    const double gap = std::max(0.0, 1 - arc / 12e-3);
+    const double outer = std::max(0.0, (arc - 12e-3) / frontalis_width);
+    const double low = top - 0.4 * d.height * gap * gap * (3 - 2 * gap) - 6e-3 * std::min(1.0, outer * outer);
+    // the sheet extends 1 mm beyond the upper edge of the tissue, so that no gap is left there
+    return std::array<double, 2>{ s, mix(low, map.upper_edge(s) + 1e-3, b) };
+  };
+  const auto depth = [](double, double) { return 0.55; };
+  return { place, depth, d.galea_thickness, 104e-3, 0.75 * d.height };
+}
+
+Sheet muscle_sheet(const ForeheadMap& map, const std::string& part)
+{
+  const auto is = [&part](const char* muscle) { return part.rfind(muscle, 0) == 0; };
+  const double side = part.find("_left") != std::string::npos ? 1 : -1;
+  return is("frontalis")    ? frontalis(map, side)
+         : is("corrugator") ? corrugator(map, side)
+         : is("procerus")   ? procerus(map)
+                            : galea(map);
+}
 
 using Field = double ForeheadDimensions::*;
 
@@ -47,10 +247,10 @@ ForeheadDimensions dimensions_of(const Shape& shape)
     const auto field =
         std::find_if(fields().begin(), fields().end(), [&n = name](const auto& f) { return f.first == n; });
     if (field == fields().end())
-      throw Error(fmt::format("forehead: there is no dimension '{}'; there are {}", name,
-                              fmt::join(forehead_dimension_names(), ", ")));
+      throw failure("forehead: there is no dimension '{}'; there are {}", name,
+                    fmt::join(forehead_dimension_names(), ", "));
     if (!(value > 0) || !(value < 1))
-      throw Error(fmt::format("forehead: dimension '{}' is {:g} m; it must be above 0 and below 1 m", name, value));
+      throw failure("forehead: dimension '{}' is {:g} m; it must be above 0 and below 1 m", name, value);
     dimensions.*field->second = value;
   }
   if (dimensions.width > 2.6 * dimensions.half_breadth)
@@ -65,7 +265,7 @@ struct SkinGrid
 {
   const ForeheadMap& map;
   std::int32_t across, up, through;
-  double beyond;  ///< by which it reaches beyond the edges [m]
+  double beyond;  ///< distance by which the grid extends beyond the edges of the skin [m]
 
   SkinGrid(const ForeheadMap& forehead, double edge, double margin) : map(forehead), beyond(margin)
   {
@@ -141,9 +341,9 @@ TriangleMesh make_forehead(const Shape& shape)
     add_rim(mesh, grid, part != "rim_lower" && part != "rim_lateral", part != "rim_upper" && part != "rim_lateral",
             part != "rim_upper" && part != "rim_lower");
   else if (std::find(forehead_parts().begin(), forehead_parts().end(), part) != forehead_parts().end())
-    mesh = make_forehead_muscle(map, part, edge);
+    mesh = thicken(map, muscle_sheet(map, part), edge);
   else
-    throw Error(fmt::format("forehead: there is no part '{}'; there are {}", part, fmt::join(forehead_parts(), ", ")));
+    throw failure("forehead: there is no part '{}'; there are {}", part, fmt::join(forehead_parts(), ", "));
   return mesh;
 }
 

@@ -1,9 +1,5 @@
 #include "frontalis/error.hpp"
-#include "bake/shapes/sheet_mesh.hpp"
 #include "bake/mesh/surface.hpp"
-
-#include <cmath>
-#include <functional>
 
 namespace frontalis
 {
@@ -15,7 +11,7 @@ std::int32_t parts(double length, double edge, std::int32_t lowest)
   return std::max(lowest, static_cast<std::int32_t>(std::min(2000.0, std::ceil(length / edge - 1e-9))));
 }
 
-/// Columns of a right-handed frame whose last one is along `axis`.
+/// Right-handed orthonormal axes as columns; the last one is parallel to `axis`.
 Eigen::Matrix3d frame_of(const Vector3& axis)
 {
   const Vector3d along = to_vector(axis).norm() > 0 ? to_vector(axis).normalized() : Vector3d::UnitZ().eval();
@@ -27,7 +23,7 @@ Eigen::Matrix3d frame_of(const Vector3& axis)
   return frame;
 }
 
-/// Cube [-1, 1]^3 with n[a] squares along axis a; `place` maps its points.
+/// Adds the surface of the cube [-1, 1]^3, mapped by `place`, with n[a] squares along axis a.
 void add_cube(TriangleMesh& mesh, const std::array<std::int32_t, 3>& n,
               const std::function<Vector3d(const Vector3d&)>& place)
 {
@@ -36,14 +32,14 @@ void add_cube(TriangleMesh& mesh, const std::array<std::int32_t, 3>& n,
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     for (const int side : { -1, 1 })
     {
-      // the normal of (b, c) is along a: the two change places on the lower side
+      // the normal of (b, c) points along +a; exchanged, the two give the outward normal of the lower side
       const int first = side > 0 ? b : c, second = side > 0 ? c : b;
       add_sheet(mesh, n[first], n[second],
                 [&](std::int32_t i, std::int32_t j)
                 {
                   Vector3d p;
                   p[a] = side;
-                  // exactly 1 at the end, so that sheets join
+                  // exactly 1 at the end, so that adjacent sides have equal vertices at their common edge
                   p[first] = i == n[first] ? 1 : -1 + 2.0 * i / n[first];
                   p[second] = j == n[second] ? 1 : -1 + 2.0 * j / n[second];
                   return place(p);
@@ -65,7 +61,7 @@ TriangleMesh ellipsoid(const Shape& shape, const Vector3d& radii, double edge)
 {
   TriangleMesh mesh;
   const std::int32_t n = parts(0.5 * pi * radii.maxCoeff(), edge, 3);
-  // equal angles between the points of the cube, so that squares on the sphere are alike
+  // space the points by equal angles, so that the squares on the sphere have similar sizes
   const auto place = [&](const Vector3d& p) -> Vector3d
   {
     const Vector3d q = (pi / 4 * p).array().tan().matrix().normalized();

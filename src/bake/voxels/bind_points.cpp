@@ -1,11 +1,7 @@
-#include "bake/voxels/bind_points.hpp"
+#include "bake/voxels/model_stages.hpp"
+#include "bake/voxels/voxel_index.hpp"
 
-#include "bake/mesh/cut_mesh.hpp"
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
-#include "bake/parallel.hpp"
-
-#include <cmath>
 
 namespace frontalis
 {
@@ -13,108 +9,42 @@ namespace
 {
 
 constexpr std::size_t grain = 1024;
-constexpr double farthest_landmark = 20e-3;  // from the skin [m]
+constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
-}  // namespace
-
-double extrapolation_of(const Scene& scene, const Model& model)
+/// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
+class PointBinder
 {
-  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
-  return scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
-}
-
-BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
-                    BakeMonitor& monitor)
-{
-  const TriangleMesh surface = cut_mesh(whole, crop);
-  const std::size_t count = surface.vertices.size();
-  std::vector<std::int32_t> voxel(count, -1);
-  std::vector<std::array<float, 3>> coordinates(count);
-  parallel_for(monitor, count, grain,
-               [&](std::size_t v)
-               {
-                 if (!binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]))
-                   voxel[v] = -1;
-               });
-
-  BoundMesh bound;
-  std::vector<bool> keep(surface.triangles.size());
-  for (std::size_t t = 0; t < keep.size(); ++t)
+public:
+  PointBinder(const Model& model, double extrapolation)
+      : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
   {
-    bool near = true;
-    for (const std::int32_t v : surface.triangles[t])
-    {
-      if (voxel[v] >= 0)
-        continue;
-      bound.unbound = vertex(surface, v);
-      near = false;
-    }
-    keep[t] = near;
-    bound.too_far += near ? 0 : 1;
   }
-  bound.triangles = surface.triangles.size();
-  std::vector<std::int32_t> vertex_of;
-  bound.mesh = frame.to_local(keep_triangles(surface, keep, &vertex_of));
-  for (const std::int32_t v : vertex_of)
+
+  /// Returns false if no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
+  bool bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
   {
-    bound.binding.voxel.push_back(voxel[v]);
-    bound.binding.coordinates.push_back(coordinates[v]);
+    VoxelPlace cell{};
+    for (int a = 0; a < 3; ++a)
+      cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
+    voxel = index_.find(cell);
+    if (voxel < 0)
+      voxel = nearest(local, cell);
+    for (int a = 0; a < 3 && voxel >= 0; ++a)
+      coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
+    return voxel >= 0;
   }
-  return bound;
-}
 
-namespace
-{
-
-void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
-{
-  const TriangleTree tree(model.skin);
-  for (const SceneLandmark& landmark : scene.landmarks)
+private:
+  /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel.
+  std::int32_t nearest(const Vector3d& local, const VoxelPlace& cell) const
   {
-    const std::string place = place_in_scene(scene, "landmark", landmark);
-    const ClosestPoint closest = tree.closest(frame.to_local(to_vector(landmark.position)));
-    if (closest.triangle < 0)
-      throw Error(place + ": there is no published skin that it could lie on");
-    if (closest.distance > farthest_landmark)
-      throw Error(
-          fmt::format("{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the "
-                      "skin's crop",
-                      place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit)));
-    std::int32_t voxel = -1;
-    std::array<float, 3> coordinates{};
-    if (!binder.bind(closest.point, voxel, coordinates))
-      throw Error(place + ": no voxel is near enough to carry it; raise the skin's 'extrapolation'");
-    model.landmarks.push_back(landmark.name);
-    model.landmark_positions.push_back(to_array(closest.point));
-    model.landmark_binding.voxel.push_back(voxel);
-    model.landmark_binding.coordinates.push_back(coordinates);
-  }
-}
-
-}  // namespace
-
-PointBinder::PointBinder(const Model& model, double extrapolation)
-    : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
-{
-}
-
-bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
-{
-  VoxelPlace cell{};
-  for (int a = 0; a < 3; ++a)
-    cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
-  voxel = index_.find(cell);
-  if (voxel < 0)
-  {
-    // cubic shells of cells around it, until no further shell can hold a nearer voxel
     const Vector3d spacing = to_vector(model_.spacing);
     const double edge = spacing.minCoeff();
     const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
+    std::int32_t voxel = -1;
     double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
     for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
-    {
       for (std::int32_t k = -shell; k <= shell; ++k)
-      {
         for (std::int32_t j = -shell; j <= shell; ++j)
         {
           const bool face = std::abs(k) == shell || std::abs(j) == shell;
@@ -134,14 +64,85 @@ bool PointBinder::bind(const Vector3d& local, std::int32_t& voxel, std::array<fl
             }
           }
         }
-      }
-    }
+    return voxel;
   }
-  if (voxel < 0)
-    return false;
-  for (int a = 0; a < 3; ++a)
-    coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
-  return true;
+
+  const Model& model_;
+  VoxelIndex index_;
+  double extrapolation_;
+};
+
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
+                    BakeMonitor& monitor)
+{
+  const TriangleMesh surface = cut_mesh(whole, crop);
+  const std::size_t count = surface.vertices.size();
+  std::vector<std::int32_t> voxel(count, -1);
+  std::vector<std::array<float, 3>> coordinates(count);
+  parallel_for(monitor, count, grain,
+               [&](std::size_t v)
+               { binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]); });
+
+  BoundMesh bound;
+  std::vector<bool> keep(surface.triangles.size(), true);
+  for (std::size_t t = 0; t < keep.size(); ++t)
+  {
+    for (const std::int32_t v : surface.triangles[t])
+    {
+      if (voxel[v] >= 0)
+        continue;
+      bound.unbound = vertex(surface, v);
+      keep[t] = false;
+    }
+    bound.too_far += keep[t] ? 0 : 1;
+  }
+  bound.triangles = surface.triangles.size();
+  std::vector<std::int32_t> vertex_of;
+  bound.mesh = frame.to_local(keep_triangles(surface, keep, &vertex_of));
+  for (const std::int32_t v : vertex_of)
+  {
+    bound.binding.voxel.push_back(voxel[v]);
+    bound.binding.coordinates.push_back(coordinates[v]);
+  }
+  return bound;
+}
+
+void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
+{
+  const TriangleTree tree(model.skin);
+  for (const SceneLandmark& landmark : scene.landmarks)
+  {
+    const std::string place = place_in_scene(scene, "landmark", landmark);
+    const ClosestPoint closest = tree.closest(frame.to_local(to_vector(landmark.position)));
+    if (closest.triangle < 0)
+      throw Error(place + ": there is no published skin on which it could lie");
+    if (closest.distance > farthest_landmark)
+      throw failure(
+          "{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the skin's crop",
+          place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit));
+    std::int32_t voxel = -1;
+    std::array<float, 3> coordinates{};
+    if (!binder.bind(closest.point, voxel, coordinates))
+      throw Error(place + ": no voxel is near enough to carry it; raise the skin's 'extrapolation'");
+    model.landmarks.push_back(landmark.name);
+    model.landmark_positions.push_back(to_array(closest.point));
+    model.landmark_binding.voxel.push_back(voxel);
+    model.landmark_binding.coordinates.push_back(coordinates);
+  }
+}
+
+}  // namespace
+
+double extrapolation_of(const Scene& scene, const Model& model)
+{
+  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
+  return scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+}
+
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
+                    double extrapolation, BakeMonitor& monitor)
+{
+  return bind_mesh(whole, crop, frame, PointBinder(model, extrapolation), monitor);
 }
 
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
@@ -155,17 +156,16 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
     BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, monitor);
     if (bound.mesh.triangles.empty())
-      throw Error(
-          fmt::format("{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check "
-                      "its crop and the tissue volumes",
-                      scene.file, scene.skin.surface, length_text(extrapolation, scene.unit)));
+      throw failure(
+          "{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check its crop and the "
+          "tissue volumes",
+          scene.file, scene.skin.surface, length_text(extrapolation, scene.unit));
     if (bound.too_far > 0)
-      throw Error(
-          fmt::format("{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can "
-                      "carry, for example at {}: it is farther than {} from the tissue; crop the skin to the "
-                      "tissue, or raise its 'extrapolation'",
-                      scene.file, bound.too_far, bound.triangles, scene.skin.surface,
-                      place_text(bound.unbound, scene.unit), length_text(extrapolation, scene.unit)));
+      throw failure(
+          "{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can carry, for example "
+          "at {}: it is farther than {} from the tissue; crop the skin to the tissue, or raise its 'extrapolation'",
+          scene.file, bound.too_far, bound.triangles, scene.skin.surface, place_text(bound.unbound, scene.unit),
+          length_text(extrapolation, scene.unit));
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }
@@ -188,11 +188,10 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
       BoundMesh bound =
           bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, monitor);
       if (bound.mesh.triangles.empty())
-        throw Error(fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
-                                load.surface, length_text(extrapolation, scene.unit)));
+        throw failure("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
+                      load.surface, length_text(extrapolation, scene.unit));
       if (bound.too_far > 0)
-        monitor.found(
-            fmt::format("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far));
+        monitor.found("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far);
       out.kind = load.kind == SceneLoad::Kind::pressure ? Load::Kind::pressure : Load::Kind::traction;
       if (out.kind == Load::Kind::pressure)
         out.value = load.value;

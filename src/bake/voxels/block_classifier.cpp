@@ -1,20 +1,9 @@
 #include "bake/voxels/block_classifier.hpp"
 
-#include "frontalis/error.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace frontalis
 {
-namespace
-{
-
-constexpr double beyond_all_thresholds = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min)
     : volumes_(volumes),
@@ -27,25 +16,23 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  // R3 sequence: steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
-  const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
+  // the first sample is the middle of the voxel
   for (int s = 0; s < samples * samples * samples; ++s)
-    offsets_.push_back(
-        { std::fmod(0.5 + s * step[0], 1.0), std::fmod(0.5 + s * step[1], 1.0), std::fmod(0.5 + s * step[2], 1.0) });
+    offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
   voxels_.volume_size.assign(volumes.entries().size(), 0);
-  volume_share_.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
   for (const Volumes::Entry& entry : volumes.entries())
   {
     materials = std::max(materials, entry.material + 1);
     muscles = std::max(muscles, entry.muscle + 1);
-    band_share_.emplace_back(entry.bands.empty() ? 0 : entry.bands.size() + 1, 0);
+    nothing_.band.emplace_back(entry.bands.empty() ? 0 : entry.bands.size() + 1, 0);
     for (const Volumes::Band& band : entry.bands)
       materials = std::max(materials, band.material + 1);
   }
-  voxels_.band_size = band_share_;
-  material_share_.assign(materials, 0);
-  muscle_share_.assign(muscles, 0);
+  nothing_.material.assign(materials, 0);
+  nothing_.muscle.assign(muscles, 0);
+  nothing_.volume = voxels_.volume_size;
+  voxels_.band_size = nothing_.band;
 }
 
 void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end)
@@ -70,7 +57,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
 
   if (known)
   {
-    clear_shares();
+    share_ = nothing_;
     std::vector<double> depth;
     for (const auto& d : state.depth)
       depth.push_back(d.value);
@@ -81,21 +68,21 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
         for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
           add_voxel({ i, j, k }, 1);
     for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
-      volume_share_[v] = state.inside_volume[v] == Answer::yes ? 1 : 0;
+      share_.volume[v] = state.inside_volume[v] == Answer::yes ? 1 : 0;
     add_sizes(voxels);
     return;
   }
   if (end == VoxelPlace{ begin[0] + 1, begin[1] + 1, begin[2] + 1 })
   {
     sample(box, state);
-    const double fill = std::accumulate(material_share_.begin(), material_share_.end(), 0.0);
+    const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
     add_sizes(1);
     if (fill > 0 && fill >= fill_min_)
       add_voxel(begin, fill);
     return;
   }
 
-  // halves along each side that is longer than a voxel
+  // halve the block along each side that is longer than a voxel
   for (int part = 0; part < 8; ++part)
   {
     VoxelPlace from{}, to{};
@@ -113,22 +100,13 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
   }
 }
 
-void BlockClassifier::clear_shares()
-{
-  std::fill(material_share_.begin(), material_share_.end(), 0);
-  std::fill(muscle_share_.begin(), muscle_share_.end(), 0);
-  std::fill(volume_share_.begin(), volume_share_.end(), 0);
-  for (auto& bands : band_share_)
-    std::fill(bands.begin(), bands.end(), 0);
-}
-
 void BlockClassifier::add_sizes(double voxels)
 {
-  for (std::size_t v = 0; v < volume_share_.size(); ++v)
+  for (std::size_t v = 0; v < share_.volume.size(); ++v)
   {
-    voxels_.volume_size[v] += volume_share_[v] * voxels * voxel_volume_;
-    for (std::size_t b = 0; b < band_share_[v].size(); ++b)
-      voxels_.band_size[v][b] += band_share_[v][b] * voxels * voxel_volume_;
+    voxels_.volume_size[v] += share_.volume[v] * voxels * voxel_volume_;
+    for (std::size_t b = 0; b < share_.band[v].size(); ++b)
+      voxels_.band_size[v][b] += share_.band[v][b] * voxels * voxel_volume_;
   }
 }
 
@@ -139,33 +117,29 @@ void BlockClassifier::decide_volume(std::size_t volume, const Box& box, BlockSta
   if (answer != Answer::unknown)
     return;
   answer = volume_answer(volume, box, state);
-  // the cheapest question first; each only while the answer is not known
-  if (answer == Answer::unknown && entry.within && !state.depth[*entry.within].known)
+  // evaluate cheap conditions first, and others only while the answer is unknown
+  const auto ask = [&](bool known, const auto& decide)
   {
-    decide_depth(*entry.within, box, state);
-    answer = volume_answer(volume, box, state);
-  }
-  const auto ask_body = [&](std::size_t b)
-  {
-    if (answer != Answer::unknown || state.inside_body[b] != Answer::unknown)
+    if (known || answer != Answer::unknown)
       return;
-    decide_body(b, box, state);
+    decide();
     answer = volume_answer(volume, box, state);
   };
+  const auto ask_body = [&](std::size_t b)
+  { ask(state.inside_body[b] != Answer::unknown, [&] { decide_body(b, box, state); }); };
+  if (entry.within)
+    ask(state.depth[*entry.within].known, [&] { decide_depth(*entry.within, box, state); });
   if (entry.closed_by)
     ask_body(*entry.closed_by);
   std::for_each(entry.inside.begin(), entry.inside.end(), ask_body);
   std::for_each(entry.outside.begin(), entry.outside.end(), ask_body);
-  if (entry.needs_sight() && answer == Answer::unknown && state.in_sight[volume] == Answer::unknown)
-  {
-    decide_sight(volume, box, state);
-    answer = volume_answer(volume, box, state);
-  }
+  if (entry.needs_sight())
+    ask(state.in_sight[volume] != Answer::unknown, [&] { decide_sight(volume, box, state); });
 }
 
 bool BlockClassifier::decide(const Box& box, BlockState& state)
 {
-  // tissue first: where there is none, nothing else needs to be known
+  // decide tissue volumes first: without tissue nothing else needs to be known
   bool tissue = false;
   for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
   {
@@ -221,12 +195,13 @@ void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState
   const ClosestPoint closest = surface->tree().closest(centre, farthest + radius);
   if (closest.triangle < 0)
   {
-    state.depth[field] = { true, beyond_all_thresholds };
+    // the surface is farther from the whole block than the largest threshold
+    state.depth[field] = { true, std::numeric_limits<double>::infinity() };
     return;
   }
   const double depth = -surface->signed_distance(centre, closest);
   double low = depth - radius, high = depth + radius;
-  // near the rim of an open surface the sign may change at a distance from it
+  // near the border of an open surface the depth may change sign without passing 0
   if (!surface->closed() && surface->rim_within(centre, closest.distance + 2 * radius))
   {
     high = closest.distance + radius;
@@ -238,7 +213,7 @@ void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState
 
 void BlockClassifier::decide_sight(std::size_t volume, const Box& box, BlockState& state) const
 {
-  // a block that no hiding surface passes through lies on one side of all of them
+  // undecided as long as a hiding surface may pass through the block
   const Volumes::Entry& entry = volumes_.entries()[volume];
   if (entry.any_hiding([&](std::size_t b) { return state.inside_body[b] == Answer::unknown; }))
     return;
@@ -265,7 +240,7 @@ bool BlockClassifier::in_sight(const Volumes::Entry& entry, const Vector3d& p, d
 
 Answer BlockClassifier::volume_answer(std::size_t volume, const Box& box, const BlockState& state) const
 {
-  // a volume is what all its conditions have in common
+  // a volume is the intersection of its conditions
   const Volumes::Entry& entry = volumes_.entries()[volume];
   Answer all = Answer::yes;
   const auto require = [&all](Answer condition)

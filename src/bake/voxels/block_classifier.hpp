@@ -1,9 +1,6 @@
 #pragma once
 
-#include "bake/voxels/volumes.hpp"
 #include "bake/voxels/voxelise.hpp"
-
-#include <vector>
 
 namespace frontalis
 {
@@ -21,7 +18,7 @@ struct BlockState
   struct Depth
   {
     bool known = false;  ///< no threshold of the depth field lies in the block
-    double value = 0;    ///< if known: a depth between the same thresholds as all depths in the block [m]
+    double value = 0;    ///< if known: depth of the block's centre [m], between the same thresholds as all its depths
   };
   std::vector<Answer> inside_body;    ///< one answer per body
   std::vector<Depth> depth;           ///< one per depth field
@@ -29,14 +26,14 @@ struct BlockState
   std::vector<Answer> in_sight;       ///< one per volume; see Volumes::Entry::needs_sight()
 };
 
-/// Finds what the voxels of a block consist of. A uniform block is decided as a whole; any other is halved, down
-/// to single voxels, which are sampled. Not safe for use by several threads at once.
+/// Finds the materials and muscles in the voxels of a block. A uniform block is decided as a whole; any other is halved
+/// repeatedly, down to single voxels, which are sampled. Not thread-safe.
 class BlockClassifier
 {
 public:
   BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min);
 
-  /// Adds the voxels from begin to end (exclusive).
+  /// Adds the voxels of the block from `begin` to `end` (exclusive).
   void visit(const VoxelPlace& begin, const VoxelPlace& end);
 
   Voxels take() { return std::move(voxels_); }
@@ -44,7 +41,7 @@ public:
 private:
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
 
-  // Find what is not known yet about a block. decide() returns whether everything is known then.
+  // These determine unknown entries of a block's state. decide() returns whether all entries are known then.
   bool decide(const Box& box, BlockState& state);
   void decide_volume(std::size_t volume, const Box& box, BlockState& state);
   void decide_body(std::size_t body, const Box& box, BlockState& state) const;
@@ -59,8 +56,6 @@ private:
   double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
   bool in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const;
 
-  // proportions in a voxel, or in each voxel of a uniform block
-  void clear_shares();
   void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
   void add_voxel(const VoxelPlace& place, double fill);
@@ -70,21 +65,24 @@ private:
   double fill_min_;
   double voxel_volume_;
   double reach_;                   ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;  ///< from the voxel's corner to the samples, in voxels
+  std::vector<Vector3d> offsets_;  ///< from the voxel's lower corner to the samples, in voxel edges
   Voxels voxels_;
 
-  std::vector<double> material_share_;
-  std::vector<double> muscle_share_;
-  std::vector<double> volume_share_;
-  std::vector<std::vector<double>> band_share_;
+  /// Proportions of a voxel, or of each voxel of a uniform block, by index.
+  struct Proportions
+  {
+    std::vector<double> material, muscle, volume;
+    std::vector<std::vector<double>> band;
+  };
+  Proportions nothing_, share_;
 
-  // What is found once at the middle of the sampled voxel and holds near it.
+  // Data computed once per sampled voxel, near its middle, and used for all its samples.
   struct NearbyBody
   {
     bool known = false;
     std::vector<std::int32_t> triangles;  ///< triangles that overlap the voxel
     double winding = 0;                   ///< winding number at the middle
-    double variation = 0;                 ///< bound on its change within the voxel if no triangle is crossed
+    double variation = 0;  ///< bound on the change of `winding` within the voxel if no triangle is crossed
   };
   struct NearbyDepth
   {
@@ -92,13 +90,13 @@ private:
     std::int32_t triangle = -1;  ///< closest to the middle
     double distance = 0;         ///< of the middle [m]
     double depth = 0;            ///< of the middle [m]
-    bool steady = false;         ///< no rim is so near that the depth's sign could change where its value does not
+    bool steady = false;         ///< no border is so near that the depth may change sign without passing 0
   };
   Vector3d middle_{ 0, 0, 0 };
   std::vector<NearbyBody> nearby_body_;
   std::vector<NearbyDepth> nearby_depth_;
 
-  // answers already found for the present sample; -1 or NaN: none yet
+  // answers found for the current sample; -1 or NaN: none yet
   std::vector<std::int8_t> body_here_;
   std::vector<double> depth_here_;
 };

@@ -1,9 +1,6 @@
 #include "bake/voxels/contact_bodies.hpp"
 
 #include "bake/messages.hpp"
-#include "bake/parallel.hpp"
-#include "bake/voxels/bind_points.hpp"
-#include "frontalis/error.hpp"
 #include "frontalis/model/sample_field.hpp"
 
 #include <algorithm>
@@ -172,7 +169,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     const std::string& on = constraint.on.empty() ? scene.skin.surface : constraint.on;
     const TriangleMesh surface = refined(named_surface(surfaces, on, place).mesh(), to_box(constraint.crop),
                                          *std::min_element(model.spacing.begin(), model.spacing.end()));
-    const BoundMesh bound = bind_mesh(surface, constraint.crop, frame, PointBinder(model, extrapolation), monitor);
+    const BoundMesh bound = bind_mesh(surface, constraint.crop, frame, model, extrapolation, monitor);
     if (bound.mesh.triangles.empty())
       throw Error(
           fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue; check 'on' "

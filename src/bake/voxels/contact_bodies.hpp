@@ -1,7 +1,6 @@
 #pragma once
 
-#include "bake/mesh/surface.hpp"
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
 {

@@ -1,51 +1,44 @@
 #include "bake/messages.hpp"
-#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
-#include <algorithm>
-#include <numeric>
+#include <boost/pending/disjoint_sets.hpp>
 
 namespace frontalis
 {
 namespace
 {
 
-/// Number of the connected part that each voxel belongs to. `sizes` receives the numbers of voxels of the parts.
+/// Index of each voxel's component, connected by faces. `sizes` receives the number of voxels in each component.
 std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
 {
   const VoxelIndex index(model.voxels, model.size);
-  std::vector<std::int32_t> component(model.voxels.size(), -1);
-  std::vector<std::size_t> front;
-  for (std::size_t seed = 0; seed < component.size(); ++seed)
-  {
-    if (component[seed] >= 0)
-      continue;
-    const auto number = static_cast<std::int32_t>(sizes.size());
-    std::size_t size = 0;
-    component[seed] = number;
-    front.push_back(seed);
-    while (!front.empty())
+  const std::size_t count = model.voxels.size();
+  boost::disjoint_sets_with_storage<> parts(count);
+  for (std::size_t e = 0; e < count; ++e)
+    for (std::size_t a = 0; a < 3; ++a)
     {
-      const std::size_t e = front.back();
-      front.pop_back();
-      ++size;
-      for (int side = 0; side < 6; ++side)
-      {
-        auto place = model.voxels[e];
-        place[side / 2] += side % 2 == 0 ? -1 : 1;
-        const std::int32_t other = index.find(place);
-        if (other < 0 || component[other] >= 0)
-          continue;
-        component[other] = number;
-        front.push_back(other);
-      }
+      auto place = model.voxels[e];
+      --place[a];
+      if (const std::int32_t other = index.find(place); other >= 0)
+        parts.union_set(e, static_cast<std::size_t>(other));
     }
-    sizes.push_back(size);
+  std::vector<std::int32_t> number(count, -1), component(count);
+  for (std::size_t e = 0; e < count; ++e)
+  {
+    std::int32_t& own = number[parts.find_set(e)];
+    if (own < 0)
+    {
+      own = static_cast<std::int32_t>(sizes.size());
+      sizes.push_back(0);
+    }
+    component[e] = own;
+    ++sizes[own];
   }
   return component;
 }
 
-/// Gives the restricted nodes their new numbers and removes those that are gone.
+/// Renumbers restricted nodes and removes those without a new number (-1).
 template <class Restricted>
 void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& number)
 {
@@ -59,7 +52,7 @@ void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& nu
   list.resize(kept);
 }
 
-/// Keeps the entries of the voxels that stay, in lists that `begin` divides up by voxels.
+/// Keeps the entries of the voxels that stay. In each list, those of voxel e are begin[e] .. begin[e + 1].
 template <class... Lists>
 void keep_entries(const std::vector<bool>& keep, std::vector<std::int32_t>& begin, Lists&... lists)
 {
@@ -92,16 +85,14 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
   model.voxels.resize(kept);
   model.fill.resize(kept);
 
-  // the nodes that stay are in the same order as before
+  // the nodes that stay keep their order
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);
   build_nodes(model);
   std::vector<std::int32_t> number(old.size(), -1);
   std::size_t at = 0;
   for (std::size_t n = 0; n < old.size() && at < model.nodes.size(); ++n)
-  {
     if (old[n] == model.nodes[at])
       number[n] = static_cast<std::int32_t>(at++);
-  }
   renumber(model.rigid, number);
   renumber(model.sliding, number);
   renumber(model.prescribed, number);
@@ -126,13 +117,9 @@ void remove_islands(Model& model, BakeMonitor& monitor)
   mark(model.prescribed);
   std::vector<bool> held(sizes.size(), false);
   for (std::size_t e = 0; e < component.size(); ++e)
-  {
     for (const std::int32_t n : model.voxel_nodes[e])
-    {
       if (restricted[n])
         held[component[e]] = true;
-    }
-  }
 
   const std::size_t largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
   std::vector<bool> stays(sizes.size());
@@ -142,7 +129,7 @@ void remove_islands(Model& model, BakeMonitor& monitor)
     stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
     if (stays[c])
       continue;
-    (held[c] ? crumbs : islands) += 1;  // a crumb has restricted nodes but is small
+    (held[c] ? crumbs : islands) += 1;  // crumb: a small component with restricted nodes
     voxels += sizes[c];
   }
   if (voxels == 0)
@@ -152,9 +139,9 @@ void remove_islands(Model& model, BakeMonitor& monitor)
     keep[e] = stays[component[e]];
   keep_voxels(model, keep);
   monitor.found(
-      fmt::format("{} voxels removed: {} islands that nothing holds and {} small parts that hang on by an edge "
-                  "or a corner or not at all",
-                  voxels, islands, crumbs));
+      "{} voxels removed: {} islands that nothing holds and {} small parts that are connected to the rest by no face "
+      "of a voxel",
+      voxels, islands, crumbs);
 }
 
 }  // namespace frontalis

@@ -1,8 +1,7 @@
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 
 #include "bake/voxels/voxel_index.hpp"
 
-#include <algorithm>
 #include <numeric>
 #include <tuple>
 
@@ -11,21 +10,18 @@ namespace frontalis
 namespace
 {
 
-/// Scene axis along which rows of voxels are longest, because there are the fewest of them.
+/// Scene axis along which the voxels form the fewest rows, which are therefore the longest.
 int longest_rows(const Grid& grid, const Voxels& voxels)
 {
   const VoxelIndex index(voxels.place, grid.size);
   std::array<std::size_t, 3> rows{ { 0, 0, 0 } };
   for (const auto& place : voxels.place)
-  {
     for (std::size_t a = 0; a < 3; ++a)
     {
       auto before = place;
       --before[a];
-      if (index.find(before) < 0)
-        ++rows[a];
+      rows[a] += index.find(before) < 0 ? 1 : 0;
     }
-  }
   return static_cast<int>(std::min_element(rows.begin(), rows.end()) - rows.begin());
 }
 
@@ -40,13 +36,11 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
   // trim the grid to the voxels
   VoxelPlace lower = voxels.place.front(), upper = lower;
   for (const auto& place : voxels.place)
-  {
     for (std::size_t a = 0; a < 3; ++a)
     {
       lower[a] = std::min(lower[a], place[a]);
       upper[a] = std::max(upper[a], place[a]);
     }
-  }
   frame.origin = grid.corner(lower);
   model.spacing = to_array(frame.turn(grid.spacing));
   for (int a = 0; a < 3; ++a)
@@ -68,26 +62,23 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
               return std::tie(p[2], p[1], p[0]) < std::tie(q[2], q[1], q[0]);
             });
 
+  const auto copy = [](const Shares& from, std::uint32_t e, auto& begin, auto& number, auto& share)
+  {
+    const std::int32_t first = from.begin[e], last = from.begin[e + 1];
+    number.insert(number.end(), from.number.begin() + first, from.number.begin() + last);
+    share.insert(share.end(), from.share.begin() + first, from.share.begin() + last);
+    begin.push_back(static_cast<std::int32_t>(number.size()));
+  };
   model.mixture_begin.push_back(0);
   model.fibre_begin.push_back(0);
   for (const std::uint32_t e : order)
   {
     model.voxels.push_back(places[e]);
     model.fill.push_back(voxels.fill[e]);
-    for (std::uint32_t m = voxels.mixture_begin[e]; m < voxels.mixture_begin[e + 1]; ++m)
-    {
-      model.mixture_material.push_back(voxels.material[m]);
-      model.mixture_proportion.push_back(voxels.proportion[m]);
-    }
-    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
-    for (std::uint32_t m = voxels.muscle_begin[e]; m < voxels.muscle_begin[e + 1]; ++m)
-    {
-      model.fibre_muscle.push_back(voxels.muscle[m]);
-      model.fibre_weight.push_back(voxels.weight[m]);
-      model.fibre_direction.push_back({ 0, 0, 0 });
-    }
-    model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
+    copy(voxels.materials, e, model.mixture_begin, model.mixture_material, model.mixture_proportion);
+    copy(voxels.muscles, e, model.fibre_begin, model.fibre_muscle, model.fibre_weight);
   }
+  model.fibre_direction.resize(model.fibre_muscle.size());
   return frame;
 }
 

@@ -1,11 +1,8 @@
-#include "bake/available_memory.hpp"
 #include "frontalis/error.hpp"
 #include "bake/messages.hpp"
-#include "bake/mesh/spread_points.hpp"
-#include "bake/voxels/volume_probe.hpp"
 #include "bake/voxels/voxelise.hpp"
 
-#include <algorithm>
+#include <fstream>
 
 namespace frontalis
 {
@@ -13,13 +10,14 @@ namespace
 {
 
 constexpr double least_voxels = 8;
-constexpr double most_voxels = 2.5e8;  // eight node numbers per voxel must have indices of 32 bits
-// Measured peaks of bakes of about a million voxels are 230 to 270 bytes per voxel; more muscles take more.
+constexpr double most_voxels = 2.5e8;  // eight node numbers per voxel need indices below 2^31
+// The measured peak is 230 to 270 bytes per voxel for about a million voxels; the rest is for scenes with more muscles.
 constexpr double bytes_per_voxel = 400;
 constexpr double bytes_per_cell = 0.15;
 constexpr int samples = 2000;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Estimated number of voxels with tissue, by the proportion of points in the box that lie in the tissue.
+/// Number of voxels with tissue, estimated from the proportion of points in the box that lie in the tissue.
 double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
 {
   int inside = 0;
@@ -33,7 +31,37 @@ double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
   return std::max(1.0, static_cast<double>(inside)) / samples * cells;
 }
 
-/// Names the length unit by which the tissue would have the size of a face or a part of one, if there is one.
+/// The number that follows the word `after` in a file, or its first number if `after` is empty. Infinite if missing.
+double number_in(const std::string& path, const std::string& after)
+{
+  std::ifstream file(path);
+  std::string word;
+  double value = 0;
+  while (!after.empty() && file >> word && word != after)
+  {
+  }
+  return file >> value ? value : infinite;
+}
+
+/// Memory that this process can still allocate [bytes]: the smaller of the system's available memory and the rest of
+/// the control group's limit. Infinite if neither is known.
+double available_memory()
+{
+  const double system = 1024 * number_in("/proc/meminfo", "MemAvailable:");
+  double group = infinite;
+  for (const std::string folder : { "/sys/fs/cgroup/", "/sys/fs/cgroup/memory/" })
+  {
+    const double limit =
+        std::min(number_in(folder + "memory.max", ""), number_in(folder + "memory.limit_in_bytes", ""));
+    const double used =
+        std::min(number_in(folder + "memory.current", ""), number_in(folder + "memory.usage_in_bytes", ""));
+    if (limit < infinite && used < infinite)
+      group = std::min(group, std::max(0.0, limit - used));
+  }
+  return std::min(system, group);
+}
+
+/// Suggests a length unit with which the tissue would have the size of a face or of a part of a face.
 std::string unit_advice(double extent, double unit)
 {
   for (const double other : { 1e-3, 1.0, 1e-2, 1e-6, 0.0254 })
@@ -58,7 +86,7 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
 {
   const Vector3d spacing = to_vector(scene.accuracy.voxel);
   if (!(spacing.minCoeff() > 0))
-    throw Error(fmt::format("{}: voxel edge {:g} m; it must be above 0", scene.file, spacing.minCoeff()));
+    throw failure("{}: voxel edge {:g} m; it must be above 0", scene.file, spacing.minCoeff());
   const Box box = volumes.tissue_box();
   const Vector3d extent = box.sizes();
   const Vector3d cells = (extent.cwiseQuotient(spacing).array() - 1e-6).ceil().max(1);
@@ -71,19 +99,18 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
   const std::string spans = scene.file + ": the tissue spans " + edges_text(extent) + ", which is ";
   const std::string advice = unit_advice(extent.maxCoeff(), scene.unit);
   if (count < least_voxels)
-    throw Error(fmt::format("{}{} {} of {}; at least {} are needed{}", spans, number_text(count),
-                            count == 1 ? "voxel" : "voxels", edges_text(spacing), least_voxels, advice));
+    throw failure("{}{} {} of {}; at least {} are needed{}", spans, number_text(count), count == 1 ? "voxel" : "voxels",
+                  edges_text(spacing), least_voxels, advice);
 
-  // more cells along an axis than 32 bits can count cannot be baked, however few of them are tissue
+  // cells along an axis are counted with 32 bits, however few of them are tissue
   const bool absurd = cells.maxCoeff() > 1e9 || count > 1e15;
   const double voxels = absurd ? count : estimated_voxels(volumes, box, count);
   const double bytes = bytes_per_voxel * voxels + bytes_per_cell * count;
   const double available = available_memory();
   if (voxels > most_voxels || bytes > available)
-    throw Error(
-        fmt::format("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels can be had{}",
-                    spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
-                    number_text(std::min(most_voxels, available / bytes_per_voxel)), advice));
+    throw failure("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels are possible{}",
+                  spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
+                  number_text(std::min(most_voxels, available / bytes_per_voxel)), advice);
   Grid grid;
   grid.lower = box.min();
   grid.spacing = spacing;

@@ -1,17 +1,11 @@
-#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/model_stages.hpp"
 
-#include "frontalis/error.hpp"
 #include "frontalis/model/sample_field.hpp"
 #include "bake/messages.hpp"
-#include "bake/parallel.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
 
 namespace frontalis
 {
@@ -68,8 +62,8 @@ public:
   {
     auto& sheet = sheet_[&surface];
     if (!sheet)
-      sheet = std::make_unique<PreparedSurface>(
-          surface.name(), tissue_sheet(surface, tissue_side(surface), frame_, model_), surface.line());
+      sheet = std::make_unique<PreparedSurface>(surface.name(),
+                                                tissue_sheet(surface, tissue_side(surface), frame_, model_));
     return *sheet;
   }
 
@@ -143,12 +137,16 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     prescribed,
     rigid
   };
-  std::vector<Kind> kind(nodes, Kind::free);
-  std::vector<std::int32_t> of(nodes, -1);  // bone of a rigid node, surface of a sliding one
-  std::vector<std::int32_t> held_by(nodes, -1);
-  std::vector<double> distance(nodes, 0);
-  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; of those
-  // to slide on, the sheet that tissue faces
+  struct Restriction
+  {
+    Kind kind = Kind::free;
+    std::int32_t of = -1;  // bone of a rigid node, surface of a sliding one
+    std::int32_t constraint = -1;
+    double distance = 0;  // from the surface of a sliding node [m]
+  };
+  std::vector<Restriction> restrictions(nodes);
+  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; of surfaces
+  // to slide on, it is the sheet that faces tissue
   const auto for_each_node = [&](const std::string& place, const std::vector<std::string>& names, const auto& part,
                                  const auto& restrict, bool slides = false)
   {
@@ -167,10 +165,9 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
       }
     }
     if (!any)
-      throw Error(
-          fmt::format("{}: no tissue node lies within {} of its surface inside its crop; check the surface, the "
-                      "crop and 'within'",
-                      place, length_text(finder.reach_of(part.within), scene.unit)));
+      throw failure(
+          "{}: no tissue node lies within {} of its surface inside its crop; check the surface, the crop and 'within'",
+          place, length_text(finder.reach_of(part.within), scene.unit));
   };
 
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
@@ -183,11 +180,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
                   [&](std::size_t n, double, const PreparedSurface&)
                   {
-                    if (kind[n] == Kind::rigid)
-                      return;
-                    kind[n] = Kind::rigid;
-                    of[n] = bone;
-                    held_by[n] = static_cast<std::int32_t>(c);
+                    if (restrictions[n].kind != Kind::rigid)
+                      restrictions[n] = { Kind::rigid, bone, static_cast<std::int32_t>(c) };
                   });
   }
 
@@ -199,9 +193,9 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     for_each_node(place_in_scene(scene, "load", load), { load.surface }, load,
                   [&](std::size_t n, double, const PreparedSurface&)
                   {
-                    if (kind[n] == Kind::rigid)
+                    if (restrictions[n].kind == Kind::rigid)
                       return;
-                    kind[n] = Kind::prescribed;
+                    restrictions[n].kind = Kind::prescribed;
                     model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
                   });
   }
@@ -233,32 +227,30 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
         [&](std::size_t n, double d, const PreparedSurface& sheet)
         {
           const std::int32_t index = index_of(sheet);
-          if (kind[n] > Kind::sliding || (kind[n] == Kind::sliding && std::abs(distance[n]) <= std::abs(d)))
-            return;
-          kind[n] = Kind::sliding;
-          of[n] = index;
-          held_by[n] = static_cast<std::int32_t>(c);
-          distance[n] = d;
+          const Restriction& known = restrictions[n];
+          if (known.kind < Kind::sliding || (known.kind == Kind::sliding && std::abs(d) < std::abs(known.distance)))
+            restrictions[n] = { Kind::sliding, index, static_cast<std::int32_t>(c), d };
         },
         true);
   }
 
   std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes that slide on each
   for (std::size_t n = 0; n < nodes; ++n)
-    if (kind[n] == Kind::sliding)
-      rest[of[n]].push_back(rest_position(model, n));
+    if (restrictions[n].kind == Kind::sliding)
+      rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
   for (std::size_t s = 0; s < sheets.size(); ++s)
     model.constraint_surfaces[s].field =
         distance_field(*sheets[s].first, *sheets[s].second, rest[s], frame, model, monitor);
 
   for (std::size_t n = 0; n < nodes; ++n)
   {
-    if (kind[n] == Kind::rigid)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), of[n], held_by[n] });
-    else if (kind[n] == Kind::sliding)
-      model.sliding.push_back({ static_cast<std::int32_t>(n), of[n],
-                                level_at(model.constraint_surfaces[of[n]].field, rest_position(model, n)),
-                                held_by[n] });
+    const auto node = static_cast<std::int32_t>(n);
+    const auto& [kind, of, constraint, distance] = restrictions[n];
+    if (kind == Kind::rigid)
+      model.rigid.push_back({ node, of, constraint });
+    else if (kind == Kind::sliding)
+      model.sliding.push_back(
+          { node, of, level_at(model.constraint_surfaces[of].field, rest_position(model, node)), constraint });
   }
 }
 

@@ -1,9 +1,6 @@
 #include "bake/messages.hpp"
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
-
-#include <cmath>
-#include <vector>
 
 namespace frontalis
 {
@@ -12,22 +9,25 @@ namespace
 
 using Polygon = std::vector<Vector3d>;
 
-constexpr double most_of_voxel = 0.9;  // the largest proportion of a voxel that thin layers may take
+constexpr double most_of_voxel = 0.9;  // largest proportion of a voxel that a thin layer may fill
 
-/// Keeps the part of a polygon on one side of a plane: below `limit` along the axis for sign +1, above it for -1.
-void clip(Polygon& polygon, Polygon& scratch, int axis, double limit, double sign)
+/// Keeps the part of a polygon from `low` to `high` along an axis.
+void clip(Polygon& polygon, Polygon& scratch, int axis, double low, double high)
 {
-  scratch.clear();
-  for (std::size_t v = 0; v < polygon.size(); ++v)
+  for (const auto& [limit, sign] : { std::make_pair(low, -1.0), std::make_pair(high, 1.0) })
   {
-    const Vector3d &p = polygon[v], &q = polygon[(v + 1) % polygon.size()];
-    const double dp = sign * (limit - p[axis]), dq = sign * (limit - q[axis]);
-    if (dp >= 0)
-      scratch.push_back(p);
-    if ((dp >= 0) != (dq >= 0))
-      scratch.push_back(p + (dp / (dp - dq)) * (q - p));
+    scratch.clear();
+    for (std::size_t v = 0; v < polygon.size(); ++v)
+    {
+      const Vector3d &p = polygon[v], &q = polygon[(v + 1) % polygon.size()];
+      const double dp = sign * (limit - p[axis]), dq = sign * (limit - q[axis]);
+      if (dp >= 0)
+        scratch.push_back(p);
+      if ((dp >= 0) != (dq >= 0))
+        scratch.push_back(p + (dp / (dp - dq)) * (q - p));
+    }
+    polygon.swap(scratch);
   }
-  polygon.swap(scratch);
 }
 
 double area(const Polygon& polygon)
@@ -43,43 +43,38 @@ class AreaInVoxels
 {
 public:
   AreaInVoxels(const Model& model, const LocalFrame& frame, const Region& crop)
-      : model_(model), index_(model.voxels, model.size), area_(model.voxels.size(), 0)
+      : model_(model),
+        index_(model.voxels, model.size),
+        area_(model.voxels.size(), 0),
+        crop_(frame.to_local(to_vector(crop.lower)), frame.to_local(to_vector(crop.upper)))
   {
-    crop_ = Box(frame.to_local(to_vector(crop.lower)), frame.to_local(to_vector(crop.upper)));
   }
 
-  void add(const Vector3d& a, const Vector3d& b, const Vector3d& c)
+  void add(const std::array<Vector3d, 3>& v)
   {
-    const Vector3d normal = (b - a).cross(c - a);
-    Polygon whole{ a, b, c };
+    Polygon whole(v.begin(), v.end());
     for (int axis = 0; axis < 3; ++axis)
-    {
-      clip(whole, scratch_, axis, crop_.min()[axis], -1);
-      clip(whole, scratch_, axis, crop_.max()[axis], 1);
-    }
-    add_along(whole, 0, normal, { 0, 0, 0 });
+      clip(whole, scratch_, axis, crop_.min()[axis], crop_.max()[axis]);
+    add_along(whole, 0, (v[1] - v[0]).cross(v[2] - v[0]), { 0, 0, 0 });
   }
 
   const std::vector<double>& area() const { return area_; }
 
 private:
-  /// Cuts a polygon up by the grid's planes across `axis`, then by those across the axes that follow. `place` has the
-  /// indices along the axes before.
+  /// Cuts a polygon at the grid planes normal to `axis` and to the following axes, and adds the area of each piece to
+  /// its voxel. `place` has the voxel's indices along the preceding axes.
   void add_along(const Polygon& polygon, int axis, const Vector3d& normal, VoxelPlace place)
   {
     if (polygon.size() < 3)
       return;
     if (axis == 3)
-    {
-      give(place, normal, frontalis::area(polygon));
-      return;
-    }
+      return give(place, normal, frontalis::area(polygon));
     Box box;
     for (const Vector3d& p : polygon)
       box.extend(p);
     const double low = box.min()[axis], high = box.max()[axis];
     const double edge = model_.spacing[axis];
-    // a part of the surface in the plane between two voxels belongs to the one below it
+    // a polygon in the plane between two voxels belongs to the voxel on its inner side
     const double below = high - low < 1e-9 * edge ? (normal[axis] > 0 ? -1e-6 : (normal[axis] < 0 ? 1e-6 : 0)) : 0;
     const auto first = static_cast<std::int32_t>(std::max(-1.0, std::floor(low / edge + below)));
     const auto last = static_cast<std::int32_t>(std::min(model_.size[axis] + 0.0, std::floor(high / edge + below)));
@@ -88,33 +83,24 @@ private:
     {
       place[axis] = at;
       if (first == last)
-      {
-        add_along(polygon, axis + 1, normal, place);
-        return;
-      }
+        return add_along(polygon, axis + 1, normal, place);
       part = polygon;
-      clip(part, scratch, axis, at * edge, -1);
-      clip(part, scratch, axis, (at + 1) * edge, 1);
+      clip(part, scratch, axis, at * edge, (at + 1) * edge);
       add_along(part, axis + 1, normal, place);
     }
   }
 
-  /// Adds area to a voxel. Where it was left out of the model, the one below it carries the layer, or the next below
-  /// that.
+  /// Adds area to a voxel or, if the model has no such voxel, to the first of the next two inwards that exists.
   void give(VoxelPlace place, const Vector3d& normal, double amount)
   {
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
-    for (int step = 0; step < 3; ++step)
-    {
-      const std::int32_t e = index_.find(place);
-      if (e >= 0)
+    for (int step = 0; step<3; ++step, place[axis] += normal[axis]> 0 ? -1 : 1)
+      if (const std::int32_t e = index_.find(place); e >= 0)
       {
         area_[e] += amount;
         return;
       }
-      place[axis] += normal[axis] > 0 ? -1 : 1;
-    }
   }
 
   const Model& model_;
@@ -130,7 +116,7 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
 {
   if (volumes.thin_layers().empty())
     return;
-  // share of each thin layer in each voxel
+  // proportion of each thin layer in each voxel
   std::vector<std::vector<float>> shares;
   const double voxel_volume = model.spacing[0] * model.spacing[1] * model.spacing[2];
   for (const Volumes::ThinLayer& layer : volumes.thin_layers())
@@ -138,10 +124,7 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     AreaInVoxels areas(model, frame, layer.crop);
     const TriangleMesh mesh = frame.to_local(layer.surface->mesh());
     for (const Triangle& t : mesh.triangles)
-    {
-      const auto [a, b, c] = corners(mesh, t);
-      areas.add(a, b, c);
-    }
+      areas.add(corners(mesh, t));
     double wanted = 0, tissue = 0;
     std::size_t voxels = 0;
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
@@ -156,15 +139,12 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     std::vector<float> share(model.voxels.size());
     for (std::size_t e = 0; e < share.size(); ++e)
       share[e] = areas.area()[e] > 0 ? static_cast<float>(given) : 0;
-    monitor.found(fmt::format("layer '{}': too thin to sample; mixed into {} outer voxels, {:.4g} mm3{}", layer.name,
-                              voxels, 1e9 * given * tissue,
-                              given * tissue < 0.99 * wanted ? " (no more, because it would fill them)" : ""));
+    monitor.found("layer '{}': too thin to sample; mixed into {} outer voxels, {:.4g} mm3{}", layer.name, voxels,
+                  1e9 * given * tissue, given * tissue < 0.99 * wanted ? " (limited, because it would fill them)" : "");
     shares.push_back(std::move(share));
   }
 
-  std::vector<std::int32_t> begin{ 0 };
-  std::vector<std::int16_t> material;
-  std::vector<float> proportion;
+  Shares mixed;
   std::vector<double> mixture(model.materials.size());
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
@@ -178,18 +158,11 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
         part *= 1 - share;
       mixture[volumes.thin_layers()[l].material] += share;
     }
-    for (std::size_t m = 0; m < mixture.size(); ++m)
-    {
-      if (mixture[m] <= 0)
-        continue;
-      material.push_back(static_cast<std::int16_t>(m));
-      proportion.push_back(static_cast<float>(mixture[m]));
-    }
-    begin.push_back(static_cast<std::int32_t>(material.size()));
+    mixed.add(mixture, 1);
   }
-  model.mixture_begin = std::move(begin);
-  model.mixture_material = std::move(material);
-  model.mixture_proportion = std::move(proportion);
+  model.mixture_begin = std::move(mixed.begin);
+  model.mixture_material = std::move(mixed.number);
+  model.mixture_proportion = std::move(mixed.share);
 }
 
 }  // namespace frontalis

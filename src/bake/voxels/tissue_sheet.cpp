@@ -1,6 +1,6 @@
 #include "bake/voxels/tissue_sheet.hpp"
 
-#include "bake/parallel.hpp"
+#include "bake/bake_monitor.hpp"
 #include "bake/voxels/voxel_index.hpp"
 #include "frontalis/model/sample_field.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "bake/bake_monitor.hpp"
 #include "bake/mesh/surface.hpp"
-#include "bake/voxels/local_frame.hpp"
+#include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
 {

@@ -1,12 +1,7 @@
-#include "bake/voxels/volume_probe.hpp"
+#include "bake/voxels/volumes.hpp"
 
-#include "frontalis/error.hpp"
 #include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
-#include "bake/mesh/spread_points.hpp"
-
-#include <algorithm>
-#include <vector>
 
 namespace frontalis
 {
@@ -14,8 +9,8 @@ namespace
 {
 
 constexpr int samples = 2000;
-constexpr double clear_winding = 0.75;
-constexpr double most_unclear = 0.1;  // of the points inside
+constexpr double clear_winding = 0.75;  // least winding number of a point that is clearly inside
+constexpr double most_unclear = 0.1;    // largest proportion of other points among those inside
 
 bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {
@@ -51,13 +46,12 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
                                           : fmt::format("the largest of its {} holes is {} around, at {}", holes.size(),
                                                         length_text(holes.front().length, scene.unit),
                                                         place_text(holes.front().centre, scene.unit));
-  throw Error(
-      fmt::format("{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of a hole; "
-                  "{}: close it, name the surface that closes it in 'closed_by', or crop the volume away from it",
-                  volumes.place(*entry.volume), body.name(), inside > 0 ? 100.0 * unclear / inside : 100.0, where));
+  throw failure(
+      "{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of a hole; {}: close it, name "
+      "the surface that closes it in 'closed_by', or crop the volume away from it",
+      volumes.place(*entry.volume), body.name(), inside > 0 ? 100.0 * unclear / inside : 100.0, where);
 }
 
-/// Whether a body contains the point.
 bool contains(const PreparedSurface& body, const Vector3d& p)
 {
   if (body.closed() && !body.box().contains(p))

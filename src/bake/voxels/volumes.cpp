@@ -1,28 +1,9 @@
 #include "bake/voxels/volumes.hpp"
 
 #include "bake/messages.hpp"
-#include "frontalis/error.hpp"
-
-#include <algorithm>
-#include <map>
 
 namespace frontalis
 {
-namespace
-{
-
-template <class Named>
-int index_of(const std::vector<Named>& list, const std::string& name)
-{
-  for (std::size_t i = 0; i < list.size(); ++i)
-  {
-    if (list[i].name == name)
-      return static_cast<int>(i);
-  }
-  return -1;
-}
-
-}  // namespace
 
 Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing)
     : scene_(&scene), surfaces_(&surfaces)
@@ -32,11 +13,7 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
     Entry entry;
     entry.volume = &volume;
     if (!volume.material.empty())
-    {
-      entry.material = index_of(scene.materials, volume.material);
-      if (entry.material < 0)
-        throw Error(place(volume) + ": there is no material '" + volume.material + "'");
-    }
+      entry.material = index_of(scene.materials, volume.material, place(volume), "material");
     else if (volume.tissue)
       throw Error(place(volume) + ": is tissue but has no material; name one");
     try
@@ -51,11 +28,7 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
       for (const std::string& name : volume.without)
         entry.outside.push_back(body_of({ name }));
       if (!volume.within.empty())
-      {
-        entry.within = depth_field_below(volume.within);
-        auto& thresholds = depth_fields_[*entry.within].thresholds;
-        thresholds.insert(thresholds.end(), { volume.depth_min, volume.depth_max });
-      }
+        entry.within = depth_field_below(volume.within, { volume.depth_min, volume.depth_max });
     }
     catch (const Error& error)
     {
@@ -66,13 +39,12 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
   for (std::size_t m = 0; m < scene.muscles.size(); ++m)
   {
     const SceneMuscle& muscle = scene.muscles[m];
-    const int volume = index_of(scene.volumes, muscle.volume.empty() ? muscle.name : muscle.volume);
-    if (volume < 0)
-      throw Error(fmt::format("{}: there is no volume '{}'", place_in_scene(scene, "muscle", muscle), muscle.volume));
-    int& taken = entries_[volume].muscle;
+    const std::string place = place_in_scene(scene, "muscle", muscle);
+    const std::string& volume = muscle.volume.empty() ? muscle.name : muscle.volume;
+    int& taken = entries_[index_of(scene.volumes, volume, place, "volume")].muscle;
     if (taken >= 0)
-      throw Error(fmt::format("{}: volume '{}' is muscle '{}' already; give each its own",
-                              place_in_scene(scene, "muscle", muscle), muscle.volume, scene.muscles[taken].name));
+      throw failure("{}: volume '{}' already belongs to muscle '{}'; give each muscle its own volume", place, volume,
+                    scene.muscles[taken].name);
     taken = static_cast<int>(m);
   }
   add_layers(scene, sample_spacing);
@@ -82,8 +54,8 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
 
 void Volumes::add_layers(const Scene& scene, double sample_spacing)
 {
-  // Layers of one volume and surface lie one below the other. A thin one is left out of the stack of bands: the next
-  // band begins where the band above ended.
+  // Layers of one volume and surface lie one below the other. A thin layer forms no band: the next band begins at the
+  // bottom of the last one.
   struct Stack
   {
     double bottom = 0, next_band = 0;
@@ -92,26 +64,19 @@ void Volumes::add_layers(const Scene& scene, double sample_spacing)
   for (const Layer& layer : scene.layers)
   {
     const std::string name = place_in_scene(scene, "layer", layer);
-    const int volume = index_of(scene.volumes, layer.volume);
-    const int material = index_of(scene.materials, layer.material);
     const PreparedSurface* below = &named_surface(*surfaces_, layer.surface, name);
-    if (volume < 0)
-      throw Error(name + ": there is no volume '" + layer.volume + "'");
-    if (material < 0)
-      throw Error(name + ": there is no material '" + layer.material + "'");
+    Entry& entry = entries_[index_of(scene.volumes, layer.volume, name, "volume")];
+    const int material = index_of(scene.materials, layer.material, name, "material");
     if (!(layer.thickness > 0))
-      throw Error(fmt::format("{}: thickness is {:g} m; it must be above 0", name, layer.thickness));
+      throw failure("{}: thickness is {:g} m; it must be above 0", name, layer.thickness);
     Stack& stack = stacks[{ layer.volume, layer.surface }];
     stack.bottom += layer.thickness;
-    Entry& entry = entries_[volume];
     if (layer.thickness < sample_spacing)
     {
       thin_layers_.push_back({ below, entry.volume->crop, layer.thickness, material, layer.name });
       continue;
     }
-    const std::size_t field = depth_field_below(layer.surface);
-    auto& thresholds = depth_fields_[field].thresholds;
-    thresholds.insert(thresholds.end(), { stack.next_band, stack.bottom });
+    const std::size_t field = depth_field_below(layer.surface, { stack.next_band, stack.bottom });
     entry.bands.push_back({ field, stack.next_band, stack.bottom, material, &layer });
     stack.next_band = stack.bottom;
   }
@@ -127,22 +92,22 @@ std::size_t Volumes::body_of(const std::vector<std::string>& names)
   for (const std::string& name : names)
     parts.push_back(&named_surface(*surfaces_, name, "volume"));
   if (parts.size() > 1)
-    joined_.push_back(std::make_unique<PreparedSurface>(fmt::format("{}", fmt::join(names, " + ")),
-                                                        join_surfaces(parts), parts.front()->line()));
+    joined_.push_back(
+        std::make_unique<PreparedSurface>(fmt::format("{}", fmt::join(names, " + ")), join_surfaces(parts)));
   body_names_.push_back(names);
   bodies_.push_back(parts.size() > 1 ? joined_.back().get() : parts.front());
   return bodies_.size() - 1;
 }
 
-std::size_t Volumes::depth_field_below(const std::string& name)
+std::size_t Volumes::depth_field_below(const std::string& name, const std::array<double, 2>& thresholds)
 {
   const PreparedSurface* surface = &named_surface(*surfaces_, name, "volume");
-  const auto known = std::find_if(depth_fields_.begin(), depth_fields_.end(),
-                                  [surface](const DepthField& field) { return field.surface == surface; });
-  if (known != depth_fields_.end())
-    return known - depth_fields_.begin();
-  depth_fields_.push_back({ surface, {} });
-  return depth_fields_.size() - 1;
+  auto field = std::find_if(depth_fields_.begin(), depth_fields_.end(),
+                            [surface](const DepthField& known) { return known.surface == surface; });
+  if (field == depth_fields_.end())
+    field = depth_fields_.insert(field, DepthField{ surface, {} });
+  field->thresholds.insert(field->thresholds.end(), thresholds.begin(), thresholds.end());
+  return field - depth_fields_.begin();
 }
 
 std::string Volumes::place(const Volume& volume) const { return place_in_scene(*scene_, "volume", volume); }
@@ -166,13 +131,11 @@ Box Volumes::bounds_of(const Entry& entry) const
   if (!bounds.min().allFinite() || !bounds.max().allFinite())
     throw Error(place(*entry.volume) + ": has no bounds; give 'inside', 'closed_by' or 'within'");
   for (int a = 0; a < 3; ++a)
-  {
     if (bounds.min()[a] >= bounds.max()[a])
-      throw Error(
-          fmt::format("{}: is empty: its surfaces, depths and crop have no place in common along {}; a surface is "
-                      "flat there, or a crop or a length unit is wrong",
-                      place(*entry.volume), "xyz"[a]));
-  }
+      throw failure(
+          "{}: is empty: its surfaces, depths and crop share no point along {}; a surface is flat there, or a "
+          "crop or a length unit is wrong",
+          place(*entry.volume), "xyz"[a]);
   return bounds;
 }
 
@@ -180,12 +143,10 @@ Box Volumes::tissue_box() const
 {
   Box all;
   for (const Entry& entry : entries_)
-  {
     if (entry.volume->tissue)
       all.extend(bounds_of(entry));
-  }
   if (all.isEmpty())
-    throw Error(scene_->file + ": no volume is tissue; say 'tissue: true' in one");
+    throw Error(scene_->file + ": no volume is tissue; set 'tissue: true' in one");
   return all;
 }
 

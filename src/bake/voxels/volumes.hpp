@@ -2,11 +2,6 @@
 
 #include "bake/mesh/surface.hpp"
 
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace frontalis
 {
 
@@ -14,11 +9,11 @@ namespace frontalis
 class Volumes
 {
 public:
-  /// A surface below which depths are measured, and the depths at which something changes, ascending [m].
+  /// A surface below which depths are measured, and the depths at which a volume or a layer begins or ends [m].
   struct DepthField
   {
     const PreparedSurface* surface = nullptr;
-    std::vector<double> thresholds;
+    std::vector<double> thresholds;  ///< ascending
   };
   /// A layer that is thick enough to be sampled: its material lies at depths `from` to `to` [m].
   struct Band
@@ -28,7 +23,7 @@ public:
     int material = 0;
     const Layer* layer = nullptr;
   };
-  /// A layer too thin for sampling.
+  /// A layer that is thinner than the distance between samples.
   struct ThinLayer
   {
     const PreparedSurface* surface = nullptr;
@@ -37,23 +32,22 @@ public:
     int material = 0;
     std::string name;
   };
-  /// A volume. A body is what points lie inside or outside of: one surface, or several that close it together.
+  /// A volume. Its conditions refer to bodies: regions enclosed by one surface, or by several together.
   struct Entry
   {
     const Volume* volume = nullptr;
     std::optional<std::size_t> closed_by;  ///< body
     std::vector<std::size_t> inside;       ///< bodies
     std::vector<std::size_t> outside;      ///< bodies: those of `outside`, then those of `without`
-    std::size_t hiding = 0;                ///< the number of bodies of `outside`, which hide what lies behind them
+    std::size_t hiding = 0;                ///< number of the first bodies of `outside`, which hide points behind them
     std::optional<std::size_t> within;     ///< depth field
-    int material = -1;
-    int muscle = -1;
+    int material = -1;                     ///< index; -1: none
+    int muscle = -1;                       ///< index; -1: none
     std::vector<Band> bands;
 
-    /// Whether a point belongs to the volume only where no `outside` body lies between it and the surface from which
-    /// its depth is measured.
+    /// Whether the volume excludes points that an `outside` body hides from the surface of their depth.
     bool needs_sight() const { return within && hiding > 0; }
-    /// Whether `condition` is true of any of the hiding bodies.
+    /// Whether condition(body index) is true for any of the hiding bodies.
     template <class Condition>
     bool any_hiding(const Condition& condition) const
     {
@@ -61,8 +55,8 @@ public:
     }
   };
 
-  /// Layers thinner than `sample_spacing` are thin layers. Throws Error if a volume, layer or muscle refers to
-  /// something that is not there.
+  /// Layers thinner than `sample_spacing` [m] are thin layers. Throws Error if a volume, layer or muscle refers to an
+  /// element that does not exist.
   Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing);
 
   const std::vector<Entry>& entries() const { return entries_; }
@@ -74,15 +68,16 @@ public:
   /// The box around all tissue, in scene coordinates [m]. Throws Error if a tissue volume has no bounds.
   Box tissue_box() const;
 
-  /// The beginning of error messages about a volume.
+  /// The beginning of a message about a volume: see place_in_scene().
   std::string place(const Volume& volume) const;
 
 private:
-  /// Bounds of a tissue volume. Throws Error if it has none or nothing lies within them.
+  /// Bounds of a tissue volume. Throws Error if it has none or they are empty.
   Box bounds_of(const Entry& entry) const;
-  /// Index of the body that these surfaces form. Bodies and depth fields are made on first use.
+  /// Index of the body enclosed by these surfaces. Bodies and depth fields are made on first use.
   std::size_t body_of(const std::vector<std::string>& names);
-  std::size_t depth_field_below(const std::string& name);
+  /// Index of the depth field of a surface, to which the thresholds are added.
+  std::size_t depth_field_below(const std::string& name, const std::array<double, 2>& thresholds);
   void add_layers(const Scene& scene, double sample_spacing);
 
   const Scene* scene_;
@@ -94,5 +89,24 @@ private:
   std::vector<Entry> entries_;
   std::vector<ThinLayer> thin_layers_;
 };
+
+/// Whether a point lies in a volume, or the first of its conditions that fails.
+enum class Membership
+{
+  inside,
+  cropped,   ///< outside its crop
+  beyond,    ///< outside the surfaces that enclose it
+  excluded,  ///< inside one of its `outside` or `without` surfaces
+  wrong_depth,
+  hidden  ///< an `outside` surface lies between the point and the surface from which its depth is measured
+};
+
+/// Membership of a single point: slow, but independent of the optimised sampling of voxels, which it can check.
+Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p);
+
+/// Throws Error, with the length and position of the largest hole, for a volume with a surface whose holes do harm:
+/// more than a tenth of the points inside are so near to a hole that the winding number is below 3/4. Pinholes, gaps
+/// and holes far from the volume (the neck of a head whose forehead is baked) are harmless.
+void check_openings(const Scene& scene, const Volumes& volumes);
 
 }  // namespace frontalis

@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Finds the voxel at (i, j, k): a sparse grid, whose blocks of 8^3 cells exist where they hold a voxel.
+/// Sparse grid that finds the voxel at (i, j, k). Only blocks of 8^3 cells that hold a voxel are stored.
 class VoxelIndex
 {
 public:
@@ -29,14 +29,12 @@ public:
     }
   }
 
-  /// The voxel's number; -1 if there is none.
+  /// Index of the voxel at `place`; -1 if there is none.
   std::int32_t find(const std::array<std::int32_t, 3>& place) const
   {
     for (int a = 0; a < 3; ++a)
-    {
       if (place[a] < 0 || place[a] >= size_[a])
         return -1;
-    }
     const std::int32_t first = first_[block(place)];
     return first < 0 ? -1 : number_[std::size_t{ 512 } * first + within(place)];
   }

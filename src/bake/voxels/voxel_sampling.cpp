@@ -1,19 +1,15 @@
 #include "bake/voxels/block_classifier.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace frontalis
 {
 
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
-  clear_shares();
+  share_ = nothing_;
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
-  // a little beside the centre, where scenes that are symmetric to the grid have edges and corners
+  // not exactly the centre, because scenes symmetric to the grid have edges and corners of surfaces there
   middle_ = box.center() + Vector3d(0.0131, 0.0073, -0.0113).cwiseProduct(grid_.spacing);
 
   const double share = 1.0 / static_cast<double>(offsets_.size());
@@ -45,7 +41,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       }
       if (inside[v] != Answer::yes)
         continue;
-      volume_share_[v] += share;
+      share_.volume[v] += share;
       for (const Volumes::Band& band : entry.bands)
         sample_depth(band.depth_field, p, state);
     }
@@ -94,7 +90,7 @@ bool BlockClassifier::sample_body(std::size_t body, const Vector3d& p, const Blo
     nearby.variation = surface.closed() ? 0 : surface.winding_variation(middle_, 1.1 * reach_);
     nearby.known = true;
   }
-  // the winding number at p differs from that at the middle by the triangles that lie between
+  // the winding number at p differs from that at the middle by the crossings of the triangles in between
   double winding = nearby.winding;
   for (const std::int32_t triangle : nearby.triangles)
     winding += crossing(surface.mesh(), triangle, middle_, p);
@@ -122,7 +118,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
     nearby.depth = -surface->signed_distance(middle_, closest);
     nearby.steady = surface->closed() || !surface->rim_within(middle_, closest.distance + 2.2 * reach_);
   }
-  // A depth changes by at most the distance moved. If that reaches no threshold, the middle's depth serves for p too.
+  // Depths at two points differ by at most their distance. If no threshold is that near, the middle's depth will do.
   const double way = (p - middle_).norm();
   const auto next = std::lower_bound(thresholds.begin(), thresholds.end(), nearby.depth - way);
   if (nearby.steady && (next == thresholds.end() || *next > nearby.depth + way))
@@ -134,7 +130,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
 
 void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
 {
-  // the volumes of the highest priority share the place among those that bring a material
+  // the volumes with the highest priority among those with a material share the sample equally
   int highest = std::numeric_limits<int>::min();
   int sharers = 0;
   for (std::size_t v = 0; v < inside.size(); ++v)
@@ -143,7 +139,7 @@ void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::ve
     if (inside[v] != Answer::yes)
       continue;
     if (entry.muscle >= 0)
-      muscle_share_[entry.muscle] += share;
+      share_.muscle[entry.muscle] += share;
     if (entry.material < 0 || entry.volume->priority < highest)
       continue;
     sharers = entry.volume->priority > highest ? 1 : sharers + 1;
@@ -158,9 +154,9 @@ void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::ve
                                    [&depth](const Volumes::Band& b)
                                    { return depth[b.depth_field] >= b.from && depth[b.depth_field] < b.to; });
     if (!entry.bands.empty())
-      band_share_[v][band - entry.bands.begin()] += share;
+      share_.band[v][band - entry.bands.begin()] += share;
     if (entry.material >= 0 && entry.volume->priority == highest)
-      material_share_[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
+      share_.material[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
   }
 }
 
@@ -168,22 +164,8 @@ void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
-  for (std::size_t m = 0; m < material_share_.size(); ++m)
-  {
-    if (material_share_[m] <= 0)
-      continue;
-    voxels_.material.push_back(static_cast<std::int16_t>(m));
-    voxels_.proportion.push_back(static_cast<float>(material_share_[m] / fill));
-  }
-  voxels_.mixture_begin.push_back(static_cast<std::uint32_t>(voxels_.material.size()));
-  for (std::size_t m = 0; m < muscle_share_.size(); ++m)
-  {
-    if (muscle_share_[m] <= 0)
-      continue;
-    voxels_.muscle.push_back(static_cast<std::int16_t>(m));
-    voxels_.weight.push_back(static_cast<float>(std::min(1.0, muscle_share_[m] / fill)));
-  }
-  voxels_.muscle_begin.push_back(static_cast<std::uint32_t>(voxels_.muscle.size()));
+  voxels_.materials.add(share_.material, fill);
+  voxels_.muscles.add(share_.muscle, fill);
 }
 
 }  // namespace frontalis

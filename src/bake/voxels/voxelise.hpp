@@ -1,10 +1,6 @@
 #pragma once
 
-#include "bake/bake_monitor.hpp"
 #include "bake/voxels/volumes.hpp"
-
-#include <cstdint>
-#include <vector>
 
 namespace frontalis
 {
@@ -15,43 +11,50 @@ using VoxelPlace = std::array<std::int32_t, 3>;
 /// Grid of voxels along the axes of the scene.
 struct Grid
 {
-  Vector3d lower{ 0, 0, 0 };    ///< [m]
-  Vector3d spacing{ 0, 0, 0 };  ///< [m]
+  Vector3d lower{ 0, 0, 0 };    ///< lower corner of the grid [m]
+  Vector3d spacing{ 0, 0, 0 };  ///< voxel edges [m]
   VoxelPlace size{ { 0, 0, 0 } };
 
-  /// The corner of a voxel at which its coordinates are least.
+  /// The corner of a voxel with the smallest coordinates [m].
   Vector3d corner(const VoxelPlace& p) const { return lower + Vector3d(p[0], p[1], p[2]).cwiseProduct(spacing); }
 };
 
-/// The grid that holds the scene's tissue. Throws Error, before anything is allocated, where it would have fewer than 8
-/// cells, or where the model would have too many voxels for its indices or for the free memory, both estimated from
-/// 2000 points. The text has the numbers, and the length unit that was probably meant.
+/// The grid that holds the scene's tissue. Throws Error, before anything is allocated, if the grid has fewer than 8
+/// cells, or if the model, as estimated from 2000 points, has too many voxels for its indices or for the free memory.
+/// The message names the length unit that was probably meant.
 Grid make_grid(const Scene& scene, const Volumes& volumes);
 
-/// Voxels with tissue, along the axes of the scene, in an order that depends on nothing but the scene.
+/// Per voxel a list of indices, of materials or muscles, and their shares; voxel e has begin[e] .. begin[e + 1].
+struct Shares
+{
+  std::vector<std::int32_t> begin{ 0 };
+  std::vector<std::int16_t> number;
+  std::vector<float> share;
+
+  /// Adds the list of the next voxel: all positive `shares`, divided by `whole`, and their indices.
+  void add(const std::vector<double>& shares, double whole);
+  void append(const Shares& other);
+};
+
+/// Voxels with tissue, along the axes of the scene, in an order that depends on the scene alone.
 struct Voxels
 {
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
-  // entries of voxel e: begin[e] .. begin[e + 1]
-  std::vector<std::uint32_t> mixture_begin{ 0 };
-  std::vector<std::int16_t> material;
-  std::vector<float> proportion;
-  std::vector<std::uint32_t> muscle_begin{ 0 };
-  std::vector<std::int16_t> muscle;
-  std::vector<float> weight;
-  /// Size of each volume of the scene in the tissue, before voxels with too little tissue are left out [m3].
+  Shares materials, muscles;
+  /// For each volume of the scene its size in the tissue [m3], before voxels with too little tissue are left out.
   std::vector<double> volume_size;
-  /// Of each volume with layers: the size of each band and, last, of what lies in none [m3].
+  /// For each volume with layers the size of each band and, last, of the rest of the volume [m3].
   std::vector<std::vector<double>> band_size;
 
+  /// Adds the voxels of another block of the same grid.
   void append(const Voxels& other);
 };
 
-/// Finds what each voxel consists of. A block of voxels through which no surface, depth threshold or crop passes is
-/// decided as a whole; others are halved down to single voxels, which are sampled at samples^3 points of a
-/// low-discrepancy sequence (R3, whose projections on each axis are evenly spread too, so that surfaces along the axes
-/// are sampled as well as oblique ones). Voxels with a smaller proportion of tissue than `fill_min` are left out.
+/// Finds the materials and muscles in each voxel. A block of voxels through which no surface, depth threshold or crop
+/// passes is decided as a whole; others are halved down to single voxels, which are sampled at samples^3 points of the
+/// low-discrepancy sequence R3. Its projections on each axis are evenly spread too, so that surfaces along the axes are
+/// sampled as well as oblique ones. Voxels with a smaller proportion of tissue than `fill_min` are left out.
 Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -9,15 +9,6 @@ namespace frontalis
 namespace
 {
 
-std::array<double, 3> mapped(const RigidTransform& map, const std::array<double, 3>& p)
-{
-  std::array<double, 3> result = map.translation;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      result[i] += map.rotation[3 * i + j] * p[j];
-  return result;
-}
-
 // names in a voxel by weight, the largest first
 template <class Weight>
 std::vector<std::int32_t> by_weight(std::int32_t begin, std::int32_t end, const Weight& weight)
@@ -124,8 +115,8 @@ InstabilityReport describe(const Model& model, Instability kind, double time, st
   std::array<double, 3> centre;
   for (int axis = 0; axis < 3; ++axis)
     centre[axis] = (model.voxels[voxel][axis] + 0.5) * model.spacing[axis];
-  report.scene = mapped(model.to_scene, centre);
-  report.face = mapped(model.to_face, centre);
+  report.scene = model.to_scene(centre);
+  report.face = model.to_face(centre);
   const auto materials = by_weight(model.mixture_begin[voxel], model.mixture_begin[voxel + 1],
                                    [&](auto m) { return model.mixture_proportion[m]; });
   const auto fibres = by_weight(model.fibre_begin[voxel], model.fibre_begin[voxel + 1],

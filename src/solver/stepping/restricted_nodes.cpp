@@ -105,8 +105,9 @@ void RestrictedNodes<Real>::run(EffectSet running)
   gliding_.rub(rubs_);
   if (!slides_)
     reset();
-  for (auto& state : contacts_.gliding)
-    state.pressing = rubs_ ? state.pressing : 0;
+  if (!rubs_)
+    for (auto& state : contacts_.gliding)
+      state.pressing = 0;
 }
 
 template <class Real>

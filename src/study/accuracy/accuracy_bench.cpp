@@ -3,27 +3,98 @@
 #include "frontalis/error.hpp"
 #include "frontalis/scene/content_hash.hpp"
 #include "frontalis/study/step_time.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace frontalis
 {
 namespace
 {
 
-constexpr double with_settling = 1.5;  // wall time of history and settling over that of the history, for estimates
+constexpr double with_settling = 1.5;  // rough ratio of wall times: history and settling over history alone
+
+// A file consists of this signature, a hash of its content, and the content as bytes.
+const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
+
+// file extension of each type of result
+template <class T>
+constexpr const char* extension = ".motion";
+template <>
+constexpr const char* extension<VariantCost> = ".cost";
+template <>
+constexpr const char* extension<VariantCheckpoint> = ".checkpoint";
+
+// returns nothing if the file is missing, incomplete or of another generation
+template <class T>
+std::optional<T> read(const std::string& key)
+{
+  std::ifstream file(key + extension<T>, std::ios::binary);
+  const std::string whole{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+  const std::size_t begin = signature.size(), hash = 16;
+  if (whole.compare(0, begin, signature) != 0 || whole.size() < begin + hash)
+    return std::nullopt;
+  std::string content = whole.substr(begin + hash);
+  if (whole.compare(begin, hash, content_hash(content)) != 0)
+    return std::nullopt;
+  ByteArchive in(std::move(content));
+  T value;
+  value.archive(in);
+  return in.ended() ? std::optional<T>(std::move(value)) : std::nullopt;
+}
+
+// Stores a result. A finished motion makes its checkpoint obsolete.
+template <class T>
+void keep(const std::string& key, T value)
+{
+  ByteArchive out;
+  value.archive(out);
+  write_text(key + extension<T>, signature + content_hash(out.bytes()) + out.bytes());
+  if (std::is_same_v<T, VariantMotion>)
+    std::filesystem::remove(key + extension<VariantCheckpoint>);
+}
 
 }  // namespace
 
-VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
-    : plan_(plan),
-      maker_(maker),
-      progress_(progress),
-      store_(plan.folder + "/variants"),
-      begin_(wall_seconds()),
-      timing_(plan.quick ? 1 : 3)
+void VariantMotion::archive(ByteArchive& archive)
 {
-  look_at_standard();
+  archive(fault);
+  std::size_t count = phases.size();
+  archive(count);
+  phases.resize(count);
+  for (SkinPhase& phase : phases)
+    archive(phase.vertices)(phase.landmarks);
+  archive(area)(steps)(energy)(residual)(voxels);
+}
+
+void VariantCost::archive(ByteArchive& archive) { archive(machine)(step)(spread)(processors)(skin)(memory)(build); }
+
+void VariantCheckpoint::archive(ByteArchive& archive)
+{
+  motion.archive(archive);
+  archive(slices)(solver);
+}
+
+VariantBench::VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
+    : plan_(plan), maker_(maker), progress_(progress), begin_(wall_seconds()), timing_(plan.quick ? 1 : 3)
+{
+  make_folder(plan.folder + "/variants");
+  AccuracySetting setting = plan.standard;
+  setting.profile.mass_scaling = {};
+  setting.profile.time_step = "element";
+  const auto model = std::make_shared<const Model>(maker.bake(setting));
+  for (const Backend& backend : available_backends())
+  {
+    const auto solver = make_solver(model, { backend, plan.threads });
+    machine_[backend] = machine_of(*solver, plan.threads);
+    if (backend == plan.standard.backend)
+      critical_ = solver->time_step();
+  }
 }
 
 std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& backend) const
@@ -31,36 +102,21 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
   std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)
     text += fmt::format(" {:.6f}", activation);
-  return content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
+  return plan_.folder + "/variants/" +
+         content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// Motions that another backend computed serve too, so that a folder may come from a faster machine. A GPU computes in
-// single precision whatever the setting says, so that only settings in single precision have such motions.
-std::vector<Backend> VariantBench::backends_of(const AccuracySetting& setting) const
+// The backend of a stored motion. Single-precision motions of other backends are accepted too, so that a folder may
+// come from a faster machine; a GPU always computes in single precision.
+std::optional<Backend> VariantBench::kept_backend(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
   if (setting.backend == plan_.standard.backend && setting.profile.precision == "single")
     backends.insert(backends.end(), { Backend("cuda"), Backend("cpu") });
-  return backends;
-}
-
-std::optional<VariantMotion> VariantBench::kept_motion(const AccuracySetting& setting, Backend& played_by) const
-{
-  for (const Backend& backend : backends_of(setting))
-    if (std::optional<VariantMotion> motion = store_.motion(key_of(setting, backend)))
-    {
-      played_by = backend;
-      return motion;
-    }
+  for (const Backend& backend : backends)
+    if (std::filesystem::exists(key_of(setting, backend) + extension<VariantMotion>))
+      return backend;
   return std::nullopt;
-}
-
-bool VariantBench::is_kept(const AccuracySetting& setting) const
-{
-  for (const Backend& backend : backends_of(setting))
-    if (store_.has_motion(key_of(setting, backend)))
-      return true;
-  return false;
 }
 
 bool VariantBench::is_reference(const AccuracySetting& setting) const
@@ -68,13 +124,13 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
-// the reference is not timed: it is no setting to choose, and takes long
+// Whether no timing is missing. The reference is never timed: it is slow and not offered as a choice.
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
 }
 
-// takes the wall time of a variant into the estimate for further ones
+// updates the estimates for later variants with the wall seconds of one
 void VariantBench::learn(const AccuracySetting& setting, double wall)
 {
   const double relative = relative_time(setting);
@@ -85,9 +141,9 @@ void VariantBench::learn(const AccuracySetting& setting, double wall)
 
 double VariantBench::predicted(const AccuracySetting& setting) const
 {
-  if (!is_kept(setting))
+  if (!kept_backend(setting))
     return overhead_ + rate_ * relative_time(setting);
-  return is_timed(setting, store_.cost(key_of(setting))) ? 0 : timing_;
+  return is_timed(setting, read<VariantCost>(key_of(setting))) ? 0 : timing_;
 }
 
 bool VariantBench::fits(const AccuracySetting& setting)
@@ -109,9 +165,8 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   const std::string key = key_of(setting);
   if (const auto known = index_.find(key); known != index_.end())
     return known->second;
-  for (std::size_t p = 0; p < pending_.size(); ++p)
-    if (key_of(pending_[p]) == key)
-      pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(p--));
+  pending_.erase(std::remove_if(pending_.begin(), pending_.end(), [&](const auto& s) { return key_of(s) == key; }),
+                 pending_.end());
   MeasuredVariant measured{ name.empty() ? name_of(setting, plan_.standard) : name, setting, setting.backend, {}, {} };
   double left = 0;
   for (const AccuracySetting& later : pending_)
@@ -120,9 +175,12 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   if (!go_on(0))
     throw StudyInterrupted();
 
-  std::optional<VariantMotion> motion = kept_motion(setting, measured.played_by);
-  std::optional<VariantCost> cost = store_.cost(key);
+  measured.played_by = kept_backend(setting).value_or(setting.backend);
+  std::optional<VariantMotion> motion = read<VariantMotion>(key_of(setting, measured.played_by));
+  std::optional<VariantCost> cost = read<VariantCost>(key);
   const bool kept = motion.has_value();
+  if (!kept)  // kept_backend() does not notice an incomplete file
+    measured.played_by = setting.backend;
   if (!kept || (!is_timed(setting, cost) && motion->fault.empty()))
   {
     const double begin = wall_seconds(), before = heap_bytes();
@@ -138,14 +196,12 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      // without a ledger for the reference, whose balance of energies is not reported: a GPU takes twice as long with
-      // one
-      motion =
-          play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
-                       { store_.checkpoint(key), [&](const VariantCheckpoint& c) { store_.keep(key, c); } }, go_on);
+      // The reference keeps no ledger, which would double its time on a GPU: its energy balance is not reported.
+      motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
+                            { read<VariantCheckpoint>(key), [&](const VariantCheckpoint& c) { keep(key, c); } }, go_on);
       if (!motion)
         throw StudyInterrupted();
-      store_.keep(key, *motion);
+      keep(key, *motion);
       learn(setting, wall_seconds() - begin);
     }
     if (motion->fault.empty() && !is_reference(setting))
@@ -153,7 +209,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       cost = time_variant(model, setting, plan_.history, plan_.threads, plan_.quick ? 0.3 : 1);
       cost->memory += bytes;
       cost->build = build;
-      store_.keep(key, *cost);
+      keep(key, *cost);
       if (kept)
       {
         timing_ = wall_seconds() - begin;
@@ -165,24 +221,6 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
   measured.cost = cost.value_or(VariantCost());
   done_.push_back(std::move(measured));
   return index_[key] = done_.size() - 1;
-}
-
-void VariantBench::look_at_standard()
-{
-  AccuracySetting setting = plan_.standard;
-  setting.profile.mass_scaling = {};
-  setting.profile.time_step = "element";
-  const auto model = std::make_shared<const Model>(maker_.bake(setting));
-  for (const Backend& backend : available_backends())
-  {
-    SolverSettings settings;
-    settings.backend = backend;
-    settings.threads = plan_.threads;
-    const auto solver = make_solver(model, settings);
-    machine_[backend] = machine_of(*solver, plan_.threads);
-    if (backend == plan_.standard.backend)
-      critical_ = solver->time_step();
-  }
 }
 
 }  // namespace frontalis

@@ -19,20 +19,20 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< the setting's, or another if the folder keeps a motion from another machine
+  Backend played_by;  ///< backend of the motion: another than the setting's if it was stored by another machine
   VariantMotion motion;
   VariantCost cost;
 };
 
-/// Measures variants one by one, and reuses earlier results from the study's folder.
+/// Measures variants (settings of a study) one by one and reuses earlier results from the study's folder. It has one
+/// file each for a variant's motion, cost and checkpoint; files are written completely or not at all.
 class VariantBench
 {
 public:
-  /// Keeps references to its arguments. Throws Error if the folder cannot be made or the standard setting has no
-  /// model.
+  /// Keeps references to its arguments. Throws Error if there is no folder or no model of the standard setting.
   VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
-  /// Index in done(). Throws Error, StudyInterrupted.
+  /// Returns the index in done(). Throws Error, StudyInterrupted.
   std::size_t measure(const AccuracySetting& setting, const std::string& name = {});
   /// Null if the setting was not measured in this study.
   const MeasuredVariant* find(const AccuracySetting& setting) const;
@@ -43,7 +43,7 @@ public:
   /// Whether the budget has time for a setting. If not, left_out() increases by one.
   bool fits(const AccuracySetting& setting);
   int left_out() const { return left_out_; }
-  /// The settings that follow, for the estimate of the time that is left.
+  /// Announces the settings to be measured next, for the estimate of the remaining time.
   void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
 
   /// Names the setting that is not timed.
@@ -53,30 +53,45 @@ public:
   const std::string& machine() const { return machine_.at(plan_.standard.backend); }
 
 private:
+  /// Path of the setting's files without their extension.
   std::string key_of(const AccuracySetting& setting, const Backend& backend) const;
   std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
   bool is_reference(const AccuracySetting& setting) const;
-  std::vector<Backend> backends_of(const AccuracySetting& setting) const;
-  bool is_kept(const AccuracySetting& setting) const;
+  std::optional<Backend> kept_backend(const AccuracySetting& setting) const;
   bool is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const;
-  std::optional<VariantMotion> kept_motion(const AccuracySetting& setting, Backend& played_by) const;
   void learn(const AccuracySetting& setting, double wall);
-  void look_at_standard();
 
   const AccuracyPlan& plan_;
   const ModelMaker& maker_;
   const AccuracyProgress& progress_;
-  VariantStore store_;
   double begin_;
   std::map<Backend, std::string> machine_;
   double critical_ = 0;
   std::optional<AccuracySetting> reference_;
   std::vector<MeasuredVariant> done_;
-  std::map<std::string, std::size_t> index_;  // by key
+  std::map<std::string, std::size_t> index_;  // key to index in done_
   std::vector<AccuracySetting> pending_;
-  // estimated wall seconds: for the shortest variant, per unit of relative_time(), for timing a variant
+  // estimated wall seconds: of the shortest variant, per unit of relative_time(), of timing a variant
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };
+
+/// The figures of a variant against the plan's closed form, or otherwise against the reference's motion. With `average`
+/// (may be null) also the error of averaged displacements.
+AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
+                   const SkinAverage* average);
+
+/// Estimates the reference's error from its coarser versions, and adds the observed order, the motion of its skin and
+/// the differences of averaged skins to the findings. Throws Error if there is no coarser version.
+void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
+                              AccuracyFindings& findings);
+
+/// Adds notes on the order of convergence to the closed form, for the standard and the reference's settings.
+void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings);
+
+/// Indices of the rows that are Pareto-optimal among those that a scene's profile can express, cheapest first. Errors
+/// below `floor` [m] count as equal, and a more expensive row must have an error that is at least 5 % smaller.
+std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
+                                      double floor);
 
 }  // namespace frontalis

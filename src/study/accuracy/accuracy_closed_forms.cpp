@@ -1,9 +1,13 @@
-// bodies for studies of accuracy whose deformation is known in closed form
+// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever": a bar in plane strain whose
+// ends get the displacements of a beam under a force at its end: Timoshenko & Goodier, Theory of Elasticity, article
+// 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block":
+// neo-Hookean, stretched to 1.3 times its length with free sides. "active_bar": the same block without loads,
+// contracted by a muscle without tension-length relation. The stretches of both follow from the derivatives of the
+// strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2; they are uniform, so that voxels represent them exactly.
 
 #include "frontalis/error.hpp"
-#include "frontalis/study/closed_form.hpp"
+#include "frontalis/study/accuracy.hpp"
 #include "frontalis/study/voxel_model.hpp"
-#include "study/models/shape_model.hpp"
 
 #include <cmath>
 
@@ -12,27 +16,22 @@ namespace frontalis
 namespace
 {
 
-using Point = std::array<double, 3>;
-
-constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;
+constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;                      // young in Pa
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
 constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
 
-// A box of whole voxels. Its skin is the upper face and the side y = size, with vertices that do not depend on the
-// edge.
+// A box of full voxels. The vertices of its skin (faces y = size and z = size) are the same for every voxel edge.
 Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 {
   const AccuracyProfile& profile = setting.profile;
-  VoxelBox box;
+  VoxelBox box{ {}, profile.voxel, { neo_hookean(young, ratio) } };
   for (int axis = 0; axis < 3; ++axis)
   {
-    box.spacing[axis] = profile.voxel[axis];
     box.size[axis] = static_cast<std::int32_t>(std::lround(size[axis] / box.spacing[axis]));
     if (std::abs(box.size[axis] * box.spacing[axis] - size[axis]) > 1e-9 * size[axis])
       throw Error("voxels of " + millimetres(profile.voxel[axis]) + " do not fit an edge of " +
                   millimetres(size[axis]));
   }
-  box.materials = { neo_hookean(young, ratio) };
   Model model = voxel_model(box);
   model.hourglass = profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
   model.integration = profile.integration == "one_point" ? Integration::one_point : Integration::selective_reduced;
@@ -42,11 +41,11 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
   model.time_step_share = profile.time_step_share;
   model.time_step_estimate = profile.time_step == "assembled" ? TimeStepEstimate::assembled : TimeStepEstimate::element;
   model.damping = 100;
-  model.skin = grid_mesh(32, 8, [&](double s, double t) -> Point { return { { s * size[0], t * size[1], size[2] } }; });
-  const TriangleMesh side = grid_mesh(32, 8,
-                                      [&](double s, double t) -> Point {
-                                        return { { s * size[0], size[1], t * size[2] } };
-                                      });
+  model.skin = grid_mesh(32, 8, [&](double s, double t) { return Point{ { s * size[0], t * size[1], size[2] } }; });
+  const auto side = grid_mesh(32, 8,
+                              [&](double s, double t) {
+                                return Point{ { s * size[0], size[1], t * size[2] } };
+                              });
   const auto before = static_cast<std::int32_t>(model.skin.vertices.size());
   model.skin.vertices.insert(model.skin.vertices.end(), side.vertices.begin(), side.vertices.end());
   for (const auto& t : side.triangles)
@@ -55,7 +54,7 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
   return model;
 }
 
-// first Piola-Kirchhoff stress [Pa] along the axis of stretch `a`, the others being `b` and `c`
+// first Piola-Kirchhoff stress [Pa] along the principal axis with stretch `a`; `b` and `c` are the other stretches
 double principal_stress(double a, double b, double c)
 {
   const double mu = shear_modulus(young, block_poisson), kappa = bulk_modulus(young, block_poisson);
@@ -63,21 +62,14 @@ double principal_stress(double a, double b, double c)
   return mu * std::pow(J, -2.0 / 3) * (a - I1 / (3 * a)) + kappa * (J - 1) * J / a;
 }
 
-// zero of an increasing function
-double zero(double low, double high, const std::function<double(double)>& f)
-{
-  for (int halving = 0; halving < 60; ++halving)
-    (f(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
-  return low;
-}
-
 double lateral_stretch(double along)
 {
-  return zero(0.3, 3, [=](double side) { return principal_stress(side, along, side); });
+  return zero_between(0.3, 3, [=](double side) { return principal_stress(side, along, side); });
 }
 
-ClosedForm of(const std::string& name, std::vector<double> edges,
-              const std::function<Model(const AccuracySetting&)>& make, const std::function<Point(const Point&)>& exact)
+ClosedForm closed_form(const std::string& name, std::vector<double> edges,
+                       const std::function<Model(const AccuracySetting&)>& make,
+                       const std::function<Point(const Point&)>& exact)
 {
   ClosedForm form{ name, {}, {} };
   AccuracyPlan& plan = form.plan;
@@ -97,25 +89,23 @@ ClosedForm of(const std::string& name, std::vector<double> edges,
   return form;
 }
 
+// a block that `drive` stretches uniformly along x; `along`: length over length at rest
 ClosedForm uniform(const std::string& name, double along, const std::function<void(Model&)>& drive)
 {
-  const double side = lateral_stretch(along);
-  return of(
-      name, { 4e-3, 2e-3, 1e-3 },
-      [drive](const AccuracySetting& setting)
-      {
-        Model model = box_model(setting, block_size, block_poisson);
-        hold_mirror_planes(model);
-        drive(model);
-        return model;
-      },
-      [=](const Point& p) -> Point {
-        return { { (along - 1) * p[0], (side - 1) * p[1], (side - 1) * p[2] } };
-      });
+  const auto make = [drive](const AccuracySetting& setting)
+  {
+    Model model = box_model(setting, block_size, block_poisson);
+    hold_mirror_planes(model);
+    drive(model);
+    return model;
+  };
+  const auto exact = [=, side = lateral_stretch(along)](const Point& p) {
+    return Point{ { (along - 1) * p[0], (side - 1) * p[1], (side - 1) * p[2] } };
+  };
+  return closed_form(name, { 4e-3, 2e-3, 1e-3 }, make, exact);
 }
 
-// displacement of a beam in plane strain (x, z) under a shear force that takes its end down by a thousandth of its
-// length
+// displacement [m] of a beam in plane strain (x, z) whose end a shear force lowers by a thousandth of the length
 Point beam(const Point& p)
 {
   const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);
@@ -141,28 +131,19 @@ std::vector<ClosedForm> closed_forms()
 {
   constexpr double drawn = 1.3;
   const double active = shear_modulus(young, block_poisson);
-  const double contracted =
-      zero(0.5, 1,
-           [=](double along)
-           { return principal_stress(along, lateral_stretch(along), lateral_stretch(along)) + active * along; });
-  ClosedForm bar = uniform("active_bar", contracted,
-                           [=](Model& model)
-                           {
-                             add_muscle(model, Muscle{ "bar", active, false, false },
-                                        [](std::size_t) {
-                                          return std::array<float, 3>{ { 1, 0, 0 } };
-                                        });
-                           });
+  const auto stress = [=](double along)
+  { return principal_stress(along, lateral_stretch(along), lateral_stretch(along)) + active * along; };
+  const auto contract = [=](Model& model) { add_muscle(model, Muscle{ "bar", active, false, false }, along_x); };
+  ClosedForm bar = uniform("active_bar", zero_between(0.5, 1, stress), contract);
   bar.plan.history.activation = { 1 };
-  return { of("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
-           uniform("stretched_block", drawn,
-                   [](Model& model)
-                   {
-                     const auto end = [&](const auto& p) { return p[0] > block_size[0] - 0.5 * model.spacing[0]; };
-                     prescribe(model, nodes_where(model, end), { { true, false, false } },
-                               { { (drawn - 1) * block_size[0], 0, 0 } }, ramp);
-                   }),
-           bar };
+  const auto draw = [](Model& model)
+  {
+    const auto end = [&](const Point& p) { return p[0] > block_size[0] - 0.5 * model.spacing[0]; };
+    prescribe(model, nodes_where(model, end), { { true, false, false } }, { { (drawn - 1) * block_size[0], 0, 0 } },
+              ramp);
+  };
+  return { closed_form("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
+           uniform("stretched_block", drawn, draw), bar };
 }
 
 }  // namespace frontalis

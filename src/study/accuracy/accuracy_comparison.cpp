@@ -1,9 +1,8 @@
-// the errors of variants against the reference or a closed form
+// the errors of variants against the reference or a closed form, the Pareto front, and the choice of a setting from it
 
-#include "study/accuracy/accuracy_comparison.hpp"
+#include "study/accuracy/accuracy_bench.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/study/check.hpp"
 
 #include <fmt/core.h>
 
@@ -15,8 +14,15 @@ namespace frontalis
 namespace
 {
 
-// below this ratio of error and motion only settling and rounding are left, and no order can be observed
+// ratio of error to displacement below which incomplete settling and rounding dominate, so that no order is observed
 constexpr double exactly_represented = 1e-3;
+
+const AccuracyRow& last_of_front(const AccuracyFindings& findings)
+{
+  if (findings.front.empty())
+    throw Error("no setting could be measured; the table says why");
+  return findings.rows[findings.front.back()];
+}
 
 }  // namespace
 
@@ -46,43 +52,35 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
     row.fault = error.what();
     return row;
   }
+  static_cast<VariantCost&>(row) = measured.cost;
   row.energy = measured.motion.energy;
   row.steps = measured.motion.steps;
-  if (measured.cost.machine.empty())
-    return row;
-  row.step = measured.cost.step;
-  row.cost = row.steps * row.step + plan.frame_rate * measured.cost.skin;
-  row.spread = measured.cost.spread;
-  row.noisy = measured.cost.is_noisy();
-  row.processors = measured.cost.processors;
-  row.memory = measured.cost.memory;
-  row.build = measured.cost.build;
+  row.cost = row.steps * row.step + plan.frame_rate * row.skin;
   return row;
 }
 
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings)
 {
-  // the finest three levels that were measured
+  // solutions with the reference's settings, coarse to fine
   std::vector<const MeasuredVariant*> levels;
   for (const double edge : plan.edges)
     if (const MeasuredVariant* known = bench.find(reference_setting(plan.standard, edge));
         known != nullptr && known->motion.fault.empty())
       levels.push_back(known);
   if (levels.size() < 2)
-    throw Error("only the reference's voxels, " + millimetres(plan.edges.back()) +
-                ", gave a motion; at least one coarser level must give one to compare it with");
+    throw Error("only the reference, with voxels of " + millimetres(plan.edges.back()) +
+                ", gave a motion; its error cannot be estimated without that of a larger voxel edge");
   const auto level = [&](std::size_t back) { return levels[levels.size() - back]; };
   const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
-  const auto apart = [&](std::size_t back)
+  const auto difference = [&](std::size_t back)
   { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
-  findings.reference_error = apart(1);
+  findings.reference_error = difference(1);
   if (levels.size() > 2)
   {
-    findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, apart(2), apart(1));
-    findings.extrapolated = findings.order >= 0.5 && findings.order <= 2.5;
-    if (findings.extrapolated)
-      findings.reference_error = richardson(edge(2), edge(1), apart(1), findings.order);
+    findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, difference(2), difference(1));
+    if (is_credible(findings.order))
+      findings.reference_error = richardson(edge(2), edge(1), difference(1), findings.order);
   }
   findings.motion = motion_size(level(1)->motion);
   std::string plain, averaged;
@@ -90,11 +88,11 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
   {
     const VariantMotion &coarse = level(back + 1)->motion, &fine = level(back)->motion;
     const std::string comma = plain.empty() ? "" : ", ";
-    plain += comma + readable(1e3 * apart(back), 3);
+    plain += comma + readable(1e3 * difference(back), 3);
     averaged += comma + readable(1e3 * worst(skin_errors(average.of(coarse), average.of(fine))).rms, 3);
   }
   findings.notes.push_back(
-      fmt::format("From each level of voxels to the next the skin of the reference's form moves by {} mm "
+      fmt::format("With the reference's settings, each finer voxel edge changes the skin by {} mm "
                   "RMS, the averaged skin by {} mm.",
                   plain, averaged));
 }
@@ -125,13 +123,64 @@ void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
     const double most = *std::max_element(errors.begin(), errors.end());
     if (most < exactly_represented * findings.motion)
       findings.notes.push_back(
-          fmt::format("{}: the error is at most {:.2g} µm at any edge, which settling and rounding leave: "
+          fmt::format("{}: the error is at most {:.2g} µm at any edge and comes from settling and rounding: "
                       "voxels represent this deformation exactly.",
                       form, 1e6 * most));
     else
       findings.notes.push_back(
           fmt::format("{}: the error falls with the voxel edge to the power {:.3g}.", form, slope(edges, errors)));
   }
+}
+
+std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
+                                      double floor)
+{
+  const auto is_profile = [&](const AccuracySetting& s)
+  { return s.poisson == 0 && s.time_scaling == 1 && s.backend == standard.backend; };
+  std::vector<std::size_t> order;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    if (rows[r].fault.empty() && is_profile(rows[r].setting) && rows[r].cost > 0 && rows[r].error.rms >= 0)
+      order.push_back(r);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rows[a].cost < rows[b].cost; });
+  std::vector<std::size_t> front;
+  for (const std::size_t r : order)
+    if (front.empty() || std::max(rows[r].error.rms, floor) < 0.95 * std::max(rows[front.back()].error.rms, floor))
+      front.push_back(r);
+  return front;
+}
+
+const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance)
+{
+  const AccuracyRow& best = last_of_front(findings);
+  if (tolerance < findings.reference_error)
+    throw Error(
+        fmt::format("a tolerance of {} is below the error of the reference itself, {}: nothing is claimed below it; "
+                    "take a finer reference",
+                    millimetres(tolerance), millimetres(findings.reference_error)));
+  for (const std::size_t r : findings.front)
+    if (findings.rows[r].error.rms <= tolerance)
+      return findings.rows[r];
+  throw Error(
+      fmt::format("no setting that was measured has an error of at most {}; the most accurate, {}, has {} at "
+                  "{:.3g} s per simulated second",
+                  millimetres(tolerance), best.name, millimetres(best.error.rms), best.cost));
+}
+
+const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds)
+{
+  last_of_front(findings);
+  const AccuracyRow& cheapest = findings.rows[findings.front.front()];
+  const AccuracyRow* best = nullptr;
+  for (const std::size_t r : findings.front)
+    if (findings.rows[r].cost <= seconds)
+      best = &findings.rows[r];
+  if (best == nullptr)
+    throw Error(
+        fmt::format("no setting that was measured takes at most {:.3g} s per simulated second; the cheapest, {}, "
+                    "takes {:.3g} s with an error of {}",
+                    seconds, cheapest.name, cheapest.cost, millimetres(cheapest.error.rms)));
+  return *best;
 }
 
 }  // namespace frontalis

@@ -1,13 +1,12 @@
 // the findings of a study of accuracy as a table, a plot, a text and profiles
 
-#include "frontalis/study/accuracy.hpp"
+#include "study/accuracy/accuracy_run.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace frontalis
@@ -17,35 +16,21 @@ namespace
 
 double mm(double metres) { return 1e3 * metres; }
 
-// the name of a knob in the plot
-std::string knob_words(const std::string& knob)
+// the rows that have an error and a cost, cheapest first; `label` returns the text beside a point
+Plot::Curve curve_of(
+    const AccuracyFindings& findings, std::vector<std::size_t> rows, const std::string& name, Plot::Style style,
+    const std::function<std::string(const AccuracyRow&)>& label = [](const AccuracyRow&) { return std::string(); })
 {
-  static const std::map<std::string, std::string> words = {
-    { "voxel", "voxel edge" },         { "samples", "sampling density" },      { "fill_min", "least filling" },
-    { "hourglass", "hourglass form" }, { "integration", "selective reduced" }, { "share", "share of critical step" },
-    { "time_step", "time step form" }, { "mass_scaling", "mass scaling" },     { "poisson", "Poisson's ratio" },
-    { "time_scaling", "time scaling" }
-  };
-  const auto known = words.find(knob);
-  return known == words.end() ? knob : known->second;
-}
-
-// rows that have figures, cheapest first
-std::vector<std::size_t> by_cost(const AccuracyFindings& findings, std::vector<std::size_t> rows)
-{
-  const auto figures = [&](std::size_t r) { return findings.rows[r].error.rms > 0 && findings.rows[r].cost > 0; };
-  rows.erase(std::remove_if(rows.begin(), rows.end(), [&](std::size_t r) { return !figures(r); }), rows.end());
-  std::sort(rows.begin(), rows.end(),
-            [&](std::size_t a, std::size_t b) { return findings.rows[a].cost < findings.rows[b].cost; });
-  return rows;
-}
-
-Plot::Curve curve_of(const AccuracyFindings& findings, const std::vector<std::size_t>& rows, const std::string& name)
-{
-  Plot::Curve curve;
-  curve.name = name;
-  for (const std::size_t r : by_cost(findings, rows))
-    curve.add(findings.rows[r].cost, mm(findings.rows[r].error.rms));
+  const auto& all = findings.rows;
+  const auto has_figures = [&](std::size_t r) { return all[r].error.rms > 0 && all[r].cost > 0; };
+  rows.erase(std::partition(rows.begin(), rows.end(), has_figures), rows.end());
+  std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return all[a].cost < all[b].cost; });
+  Plot::Curve curve{ name, {}, {}, style };
+  for (const std::size_t r : rows)
+  {
+    curve.add(all[r].cost, mm(all[r].error.rms));
+    curve.labels.push_back(label(all[r]));
+  }
   return curve;
 }
 
@@ -57,7 +42,7 @@ std::string reference_words(const AccuracyFindings& f)
       "The reference has voxels of {}, assumed-strain hourglass control and no scaled mass. Its own error is "
       "about {}, and nothing below that is claimed. This estimate is ",
       millimetres(f.reference.profile.voxel[0], 2), millimetres(f.reference_error, 2));
-  if (f.extrapolated)
+  if (is_credible(f.order))
     return text + fmt::format("Richardson's extrapolation with the observed order of {:.2g}.", f.order);
   const std::string why = std::isnan(f.order)
                               ? "the finest three solutions show no order of convergence"
@@ -82,7 +67,7 @@ Table accuracy_table(const AccuracyFindings& findings)
                 three(mm(row.settled.rms)), three(mm(row.settled.largest)), three(mm(row.landmark)),
                 three(100 * row.energy), three(row.cost), three(100 * row.spread), three(1e6 * row.step),
                 three(row.steps), row.voxels, three(1e-6 * row.memory), three(row.build),
-                row.fault.empty() ? (row.noisy ? "noisy" : "") : row.fault, three(mm(row.averaged)) });
+                row.fault.empty() ? (row.is_noisy() ? "noisy" : "") : row.fault, three(mm(row.averaged)) });
   }
   return table;
 }
@@ -93,20 +78,16 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   plot.x_log = plot.y_log = true;
   plot.width = 900;
   plot.height = 680;
-  double least = 1e300, most = 0, low = 1e300, high = 0;
-  for (const AccuracyRow& row : findings.rows)
-    if (row.error.rms > 0 && row.cost > 0)
-    {
-      least = std::min(least, row.cost);
-      most = std::max(most, row.cost);
-      low = std::min(low, mm(row.error.rms));
-      high = std::max(high, mm(row.error.rms));
-    }
-  if (most == 0)
+  std::vector<std::size_t> every_row(findings.rows.size());
+  std::iota(every_row.begin(), every_row.end(), 0);
+  const Plot::Curve all = curve_of(findings, every_row, "all settings", Plot::Style::faint);
+  if (all.x.empty())
     return plot;
+  plot.curves = { all };
+  const auto [low, high] = std::minmax_element(all.y.begin(), all.y.end());
   const double own = mm(findings.reference_error);
-  plot.x_range = { std::min(least / 1.6, 0.7), std::max(most * 1.6, 1.5) };
-  plot.y_range = { (own > 0 ? std::min(low, own) : low) / 1.3, high * 1.3 };
+  plot.x_range = { std::min(all.x.front() / 1.6, 0.7), std::max(all.x.back() * 1.6, 1.5) };
+  plot.y_range = { (own > 0 ? std::min(*low, own) : *low) / 1.3, *high * 1.3 };
   plot.shaded_below = own;
   for (double decade = 1e-6; decade < 1e6; decade *= 10)
     for (const double step : { 1.0, 1.5, 2.0, 3.0, 5.0, 7.0 })
@@ -117,26 +98,18 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
       if (tick >= plot.x_range[0] && tick <= plot.x_range[1] && (step == 1 || step == 2 || step == 5))
         plot.x_ticks.push_back(tick);
     }
-  std::vector<std::size_t> all(findings.rows.size());
-  std::iota(all.begin(), all.end(), 0);
-  plot.curves.push_back(curve_of(findings, all, "all settings"));
-  plot.curves.back().style = Plot::Style::faint;
+  const auto edge_of = [](const AccuracyRow& row) { return millimetres(row.setting.profile.voxel[0], 2); };
+  const auto style = Plot::Style::line_and_points;
   for (const KnobLine& line : findings.knobs)
   {
-    Plot::Curve curve = curve_of(findings, line.rows, knob_words(line.knob));
-    if (curve.x.size() < 2)
-      continue;
-    if (line.knob == "voxel")
-    {
-      curve.coloured_labels = true;
-      for (const std::size_t r : by_cost(findings, line.rows))
-        curve.labels.push_back(millimetres(findings.rows[r].setting.profile.voxel[0], 2));
-    }
-    plot.curves.push_back(std::move(curve));
+    Plot::Curve curve = line.knob == "voxel" ? curve_of(findings, line.rows, line.words, style, edge_of)
+                                             : curve_of(findings, line.rows, line.words, style);
+    curve.coloured_labels = true;
+    if (curve.x.size() >= 2)
+      plot.curves.push_back(std::move(curve));
   }
-  plot.curves.push_back(curve_of(findings, findings.front, "Pareto front"));
-  plot.curves.back().style = Plot::Style::strong;
-  // the points have numbers; the legend says which settings they are
+  plot.curves.push_back(curve_of(findings, findings.front, "Pareto front", Plot::Style::strong));
+  // points are numbered; the legend names their settings
   for (std::size_t p = 0; p < findings.front.size(); ++p)
   {
     const AccuracyRow& row = findings.rows[findings.front[p]];
@@ -159,7 +132,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   std::size_t longest = 0;
   for (const Plot::Curve& curve : plot.curves)
     longest = std::max(longest, curve.name.size());
-  // gnuplot reserves more width for letters than they take
+  // a negative width corrects gnuplot, which overestimates the width of the legend's text
   plot.key = fmt::format("below Left reverse maxrows 10 maxcols 3 width {} font ',12'", longest > 24 ? -8 : -4);
   return plot;
 }
@@ -183,7 +156,7 @@ std::string accuracy_report(const AccuracyFindings& f, const std::string& title)
       f.machine + ".\n";
   for (const std::string& note : f.notes)
     out += "\n- " + note;
-  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.noisy; });
+  const auto noisy = std::count_if(f.rows.begin(), f.rows.end(), [](const auto& row) { return row.is_noisy(); });
   if (noisy > 0)
     out += fmt::format(
         "\n- The machine was disturbed while {} settings were timed (spread above 20 %, or other programs "

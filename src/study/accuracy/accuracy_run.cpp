@@ -1,8 +1,9 @@
-// the motion of one variant, and the cost of its steps
+// simulates one variant and measures the cost of its steps
 
 #include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/step_time.hpp"
@@ -22,10 +23,9 @@ namespace frontalis
 namespace
 {
 
-constexpr int repetitions = 9;
-constexpr double seconds_per_checkpoint = 60;  // at least
-constexpr double share_of_checkpoints =
-    1 / 40.0;  // of the wall time, at most; checkpoints of large models take seconds
+constexpr int repetitions = 9;                  // timings of a published skin
+constexpr double seconds_per_checkpoint = 60;   // least wall time between checkpoints
+constexpr double share_of_checkpoints = 0.025;  // largest fraction of wall time: one of a large model takes seconds
 
 int thread_count(int threads)
 {
@@ -42,7 +42,7 @@ Controls controls_at(const Solver& solver, const ActivationHistory& history, dou
   return controls;
 }
 
-SkinPhase look(Solver& solver, const Model& model)
+SkinPhase read_skin(Solver& solver, const Model& model)
 {
   SkinState skin;
   solver.skin(skin);
@@ -52,14 +52,11 @@ SkinPhase look(Solver& solver, const Model& model)
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
 
-// a displacement larger than the model counts as divergence, even if it is finite
-void check_size(const VariantMotion& motion, const Model& model)
+// longest edge of the model's box [m]; a larger displacement of the skin counts as divergence
+double largest_size(const Model& model)
 {
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size = std::max(size, model.size[axis] * model.spacing[axis]);
-  if (motion_size(motion) > size)
-    throw Diverged("the skin has left the model behind");
+  return std::max(
+      { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] });
 }
 
 std::vector<float> vertex_areas(const Model& model)
@@ -67,33 +64,16 @@ std::vector<float> vertex_areas(const Model& model)
   std::vector<float> areas(model.skin.vertices.size(), 0);
   for (const auto& t : model.skin.triangles)
   {
-    const auto &a = model.skin.vertices[t[0]], &b = model.skin.vertices[t[1]], &c = model.skin.vertices[t[2]];
-    double square = 0;
-    for (int i = 0; i < 3; ++i)
+    const auto corner = [&](int i)
     {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const double n = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
-      square += n * n;
-    }
+      const auto& p = model.skin.vertices[t[i]];
+      return physics::Vec3<double>{ p[0], p[1], p[2] };
+    };
+    const auto normal = cross(corner(1) - corner(0), corner(2) - corner(0));
     for (const auto v : t)
-      areas[v] += static_cast<float>(std::sqrt(square) / 6);
+      areas[v] += static_cast<float>(norm(normal) / 6);
   }
   return areas;
-}
-
-// resumes a motion; false if the checkpoint does not fit the solver
-bool go_on_from(const VariantCheckpoint& checkpoint, Solver& solver, VariantCheckpoint& state)
-{
-  try
-  {
-    solver.unpack(checkpoint.solver);
-  }
-  catch (const Error&)
-  {
-    return false;
-  }
-  state = checkpoint;
-  return true;
 }
 
 }  // namespace
@@ -111,7 +91,7 @@ std::string machine_of(const Solver& solver, int threads)
   return solver.description() + ", " + processor + ", " + std::to_string(thread_count(threads)) + " threads";
 }
 
-// only malloc_info() of glibc counts all arenas: memory from the system and mapped memory, less what is free
+// Only malloc_info() of glibc covers all arenas. Used bytes: those from the system, plus mapped ones, minus free ones.
 double heap_bytes()
 {
   char* text = nullptr;
@@ -143,13 +123,27 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
   motion.area = vertex_areas(*model);
   try
   {
-    SolverSettings settings;
-    settings.backend = setting.backend;
-    settings.threads = threads;
+    SolverSettings settings{ setting.backend, threads };
     settings.ledger = wants_ledger;
     const auto solver = make_solver(model, settings);
-    if (!checkpoints.last || !go_on_from(*checkpoints.last, *solver, state))
-      motion.phases.push_back(look(*solver, *model));
+    const auto add_phase = [&]
+    {
+      motion.phases.push_back(read_skin(*solver, *model));
+      if (motion_size(motion) > largest_size(*model))
+        throw Diverged("the skin has moved farther than the size of the model");
+    };
+    try
+    {
+      if (checkpoints.last)
+        solver->unpack(checkpoints.last->solver);
+      state = checkpoints.last.value_or(state);
+    }
+    catch (const Error&)
+    {
+      // a checkpoint of another solver: the motion starts from rest
+    }
+    if (motion.phases.empty())
+      add_phase();
     const double steps_before = motion.steps;
     double next_checkpoint = wall_seconds() + seconds_per_checkpoint;
     const auto keep = [&]
@@ -160,35 +154,32 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       const double end = wall_seconds();
       next_checkpoint = end + std::max(seconds_per_checkpoint, (end - begin) / share_of_checkpoints);
     };
-    // large models have more slices, so that an interruption does not wait for long
-    const std::int64_t slices_a_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
+    // large models have more slices, since an interruption takes effect at the end of a slice
+    const std::int64_t slices_per_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
     const double length = history.ramp + history.hold;
     const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
     const auto time_of = [&](std::int64_t slices)
     {
-      const auto phase = static_cast<std::size_t>(slices / slices_a_phase);
-      const double share = static_cast<double>(slices % slices_a_phase) / static_cast<double>(slices_a_phase);
+      const auto phase = static_cast<std::size_t>(slices / slices_per_phase);
+      const double share = static_cast<double>(slices % slices_per_phase) / static_cast<double>(slices_per_phase);
       return share > 0 ? ends[phase] + (ends[phase + 1] - ends[phase]) * share : ends[phase];
     };
-    while (state.slices < 3 * slices_a_phase)
+    while (state.slices < 3 * slices_per_phase)
     {
       const double time = time_of(state.slices), next = time_of(state.slices + 1);
       if (next > time)
         solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
       ++state.slices;
       motion.steps = steps_before + static_cast<double>(solver->profile().steps);
-      if (state.slices % slices_a_phase == 0)
-      {
-        motion.phases.push_back(look(*solver, *model));
-        check_size(motion, *model);
-      }
+      if (state.slices % slices_per_phase == 0)
+        add_phase();
       const bool interrupted = !go_on(0.8 * next / length);
       if (interrupted || wall_seconds() > next_checkpoint)
         keep();
       if (interrupted)
         return std::nullopt;
     }
-    // settling has no checkpoints; it begins anew from here
+    // settling has no checkpoints; if it is interrupted, it starts again from this one
     state.solver = solver->pack();
     const VariantCheckpoint played = state;
     motion.steps /= length;
@@ -199,21 +190,21 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     VariantMotion last;
     last.area = motion.area;
     last.phases = { motion.phases[0], motion.phases.back() };
-    double looked = 0;
+    double last_check = 0;  // simulated seconds of settling
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
-    // the guard may go back to an earlier state, and settling begins anew
+    // the guard may return to an earlier state; then settling starts again and `seconds` decreases
     Guard guard(*solver, model);
     const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
                                            [&](const Equilibrium& equilibrium)
                                            {
                                              interrupted = !go_on(0.8 + 0.2 * equilibrium.seconds / settling);
-                                             looked = std::min(looked, equilibrium.seconds);
-                                             if (equilibrium.seconds - looked < 0.1 * settling)
+                                             last_check = std::min(last_check, equilibrium.seconds);
+                                             if (equilibrium.seconds - last_check < 0.1 * settling)
                                                return !interrupted;
-                                             looked = equilibrium.seconds;
+                                             last_check = equilibrium.seconds;
                                              VariantMotion present = last;
-                                             present.phases[1] = look(*solver, *model);
+                                             present.phases[1] = read_skin(*solver, *model);
                                              const double moved = skin_errors(present, last)[1].rms;
                                              last = std::move(present);
                                              return !interrupted && moved > 5e-4 * motion_size(last);
@@ -224,10 +215,9 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       return std::nullopt;
     }
     motion.residual = found.residual;
-    motion.phases.push_back(look(*solver, *model));
-    check_size(motion, *model);
+    add_phase();
   }
-  // other errors are faults of the machine and are not stored as faults of the setting
+  // other errors do not depend on the setting and must not be stored as its faults
   catch (const Diverged& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
@@ -244,17 +234,15 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
 {
   VariantCost cost;
   const double heap = heap_bytes();
-  SolverSettings settings;
-  settings.backend = setting.backend;
-  settings.threads = threads;
+  const SolverSettings settings{ setting.backend, threads };
   const auto solver = make_solver(model, settings);
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
-  // the time that other programs take can be measured only for a single thread
+  // processor time, which excludes other programs, is meaningful only for a single thread
   const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();
-  // while muscles begin to pull, the time step is estimated often; this is not part of the cost per step
+  // long patience: while activations grow, frequent estimates of the time step would distort the cost per step
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;

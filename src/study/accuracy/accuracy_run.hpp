@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/byte_archive.hpp"
 #include "frontalis/study/accuracy.hpp"
 
 #include <array>
@@ -18,40 +17,25 @@ struct SkinPhase
   std::vector<std::array<float, 3>> landmarks;
 };
 
-/// The motion of one variant, which is the same on every run.
+/// The motion of one variant (a setting of the study), which is bitwise the same in every run.
 struct VariantMotion
 {
   std::string fault;              ///< why the motion cannot be used; empty: it can
   std::vector<SkinPhase> phases;  ///< at rest, mid-ramp, end of ramp, end of history, settled
-  std::vector<float> area;        ///< area of the skin at rest, shared out to its vertices [m2]
-  double steps = 0;               ///< time steps per second of the activations' clock
+  std::vector<float> area;        ///< area of the skin at rest that belongs to each vertex [m2]
+  double steps = 0;               ///< number of time steps per second of the activation history
   double energy = 0;              ///< imbalance of the energy ledger over its largest term
-  double residual = 0;            ///< remaining motion over the displacement, see Solver::settle()
+  double residual = 0;            ///< remaining motion over the displacement, as in Solver::settle()
   double voxels = 0;
 
   void archive(ByteArchive& archive);
 };
 
-/// The cost of one variant on one machine, measured in one run.
-struct VariantCost
-{
-  std::string machine;    ///< empty: not measured yet
-  double step = 0;        ///< time per step, median of the repetitions [s]
-  double spread = 0;      ///< distance of the quartiles over the median
-  double processors = 1;  ///< share of its processors that the study got
-  double skin = 0;        ///< time per published skin [s]
-  double memory = 0;      ///< memory of model and solver [bytes]
-  double build = 0;       ///< time to make the model [s]
-
-  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }
-  void archive(ByteArchive& archive);
-};
-
-/// A motion that is not finished.
+/// An interrupted motion.
 struct VariantCheckpoint
 {
-  VariantMotion motion;     ///< so far; `steps` is the number of steps made
-  std::int64_t slices = 0;  ///< slices of the history that have been played
+  VariantMotion motion;     ///< until now; its `steps` is the total number of steps
+  std::int64_t slices = 0;  ///< slices of the history that have been simulated
   std::string solver;       ///< Solver::pack()
 
   void archive(ByteArchive& archive);
@@ -60,7 +44,7 @@ struct VariantCheckpoint
 /// The machine on which costs are measured: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
-using GoOn = std::function<bool(double done)>;
+using GoOn = std::function<bool(double done)>;  ///< gets the completed fraction, 0..1; false: interrupt
 
 /// The checkpoint to resume a motion from, and a function that stores further ones: about one per minute of wall time,
 /// and one if the motion is interrupted.
@@ -70,75 +54,70 @@ struct Checkpoints
   std::function<void(const VariantCheckpoint&)> keep;
 };
 
-/// Plays the history and settles. Returns nothing if `go_on` ended the motion; a motion that fails is returned with
-/// its fault. Without `ledger` its energy is NaN. Interrupting and resuming does not change a bit of the result.
+/// Simulates the history and settling. Returns nothing if `go_on` interrupted it; an unstable motion is returned with
+/// its fault. Without `ledger` its energy is NaN. A resumed motion has bitwise the same result as an uninterrupted one.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
                                           const Checkpoints& checkpoints, const GoOn& go_on);
 
-/// Times steps for about `seconds` of wall time after the history's activations are reached.
+/// Times steps at the history's final activations for about `seconds` of wall time.
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                          const ActivationHistory& history, int threads, double seconds);
 
-/// Bytes on the heap of this program.
+/// Allocated bytes on the heap of this program.
 double heap_bytes();
 
-/// Distance between the displacements of two motions of the same skin in each phase; phase 0 is the skin at rest.
-/// Throws Error if the skins differ.
+/// Differences between the displacements of two motions, per phase. Throws Error if they do not have the same skin.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
-/// The phases at rest and settled of a motion, and the same of a body whose settled displacements [m] are known for all
-/// positions [m].
+/// The rest and settled phases of a motion, and those with settled displacements [m] as a function of position [m].
 VariantMotion settled_part(const VariantMotion& motion);
-VariantMotion exact_motion(const VariantMotion& like,
-                           const std::function<std::array<double, 3>(const std::array<double, 3>&)>& displacement);
+VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
-/// Root mean square displacement [m] of the phase where it is largest.
+/// Root mean square displacement [m], the largest of all phases.
 double motion_size(const VariantMotion& motion);
+
+/// Averages displacements over the neighbourhood of each vertex, so that single folds do not dominate the errors.
+class SkinAverage
+{
+public:
+  /// The weights are the vertices' areas times a Gaussian of this standard deviation [m] between rest positions. All
+  /// motions must have the rest positions of the reference.
+  SkinAverage(const VariantMotion& reference, double deviation);
+
+  /// The motion with averaged displacements; landmarks stay as they are.
+  VariantMotion of(const VariantMotion& motion) const;
+  /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
+  SkinError error(const VariantMotion& motion) const;
+
+private:
+  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex
+  VariantMotion reference_;                                          // averaged
+};
 
 /// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
 /// `coarse` between the first and the second, `fine` between the second and the third. NaN if there is none in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
-/// Richardson's estimate of the error at the finest edge, from the difference to the solution at the edge before.
+inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }  ///< good enough to extrapolate with
+/// Richardson's estimate of the error at edge `finest`, from the difference to the solution at edge `before`.
 double richardson(double before, double finest, double difference, double order);
-
-/// Variants on disk, each in files of its own that are written whole or not at all.
-class VariantStore
-{
-public:
-  /// Makes the folder. Throws Error.
-  explicit VariantStore(std::string folder);
-
-  bool has_motion(const std::string& key) const;
-  std::optional<VariantMotion> motion(const std::string& key) const;
-  std::optional<VariantCost> cost(const std::string& key) const;
-  void keep(const std::string& key, const VariantMotion& motion) const;
-  void keep(const std::string& key, const VariantCost& cost) const;
-  std::optional<VariantCheckpoint> checkpoint(const std::string& key) const;  ///< removed once the motion is kept
-  void keep(const std::string& key, const VariantCheckpoint& checkpoint) const;
-
-private:
-  std::string path(const std::string& key, const char* extension) const;
-
-  std::string folder_;
-};
 
 /// The settings of one knob, all others as in the standard setting.
 struct Sweep
 {
-  std::string knob;
+  std::string knob, words;  ///< names on the command line and in plots
   std::vector<AccuracySetting> settings;
 };
 /// `critical`: time step of the standard setting without scaled mass [s].
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical);
-/// The combinations of settings that are tried at one voxel edge.
+/// The combinations of settings that are measured at one voxel edge.
 std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge, double critical);
-/// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its steps are as long as the assembled
-/// model allows; the study checks what halving them changes.
+/// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its time step is estimated from
+/// the assembled model; the study checks the effect of halving it.
 AccuracySetting reference_setting(const AccuracySetting& standard, double edge);
 /// The differences of a setting from the standard one in words; "standard" if there are none.
 std::string name_of(const AccuracySetting& setting, const AccuracySetting& standard);
-/// Wall time over that of the same motion with one-point single-precision elements of an edge of 1 m, for estimates.
+/// Rough wall time relative to that of one-point, single-precision elements with an edge of 1 m.
 double relative_time(const AccuracySetting& setting);
 
 }  // namespace frontalis

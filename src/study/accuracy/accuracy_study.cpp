@@ -1,8 +1,6 @@
 // a study of accuracy: the reference, then each knob, then combinations of knobs
 
 #include "study/accuracy/accuracy_bench.hpp"
-#include "study/accuracy/accuracy_comparison.hpp"
-#include "study/accuracy/accuracy_front.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
@@ -42,16 +40,12 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // number of voxel edges for variants: all but the reference's
+  // number of voxel edges of variants, which exclude the reference's
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
   {
     return !plan_.exact && setting.profile.voxel[0] < 1.01 * plan_.edges.back();
-  }
-  bool wanted(const std::string& knob) const
-  {
-    return plan_.knobs.empty() || std::find(plan_.knobs.begin(), plan_.knobs.end(), knob) != plan_.knobs.end();
   }
 
   AccuracyPlan plan_;
@@ -61,15 +55,13 @@ private:
   AccuracyFindings findings_;
 };
 
-// Measures the reference's form from coarse to fine. The time of each level tells how long the next one takes; levels
-// that the budget does not allow are left out.
+// Measures the reference's settings from the largest to the smallest voxel edge. Times of earlier edges predict those
+// of later ones, which are left out if the budget does not suffice.
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
-  std::vector<AccuracySetting> levels;
-  levels.reserve(edges.size());
-  for (const double edge : edges)
-    levels.push_back(reference_at(edge));
+  std::vector<AccuracySetting> levels(edges.size());
+  std::transform(edges.begin(), edges.end(), levels.begin(), [&](double edge) { return reference_at(edge); });
   bench_.expect(levels);
   for (std::size_t level = 0; level < edges.size(); ++level)
   {
@@ -79,9 +71,9 @@ void Study::choose_reference()
     const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
     if (level > 2 && share > 0.4)
     {
-      findings_.notes.push_back(fmt::format("Voxels of {}{} were left out: about {:.2g} s do not fit the budget.",
-                                            millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "",
-                                            takes));
+      findings_.notes.push_back(
+          fmt::format("Voxels of {}{} were left out: they would take about {:.2g} s, too much of the budget.",
+                      millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "", takes));
       edges.resize(level);
       break;
     }
@@ -98,7 +90,8 @@ void Study::choose_reference()
   bench_.set_reference(findings_.reference);
   reference_ = bench_.measure(findings_.reference);
   if (const std::string& fault = motion_of(reference_).fault; !fault.empty())
-    throw Error("the reference, voxels of " + millimetres(edges.back()) + ", has no motion to compare with: " + fault);
+    throw Error("the reference, with voxels of " + millimetres(edges.back()) +
+                ", has no motion to compare with: " + fault);
   findings_.averaged_over = averaged_voxels * plan_.standard.profile.voxel[0];
   average_.emplace(motion_of(reference_), findings_.averaged_over);
 }
@@ -106,17 +99,18 @@ void Study::choose_reference()
 void Study::measure_knobs()
 {
   const std::size_t standard = bench_.measure(plan_.standard);
-  const std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  std::vector<Sweep> sweeps = knob_sweeps(plan_, bench_.critical_time_step());
+  const auto& knobs = plan_.knobs;  // empty: all
+  const auto unwanted = [&](const Sweep& sweep)
+  { return !knobs.empty() && std::find(knobs.begin(), knobs.end(), sweep.knob) == knobs.end(); };
+  sweeps.erase(std::remove_if(sweeps.begin(), sweeps.end(), unwanted), sweeps.end());
   std::vector<AccuracySetting> all;
   for (const Sweep& sweep : sweeps)
-    if (wanted(sweep.knob))
-      all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
+    all.insert(all.end(), sweep.settings.begin(), sweep.settings.end());
   bench_.expect(all);
   for (const Sweep& sweep : sweeps)
   {
-    if (!wanted(sweep.knob))
-      continue;
-    KnobLine line{ sweep.knob, { standard } };
+    KnobLine line{ sweep.knob, sweep.words, { standard } };
     for (const AccuracySetting& setting : sweep.settings)
     {
       const std::string& profile = setting.profile.name;
@@ -133,7 +127,7 @@ void Study::measure_knobs()
   }
 }
 
-// measures, at each voxel edge, the combinations that were not clearly beaten at the previous edge
+// measures at each voxel edge the combinations that were not clearly worse than another at the previous edge
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -176,17 +170,16 @@ void Study::check_reference()
   if (elsewhere)
     exact.backend = "cpu";
   halved.profile.time_step_share *= 0.5;
-  for (const auto& [setting, words] : { std::pair<const AccuracySetting&, const char*>(
-                                            exact, elsewhere ? "double precision on the CPU" : "double precision"),
-                                        std::pair<const AccuracySetting&, const char*>(halved, "half the time step") })
+  const char* const in_double = elsewhere ? "double precision on the CPU" : "double precision";
+  for (const auto& [setting, words] : { std::pair(exact, in_double), std::pair(halved, "half the time step") })
   {
     if (!bench_.fits(setting))
       continue;
     const VariantMotion& other = motion_of(bench_.measure(setting));
     if (other.fault.empty())
-      findings_.notes.push_back(fmt::format("The reference's form with voxels of {}: {} moves the skin by {:.3g} µm.",
-                                            millimetres(plan_.edges[0]), words,
-                                            1e6 * worst(skin_errors(motion_of(base), other)).rms));
+      findings_.notes.push_back(
+          fmt::format("The reference's settings with voxels of {}: {} changes the skin by {:.3g} µm.",
+                      millimetres(plan_.edges[0]), words, 1e6 * worst(skin_errors(motion_of(base), other)).rms));
   }
 }
 
@@ -233,11 +226,11 @@ AccuracyFindings Study::run()
       ++elsewhere[measured.played_by];
   }
   for (const auto& [backend, count] : elsewhere)
-    findings_.notes.push_back(
-        fmt::format("{} settings have motions of backend {}, which the folder had.", count, backend));
+    findings_.notes.push_back(fmt::format(
+        "Motions of {} settings were computed earlier by backend {} and read from the folder.", count, backend));
   if (!plan_.exact)
   {
-    // the reference is no setting to choose: it has no error of its own
+    // the reference has no error against itself and is not offered as a choice
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// rounded to three digits, enough for a target of the time step
+// three significant digits, enough for the target of a time step
 double rounded(double value)
 {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -58,63 +58,69 @@ std::string edge_text(const Vector3& voxel)
 }
 
 template <class T, class Set>
-Sweep sweep(const std::string& knob, const AccuracySetting& standard, const std::vector<T>& values, Set&& set)
+std::vector<AccuracySetting> sweep(const AccuracySetting& standard, const std::vector<T>& values, Set&& set)
 {
-  Sweep out{ knob, {} };
-  for (const T& value : values)
-  {
-    out.settings.push_back(standard);
-    set(out.settings.back(), value);
-  }
-  return out;
+  std::vector<AccuracySetting> settings(values.size(), standard);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    set(settings[i], values[i]);
+  return settings;
 }
 
 }  // namespace
 
-std::vector<std::string> knob_names()
-{
-  return { "voxel",     "samples",      "fill_min", "hourglass",    "integration", "precision", "share",
-           "time_step", "mass_scaling", "poisson",  "time_scaling", "backend",     "profiles" };
-}
-
+// in the order of the command line's help
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
 {
   const AccuracySetting& s = plan.standard;
   const bool quick = plan.quick;
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
-  std::vector<Sweep> all;
-  // without a closed form, the last edge is the reference's: no variant has it
-  all.push_back(sweep("voxel", s, Numbers(plan.edges.begin(), plan.edges.end() - (plan.exact ? 0 : 1)),
-                      [](auto& setting, double edge) { setting.profile.voxel.fill(edge); }));
-  all.push_back(sweep("samples", s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },
-                      [](auto& setting, double n) { setting.profile.samples = static_cast<int>(n); }));
-  all.push_back(sweep("fill_min", s, quick ? Numbers{ 0.05, 0.4 } : Numbers{ 0.02, 0.1, 0.3, 0.5 },
-                      [](auto& setting, double share) { setting.profile.fill_min = share; }));
-  all.push_back(sweep("hourglass", s, Names{ "scalar", "assumed_strain" },
-                      [](auto& setting, const auto& form) { setting.profile.assumed_strain = form != "scalar"; }));
-  all.push_back(sweep("integration", s, Names{ "one_point", "selective_reduced" },
-                      [](auto& setting, const auto& form) { setting.profile.integration = form; }));
-  // the GPU computes in single precision whatever the setting says
-  all.push_back(sweep("precision", s, s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" },
-                      [](auto& setting, const auto& precision) { setting.profile.precision = precision; }));
-  all.push_back(sweep("share", s, quick ? Numbers{ 0.45 } : Numbers{ 0.3, 0.6, 0.95 },
-                      [](auto& setting, double share) { setting.profile.time_step_share = share; }));
-  all.push_back(sweep("time_step", s, Names{ "element", "assembled" },
-                      [](auto& setting, const auto& form) { setting.profile.time_step = form; }));
-  all.push_back(sweep("mass_scaling", s, quick ? Numbers{ 1, 4, 8 } : Numbers{ 1, 2, 3, 4, 6, 8 },
-                      [critical](auto& setting, double factor) { scale_mass(setting, factor, critical); }));
-  all.push_back(sweep("poisson", s, Numbers{ 0.45, 0.49, 0.499 },
-                      [](auto& setting, double poisson) { setting.poisson = poisson; }));
-  all.push_back(sweep("time_scaling", s, quick ? Numbers{ 2, 4 } : Numbers{ 2, 4, 8 },
-                      [](auto& setting, double factor) { setting.time_scaling = factor; }));
+  // without a closed form, the last edge is only for the reference
+  const Numbers edges(plan.edges.begin(), plan.edges.end() - (plan.exact || plan.edges.empty() ? 0 : 1));
+  // the GPU always computes in single precision
+  const Names precisions = s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" };
   std::vector<Backend> backends = available_backends();
   if (quick)
     backends.erase(std::remove(backends.begin(), backends.end(), "reference"), backends.end());
-  all.push_back(
-      sweep("backend", s, backends, [](auto& setting, const Backend& backend) { setting.backend = backend; }));
-  all.push_back(sweep("profiles", s, plan.profiles, [](auto& setting, const auto& p) { setting.profile = p; }));
-  return all;
+  return { { "voxel", "voxel edge", sweep(s, edges, [](auto& to, double edge) { to.profile.voxel.fill(edge); }) },
+           { "samples", "sampling density",
+             sweep(s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },
+                   [](auto& to, double n) { to.profile.samples = static_cast<int>(n); }) },
+           { "fill_min", "least filling",
+             sweep(s, quick ? Numbers{ 0.05, 0.4 } : Numbers{ 0.02, 0.1, 0.3, 0.5 },
+                   [](auto& to, double share) { to.profile.fill_min = share; }) },
+           { "hourglass", "hourglass form",
+             sweep(s, Names{ "scalar", "assumed_strain" },
+                   [](auto& to, const auto& form) { to.profile.assumed_strain = form != "scalar"; }) },
+           { "integration", "selective reduced",
+             sweep(s, Names{ "one_point", "selective_reduced" },
+                   [](auto& to, const auto& form) { to.profile.integration = form; }) },
+           { "precision", "precision",
+             sweep(s, precisions, [](auto& to, const auto& precision) { to.profile.precision = precision; }) },
+           { "share", "share of critical step",
+             sweep(s, quick ? Numbers{ 0.45 } : Numbers{ 0.3, 0.6, 0.95 },
+                   [](auto& to, double share) { to.profile.time_step_share = share; }) },
+           { "time_step", "time step form",
+             sweep(s, Names{ "element", "assembled" },
+                   [](auto& to, const auto& form) { to.profile.time_step = form; }) },
+           { "mass_scaling", "mass scaling",
+             sweep(s, quick ? Numbers{ 1, 4, 8 } : Numbers{ 1, 2, 3, 4, 6, 8 },
+                   [=](auto& to, double factor) { scale_mass(to, factor, critical); }) },
+           { "poisson", "Poisson's ratio",
+             sweep(s, Numbers{ 0.45, 0.49, 0.499 }, [](auto& to, double poisson) { to.poisson = poisson; }) },
+           { "time_scaling", "time scaling",
+             sweep(s, quick ? Numbers{ 2, 4 } : Numbers{ 2, 4, 8 },
+                   [](auto& to, double factor) { to.time_scaling = factor; }) },
+           { "backend", "backend", sweep(s, backends, [](auto& to, const Backend& backend) { to.backend = backend; }) },
+           { "profiles", "profiles", sweep(s, plan.profiles, [](auto& to, const auto& p) { to.profile = p; }) } };
+}
+
+std::vector<std::string> knob_names()
+{
+  std::vector<std::string> names;
+  for (const Sweep& sweep : knob_sweeps({}, 1))
+    names.push_back(sweep.knob);
+  return names;
 }
 
 std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge, double critical)
@@ -122,7 +128,7 @@ std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge,
   std::vector<AccuracySetting> all;
   for (const bool assumed_strain : { false, true })
     for (const char* const form : { "element", "assembled" })
-      for (const double factor : { 0, 4, 8 })  // 0: mass as the standard setting has it
+      for (const double factor : { 0, 4, 8 })  // 0: the standard setting's mass scaling
       {
         AccuracySetting setting = plan.standard;
         setting.profile.voxel.fill(edge);
@@ -174,6 +180,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
 double relative_time(const AccuracySetting& setting)
 {
   const AccuracyProfile& p = setting.profile;
+  // rough factors that only predict how long a study takes
   double time = 1 / (p.voxel[0] * p.voxel[1] * p.voxel[2] * std::min({ p.voxel[0], p.voxel[1], p.voxel[2] }));
   time *= 0.9 / p.time_step_share / setting.time_scaling;
   time *= p.integration == "selective_reduced" ? 2.5 : p.assumed_strain ? 1.4 : 1;

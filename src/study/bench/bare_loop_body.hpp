@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-// Written by hand without the laws in physics/, since a yardstick that shares their code would hide what they cost.
+// Does not use the laws in physics/, since a reference that shares their code would hide their cost.
 template <class Architecture>
 struct BareLoopBody
 {
@@ -34,7 +34,7 @@ struct BareLoopBody
   static inline __attribute__((always_inline)) void row(const BareLoop& loop, std::size_t node, std::size_t voxel,
                                                         float* below, float* above, std::size_t plane)
   {
-    const std::size_t n = static_cast<std::size_t>(loop.nodes_an_edge), square = n * n;
+    const std::size_t n = static_cast<std::size_t>(loop.nodes_per_edge), square = n * n;
     const std::size_t corner[8] = { 0, 1, n, n + 1, square, square + 1, square + n, square + n + 1 };
     Batch q[3][8];
     for (int c = 0; c < 3; ++c)
@@ -62,7 +62,7 @@ struct BareLoopBody
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         trace = trace + F[i][j] * F[i][j];
-    // J^(-1/3) near 1 by Newton's method
+    // y = J^(-1/3) by Newton's method from the tangent at J = 1
     Batch y = Batch(4.0f / 3) - Batch(1.0f / 3) * J;
     for (int i = 0; i < 3; ++i)
       y = y * (Batch(4.0f) - J * y * y * y) * Batch(1.0f / 3);
@@ -98,7 +98,7 @@ struct BareLoopBody
 
   static void run(const BareLoop& loop, int first, int last, float* scratch)
   {
-    const int n = loop.nodes_an_edge;
+    const int n = loop.nodes_per_edge;
     const std::size_t square = static_cast<std::size_t>(n) * static_cast<std::size_t>(n), plane = square + 64;
     float* below = scratch;
     float* above = scratch + 3 * plane;

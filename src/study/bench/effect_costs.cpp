@@ -1,13 +1,17 @@
 #include "frontalis/study/effect_costs.hpp"
 
+#include "frontalis/model/sample_field.hpp"
+#include "frontalis/study/voxel_model.hpp"
+
 #include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
 namespace
 {
 
-// only steps are compared, so the search for the length of steps is left out
+// the time step that needs the least computation, since only the cost of steps is compared and not their length
 Model with_cheap_time_step(Model model)
 {
   model.time_step_estimate = TimeStepEstimate::element;
@@ -24,6 +28,60 @@ Model without(const Model& model, EffectSet off)
 std::unique_ptr<Solver> solver_of(Model model, const SolverSettings& settings)
 {
   return make_solver(std::make_shared<const Model>(std::move(model)), settings);
+}
+
+Controls active_controls(const Solver& solver)
+{
+  Controls controls = solver.controls();
+  std::fill(controls.activation.begin(), controls.activation.end(), 0.75f);
+  return controls;
+}
+
+constexpr std::int32_t length = 64, depth = 40;  // voxels of the block of measure_presence()
+
+// gives an effect to a fraction of the voxels, or of the nodes of the face z = 0
+void give(Model& model, Effect effect, double share)
+{
+  const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
+  const auto has = [&](std::size_t e) { return model.voxels[e][1] < rows; };
+  if (effect == Effect::viscosity)
+  {
+    model.materials.push_back(model.materials[0]);
+    model.materials.back().viscous_share = { { 0.3, 0.2 } };
+    model.materials.back().viscous_time = { { 0.1, 1 } };
+    mix(model, [&](std::size_t e) { return Mixture{ { has(e) ? 1 : 0, 1.0F } }; });
+  }
+  if (effect == Effect::contraction || effect == Effect::fibre_stiffness)
+  {
+    const Muscle muscle{ "pull", 1e3, effect == Effect::fibre_stiffness };
+    add_muscles(model, { muscle },
+                [&](std::size_t e) {
+                  return has(e) ? std::vector<Fibre>{ { 0, along_x(e) } } : std::vector<Fibre>();
+                });
+  }
+  if (effect == Effect::sliding || effect == Effect::friction)
+  {
+    // the cost of friction is what it adds to sliding, so all nodes of the face slide
+    const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
+    const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
+    const auto slide_between = [&](const char* floor, std::int32_t first, std::int32_t last)
+    {
+      slide_on(
+          model, floor, [](const Point& p) { return p[2]; },
+          nodes_where(model,
+                      [&](const Point& p)
+                      {
+                        const double row = p[1] / model.spacing[1];
+                        return p[2] == 0 && p[0] > 0 && row > first - 0.5 && row < last - 0.5;
+                      }));
+    };
+    slide_between("smooth floor", rough_rows, sliding_rows);
+    if (rough_rows > 0)
+    {
+      slide_between("rough floor", 0, rough_rows);
+      model.constraint_surfaces.back().friction = 0.3;
+    }
+  }
 }
 
 double time_of_field(Solver& solver)
@@ -50,7 +108,7 @@ Model plain_model(const Model& model)
   Model plain = without(model, all);
   for (Material& material : plain.materials)
   {
-    // 3 kappa (1 - 2 nu) = 2 mu (1 + nu): any shear modulus at rest costs the same
+    // keeps the bulk modulus; Poisson's ratio becomes 0.49, which does not affect the cost
     if (material.law != Law::neo_hookean)
       material.parameters[0] = material.parameters[1] / 50;
     material.law = Law::neo_hookean;
@@ -66,12 +124,10 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   const EffectSet present = effects_of(*model);
   const std::unique_ptr<Solver> whole = solver_of(with_cheap_time_step(*model), settings),
                                 plain = solver_of(plain_model(*model), settings);
-  const Controls rest = whole->controls();
-  Controls active = rest;
-  std::fill(active.activation.begin(), active.activation.end(), 0.75f);
+  const Controls rest = whole->controls(), active = active_controls(*whole);
 
-  // what a step takes without an effect; nodes that nothing holds would fly away, so that rigid nodes are compared at
-  // rest, and without the effects that would move the others
+  // Time per step that an effect adds. A model without rigid nodes would fly away, so their cost is measured at rest
+  // and without the effects that cause motion.
   const auto cost_of = [&](Effect effect) -> Spread
   {
     if (effect == Effect::elasticity)
@@ -111,6 +167,50 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   if (present.has(Effect::output_fields))
     costs.field = time_of_field(*whole);
   return costs;
+}
+
+std::vector<double> presence_shares() { return { 0, 0.1, 0.5, 1 }; }
+
+std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
+{
+  // the addresses of a solver's arrays change its time per step by about 1 %, so each is created several times
+  constexpr int rounds = 4;
+  const StepTimer timer = step_timer(settings, seconds / rounds);
+  const std::vector<double> shares = presence_shares();
+  std::vector<PresenceCost> costs;
+  for (const Effect effect :
+       { Effect::contraction, Effect::fibre_stiffness, Effect::viscosity, Effect::sliding, Effect::friction })
+  {
+    StepTimes times;
+    for (int round = 0; round < rounds; ++round)
+    {
+      std::vector<std::unique_ptr<Solver>> solvers;
+      std::vector<TimedSolver> timed;
+      for (const double share : shares)
+      {
+        Model model = dense_block(length, depth, depth);
+        model.gravity = {};
+        give(model, effect, share);
+        solvers.push_back(solver_of(std::move(model), settings));
+        timed.push_back({ solvers.back().get(), active_controls(*solvers.back()) });
+      }
+      const StepTimes more = timer(timed);
+      times.insert(times.end(), more.begin(), more.end());
+    }
+    for (std::size_t s = 0; s < shares.size(); ++s)
+      costs.push_back({ effect, shares[s], spread_of_difference(times, s, 0), spread_of(times, 0).median });
+  }
+  return costs;
+}
+
+ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
+                                  const StepTimer& timer)
+{
+  const auto one = make_solver(model, settings), all = make_solver(model, settings);
+  Controls of_one = one->controls();
+  of_one.activation.at(0) = 0.75f;
+  const StepTimes times = timer({ { one.get(), of_one }, { all.get(), active_controls(*all) } });
+  return { spread_of(times, 0).median, spread_of(times, 1).median, spread_of_difference(times, 1, 0).half };
 }
 
 }  // namespace frontalis

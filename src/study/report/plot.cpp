@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
 #include <sstream>
 
 namespace frontalis
@@ -23,22 +25,15 @@ const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E6
 const char* const marks[] = { "7", "5" };
 const char* const more_marks[] = { "9", "13", "11" };
 
-// a string of gnuplot: single quotes are doubled inside, and line breaks stand in double quotes
-std::string quoted(const std::string& text)
+std::string replaced(const std::string& text, const char* what, const char* by)
 {
-  std::string out = "'";
-  for (const char c : text)
-    out += c == '\'' ? std::string("''") : c == '\n' ? std::string("'.\"\\n\".'") : std::string(1, c);
-  return out + "'";
+  return std::regex_replace(text, std::regex(what), by);
 }
 
-// a string that gnuplot takes as a format, as it does tick labels
-std::string quoted_as_format(const std::string& text)
+// a string of gnuplot in single quotes, which are doubled inside; only double quotes understand a line break
+std::string quoted(const std::string& text)
 {
-  std::string out;
-  for (const char c : quoted(text))
-    out += c == '%' ? std::string("%%") : std::string(1, c);
-  return out;
+  return "'" + replaced(replaced(text, "'", "''"), "\n", "'.\"\\n\".'") + "'";
 }
 
 const char* colour_of(std::size_t index) { return colours[index % std::size(colours)]; }
@@ -46,29 +41,20 @@ const char* colour_of(std::size_t index) { return colours[index % std::size(colo
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colour_of(index) + "'";
-  // a colour that is used again has another mark
+  // colours that are used again get other marks
   const bool again = index >= std::size(colours);
   const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
-  switch (curve.style)
-  {
-    case Plot::Style::points:
-      return "with points" + point + colour;
-    case Plot::Style::line:
-      return "with lines lw 2" + colour;
-    case Plot::Style::dashed:
-      return "with lines lw 1.5 dt 2" + colour;
-    case Plot::Style::bars:
-      return "with boxes fs solid 0.8 noborder" + colour;
-    case Plot::Style::faint:
-      return "with points pt 7 ps 0.5 lc rgb '#bbbbbb'";
-    case Plot::Style::strong:
-      return "with linespoints lw 2.5 pt 7 ps 1.2 lc rgb '#222222'";
-    case Plot::Style::guide:
-      return "with lines lw 1.2 dt 4 lc rgb '#666666'";
-    case Plot::Style::line_and_points:
-      break;
-  }
-  return "with linespoints lw 2" + point + colour;
+  const std::map<Plot::Style, std::string> styles = {
+    { Plot::Style::points, "with points" + point + colour },
+    { Plot::Style::line, "with lines lw 2" + colour },
+    { Plot::Style::dashed, "with lines lw 1.5 dt 2" + colour },
+    { Plot::Style::line_and_points, "with linespoints lw 2" + point + colour },
+    { Plot::Style::bars, "with boxes fs solid 0.8 noborder" + colour },
+    { Plot::Style::faint, "with points pt 7 ps 0.5 lc rgb '#bbbbbb'" },
+    { Plot::Style::strong, "with linespoints lw 2.5 pt 7 ps 1.2 lc rgb '#222222'" },
+    { Plot::Style::guide, "with lines lw 1.2 dt 4 lc rgb '#666666'" }
+  };
+  return styles.at(curve.style);
 }
 
 std::string script(const Plot& plot, const std::string& path)
@@ -98,7 +84,7 @@ std::string script(const Plot& plot, const std::string& path)
       << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
       << "set title " << quoted(plot.title)
       << "\nset xlabel "
-      // an empty line keeps a legend below the axis at a distance
+      // an empty line separates the label from a legend below it
       << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, range] :
        { std::tuple{ 'x', plot.x_log, plot.x_range }, std::tuple{ 'y', plot.y_log, plot.y_range } })
@@ -112,7 +98,8 @@ std::string script(const Plot& plot, const std::string& path)
     for (std::size_t t = 0; t < ticks.size(); ++t)
       out << (t ? ", " : std::string("set ") + axis + "tics (") << ticks[t] << (t + 1 == ticks.size() ? ")\n" : "");
   for (std::size_t t = 0; t < plot.x_names.size(); ++t)
-    out << (t ? ", " : "set xtics rotate by 25 right (") << quoted_as_format(plot.x_names[t]) << ' ' << t
+    // gnuplot reads tick labels as format strings
+    out << (t ? ", " : "set xtics rotate by 25 right (") << replaced(quoted(plot.x_names[t]), "%", "%%") << ' ' << t
         << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
   const auto draw = [&](const std::string& terminal, const std::string& file)
   {
@@ -128,15 +115,6 @@ std::string script(const Plot& plot, const std::string& path)
   return out.str();
 }
 
-// a text as one word of a shell's command
-std::string shell_quoted(const std::string& text)
-{
-  std::string word = "'";
-  for (const char c : text)
-    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 }  // namespace
 
 void write_plot(const Plot& plot, const std::string& path)
@@ -144,16 +122,28 @@ void write_plot(const Plot& plot, const std::string& path)
   const std::string commands = path + ".gnuplot", messages = path + ".log";
   write_text(commands, script(plot, path));
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    throw Error("plot " + path + ": the program gnuplot is missing (Debian's package gnuplot-nox); " + commands +
-                " has what it is to draw");
-  const bool drawn =
-      std::system(("gnuplot " + shell_quoted(commands) + " 2>" + shell_quoted(messages) + " >&2").c_str()) == 0;
+    throw Error("plot " + path +
+                ": the program gnuplot is missing (Debian's package gnuplot-nox); its commands are in " + commands);
+  const auto word = [](const std::string& file) { return "'" + replaced(file, "'", "'\\''") + "'"; };
+  const bool drawn = std::system(("gnuplot " + word(commands) + " 2>" + word(messages) + " >&2").c_str()) == 0;
   std::ifstream log(messages);
   const std::string said{ std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>() };
   std::filesystem::remove(messages);
   if (!drawn)
     throw Error("plot " + path + ": gnuplot failed on " + commands + ": " + said);
   std::filesystem::remove(commands);
+}
+
+std::string write_plots(const Plots& plots, const std::string& folder)
+{
+  const std::filesystem::path place(folder);
+  std::string lines;
+  for (const auto& [file, plot] : plots)
+  {
+    write_plot(plot, (place / file).string());
+    lines += "\n![" + plot.title + "](" + place.filename().string() + "/" + file + ".png)\n";
+  }
+  return lines;
 }
 
 }  // namespace frontalis

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <sstream>
 
 namespace frontalis
@@ -19,6 +21,8 @@ namespace
 {
 
 namespace fs = std::filesystem;
+
+constexpr const char* check_format = "{:<17} {:<44} {:>12} {:>12} {:<6} {:>10} {:>8}  {}";
 
 std::string shown(const Table::Cell& cell)
 {
@@ -40,13 +44,56 @@ std::string csv_cell(const Table::Cell& cell)
   const auto& text = std::get<std::string>(cell);
   if (text.find_first_of(",\"\n\r") == std::string::npos)
     return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+  return '"' + std::regex_replace(text, std::regex("\""), "\"\"") + '"';
 }
 
 }  // namespace
+
+double Check::error() const { return std::abs(found - expected) / (relative ? std::abs(expected) : 1); }
+
+std::string Check::verdict() const { return std::isnan(bound) ? "shown" : passed() ? "pass" : "FAIL"; }
+
+std::string Check::error_text(double value) const
+{
+  if (std::isnan(value))
+    return {};
+  return relative ? readable(100 * value, 3) + " %" : readable(value, 3);
+}
+
+std::string check_heading()
+{
+  return fmt::format(check_format, "case", "check", "expected", "got", "unit", "error", "bound", "");
+}
+
+std::string check_line(const std::string& name, const Check& check)
+{
+  const auto or_dash = [](const std::string& text) { return text.empty() ? "-" : text; };
+  return fmt::format(check_format, name, check.name, readable(check.expected), readable(check.found), check.unit,
+                     or_dash(check.error_text(check.error())), or_dash(check.error_text(check.bound)), check.verdict());
+}
+
+double slope(const std::vector<double>& x, const std::vector<double>& y)
+{
+  double mx = 0, my = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    mx += std::log(x[i]) / static_cast<double>(x.size());
+    my += std::log(y[i]) / static_cast<double>(x.size());
+  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    xx += (std::log(x[i]) - mx) * (std::log(x[i]) - mx);
+    xy += (std::log(x[i]) - mx) * (std::log(y[i]) - my);
+  }
+  return xy / xx;
+}
+
+double zero_between(double low, double high, const std::function<double(double)>& increasing, int halvings)
+{
+  for (int halving = 0; halving < halvings; ++halving)
+    (increasing(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+  return 0.5 * (low + high);
+}
 
 std::string readable(double value, int digits)
 {
@@ -61,7 +108,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
   {
-    // rows of tables, headings, pictures and code must stay whole; further lines of a list's entry are indented
+    // rows of tables, headings, pictures and code must stay whole; continuation lines of a list item are indented
     const bool is_whole = line.find_first_of("|#!< ") == 0, is_entry = line.rfind("- ", 0) == 0;
     std::size_t used = 0;
     std::istringstream words(is_whole ? "" : line);
@@ -79,7 +126,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
 
 std::string json_text(const nlohmann::ordered_json& json)
 {
-  // names come from files: bytes that are no UTF-8 must not end the program
+  // names from files may be invalid UTF-8, which must not cause an exception
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
@@ -88,13 +135,13 @@ void make_folder(const std::string& path)
   std::error_code failed;
   fs::create_directories(path, failed);
   if (failed)
-    throw Error(path + ": cannot be made: " + failed.message());
+    throw Error(path + ": cannot be created: " + failed.message());
 }
 
 void write_text(const std::string& path, const std::string& text)
 {
   std::error_code failed;
-  // a device or a pipe cannot be replaced
+  // unlike a regular file, a device or a pipe cannot be replaced by renaming
   const bool is_replaceable = !fs::exists(path, failed) || fs::is_regular_file(path, failed);
   const std::string place = is_replaceable ? path + ".partial" : path;
   std::ofstream file(place, std::ios::binary);
@@ -120,29 +167,21 @@ void Table::add(std::vector<Cell> row)
 
 std::string Table::text() const
 {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < columns_.size(); ++c)
-  {
-    std::size_t widest = width(columns_[c]);
-    for (const auto& row : rows_)
-      widest = std::max(widest, width(shown(row[c])));
-    widths.push_back(widest);
-  }
-  std::string out;
-  const auto line = [&](auto&& cell_of)
-  {
-    std::string padded;
-    for (std::size_t c = 0; c < columns_.size(); ++c)
-    {
-      const std::string cell = cell_of(c);
-      padded += cell + std::string(widths[c] - width(cell) + 2, ' ');
-    }
-    padded.erase(padded.find_last_not_of(' ') + 1);
-    out += padded + '\n';
-  };
-  line([&](std::size_t c) { return columns_[c]; });
+  std::vector<std::vector<std::string>> lines{ columns_ };
   for (const auto& row : rows_)
-    line([&](std::size_t c) { return shown(row[c]); });
+    std::transform(row.begin(), row.end(), std::back_inserter(lines.emplace_back()), shown);
+  std::vector<std::size_t> widths(columns_.size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t c = 0; c < line.size(); ++c)
+      widths[c] = std::max(widths[c], width(line[c]));
+  std::string out;
+  for (const auto& line : lines)
+  {
+    for (std::size_t c = 0; c < line.size(); ++c)
+      out += line[c] + std::string(widths[c] - width(line[c]) + 2, ' ');
+    out.erase(out.find_last_not_of(' ') + 1);
+    out += '\n';
+  }
   return out;
 }
 
@@ -157,9 +196,8 @@ std::string Table::markdown() const
   out += '\n' + rule + '\n';
   for (const auto& row : rows_)
   {
-    out += "|";
     for (const auto& cell : row)
-      out += " " + shown(cell) + " |";
+      out += (&cell == row.data() ? "| " : " ") + shown(cell) + " |";
     out += '\n';
   }
   return out;
@@ -192,7 +230,7 @@ std::string Table::json() const
       if (number == nullptr)
         object[columns_[c]] = std::get<std::string>(row[c]);
       else if (*number == std::floor(*number) && std::abs(*number) < 1e15)
-        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 and not 5.0
+        object[columns_[c]] = static_cast<std::int64_t>(*number);  // 5 instead of 5.0
       else
         object[columns_[c]] = *number;
     }

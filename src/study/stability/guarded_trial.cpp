@@ -1,8 +1,6 @@
-#include "study/stability/guarded_trial.hpp"
-
 #include "frontalis/error.hpp"
-#include "study/stability/stability_file.hpp"
-#include "study/stability/stability_models.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+#include "study/stability/stability_cases.hpp"
 
 #include <fmt/core.h>
 
@@ -12,24 +10,41 @@
 namespace frontalis
 {
 
-GuardedTrial::GuardedTrial(const StabilitySettings& settings, Trial& trial, std::shared_ptr<const Model> model,
-                           bool ledger, const GuardSettings& guard)
-    : settings_(settings), trial_(trial), model_(std::move(model)), wants_ledger_(ledger)
+double CaseRun::count(const std::string& key) const
 {
-  settings.model(*model_);
-  // with few voxels threads would wait for each other longer than they work
+  const double few = number(key), many = number(key + "_in_full");
+  return settings.long_runs ? many : few;
+}
+
+void CaseRun::check(const std::string& what, const std::string& unit, double expected, double found,
+                    const std::string& key)
+{
+  trial.checks.absolute(what, unit, expected, found, number("bounds." + key, unit == "1" ? "" : unit));
+}
+
+void CaseRun::check_relative(const std::string& what, const std::string& unit, double expected, double found,
+                             const std::string& key)
+{
+  trial.checks.relative(what, unit, expected, found, 0.01 * number("bounds." + key, "%"));
+}
+
+GuardedTrial::GuardedTrial(CaseRun& run, std::shared_ptr<const Model> model, bool ledger, const GuardSettings& guard)
+    : run_(run), model_(std::move(model)), wants_ledger_(ledger)
+{
+  run.settings.model(*model_);
+  // with few voxels, several threads would wait for each other longer than they work
   const int threads = model_->voxels.size() < 2000 ? 1 : 0;
-  SolverSettings own{ settings.backend, threads, 0 };
+  SolverSettings own{ run.settings.backend, threads, 0 };
   own.ledger = ledger;
   solver_ = make_solver(model_, own);
   guard_ = std::make_unique<Guard>(*solver_, model_, guard);
-  trial_.voxels = std::max(trial_.voxels, static_cast<std::int64_t>(model_->voxels.size()));
+  run.trial.voxels = std::max(run.trial.voxels, static_cast<std::int64_t>(model_->voxels.size()));
 }
 
 GuardedTrial::~GuardedTrial()
 {
-  trial_.steps += solver_->profile().steps;
-  trial_.rollbacks += guard_->counts().rollbacks;
+  run_.trial.steps += solver_->profile().steps;
+  run_.trial.rollbacks += guard_->counts().rollbacks;
 }
 
 Controls GuardedTrial::controls(float activation, const RigidTransform& pose) const
@@ -38,34 +53,36 @@ Controls GuardedTrial::controls(float activation, const RigidTransform& pose) co
            std::vector<RigidTransform>(model_->bones.size(), pose) };
 }
 
-void GuardedTrial::advance(double seconds, const Controls& target, int looks)
+void GuardedTrial::advance(const Phase& phase)
 {
-  for (int i = 0; i < looks; ++i)
+  for (int i = 0; i < phase.parts; ++i)
   {
-    // each part takes its share of the way from the present controls
-    guard_->advance(seconds / looks, interpolate(solver_->controls(), target, 1.0 / (looks - i)));
+    // linear in time: a part covers 1 / (number of parts left) of the remaining change of the controls
+    guard_->advance(phase.seconds / phase.parts,
+                    interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)));
     record();
-    settings_.watch((i + 1.0) / looks);
+    run_.settings.watch((i + 1.0) / phase.parts);
   }
 }
 
-void GuardedTrial::play_and_release(const std::vector<Phase>& phases, const std::string& of, const CaseFile& file,
-                                    const std::string& picture, const std::string& title)
+void GuardedTrial::play_and_release(const std::vector<Phase>& phases, const std::string& of, const std::string& picture,
+                                    const std::string& title)
 {
   for (const Phase& phase : phases)
-    advance(phase.seconds, phase.target, phase.looks);
+    advance(phase);
   plot(picture, title);
-  advance(file.seconds("in_the_end"), controls(), 20);
-  check_balance(file, of);
-  trial_.checks.absolute("left in the end, " + of, "mm", 0, 1e3 * farthest(displacements()), file.bound("left", "mm"));
+  advance({ run_.seconds("in_the_end"), controls(), 20 });
+  check_balance(of);
+  run_.check("remaining displacement, " + of, "mm", 0, 1e3 * farthest(displacements()), "left");
 }
 
-void GuardedTrial::settle(const Controls& target, double tolerance, double seconds)
+void GuardedTrial::settle(const Controls& target, double factor)
 {
-  const Equilibrium end = guard_->settle(target, tolerance, seconds,
+  const double seconds = factor * run_.seconds("longest_settling");
+  const Equilibrium end = guard_->settle(target, 1e-4, seconds,
                                          [&](const Equilibrium& now)
                                          {
-                                           settings_.watch(now.seconds / seconds);
+                                           run_.settings.watch(now.seconds / seconds);
                                            return true;
                                          });
   if (!end.reached)
@@ -81,11 +98,11 @@ void GuardedTrial::hold_or_stop(const std::function<void()>& play)
   }
   catch (const Unstable& stop)
   {
-    trial_.stopped = stop.what();
-    const Monitor last = solver_->monitor();
-    trial_.checks.absolute("stopped in a state that is not finite", "", 0, last.finite ? 0 : 1, 0);
-    trial_.checks.absolute("report names no voxel", "", 0, stop.report.voxel < 0 || stop.report.advice.empty() ? 1 : 0,
-                           0);
+    Trial& trial = run_.trial;
+    trial.stopped = stop.what();
+    const bool names_voxel = stop.report.voxel >= 0 && !stop.report.advice.empty();
+    trial.checks.absolute("stopped in a state that is not finite", "", 0, solver_->monitor().finite ? 0 : 1, 0);
+    trial.checks.absolute("report names no voxel", "", 0, names_voxel ? 0 : 1, 0);
   }
 }
 
@@ -110,7 +127,7 @@ void GuardedTrial::record()
   monitor_ = solver_->monitor();
   if (!monitor_.finite)
     throw Error(fmt::format("energies are no longer finite at {:g} s", solver_->time()));
-  trial_.worst_jacobian = std::min(trial_.worst_jacobian, monitor_.worst_jacobian);
+  run_.trial.worst_jacobian = std::min(run_.trial.worst_jacobian, monitor_.worst_jacobian);
   if (!wants_ledger_)
     return;
   ledger_ = solver_->ledger();
@@ -123,13 +140,12 @@ void GuardedTrial::record()
                        monitor_.worst_jacobian });
 }
 
-void GuardedTrial::check_balance(const CaseFile& file, const std::string& of, const std::string& picture,
-                                 const std::string& title)
+void GuardedTrial::check_balance(const std::string& of, const std::string& picture, const std::string& title)
 {
   const double error = worst_imbalance_ / largest_;
-  trial_.energy_error = std::fmax(trial_.energy_error, error);
-  trial_.hourglass_share = std::fmax(trial_.hourglass_share, most_hourglass_ / largest_);
-  trial_.checks.absolute("energy unexplained, " + of, "%", 0, 100 * error, file.bound("energy", "%"));
+  run_.trial.energy_error = std::fmax(run_.trial.energy_error, error);
+  run_.trial.hourglass_share = std::fmax(run_.trial.hourglass_share, most_hourglass_ / largest_);
+  run_.check("energy unexplained, " + of, "%", 0, 100 * error, "energy");
   if (!picture.empty())
     plot(picture, title);
 }
@@ -144,12 +160,56 @@ void GuardedTrial::plot(const std::string& file, const std::string& title)
                   { "smallest J", {}, {}, Plot::Style::dashed } };
   for (const Moment& m : moments_)
   {
-    const std::array<double, 4> y{ { m.kinetic / largest_, m.stored / largest_, m.unexplained / largest_,
-                                     m.jacobian } };
-    for (std::size_t c = 0; c < y.size(); ++c)
-      plot.curves[c].add(m.time, y[c]);
+    plot.curves[0].add(m.time, m.kinetic / largest_);
+    plot.curves[1].add(m.time, m.stored / largest_);
+    plot.curves[2].add(m.time, m.unexplained / largest_);
+    plot.curves[3].add(m.time, m.jacobian);
   }
-  trial_.plots.emplace_back(file, plot);
+  run_.trial.plots.emplace_back(file, plot);
 }
+
+Material soft_tissue(double poisson) { return neo_hookean(34e3, poisson); }
+
+Model damped_block(const CaseFile& file)
+{
+  Model model = voxel_model(file.size(), 1e-3, soft_tissue());
+  model.damping = file.number("damping", "1/s");
+  return model;
+}
+
+void hold_face(Model& model, int axis, bool upper, const std::string& bone)
+{
+  const double h = model.spacing[axis], at = upper ? model.size[axis] * h : 0;
+  hold(
+      model, [=](const Point& p) { return std::abs(p[axis] - at) < 0.5 * h; }, bone);
+}
+
+void hold_ends(Model& model, int axis, const std::string& bone)
+{
+  hold_face(model, axis, false);
+  hold_face(model, axis, true, bone);
+}
+
+double farthest(const Vectors& a, const Vectors& b)
+{
+  double largest = 0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+  {
+    const Point from = b.empty() ? Point{} : b[n];
+    largest = std::max(largest, std::hypot(a[n][0] - from[0], a[n][1] - from[1], a[n][2] - from[2]));
+  }
+  return largest;
+}
+
+RigidTransform turned_about(const Point& rotation, const Point& point)
+{
+  RigidTransform turn = rigid_motion(rotation, point);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      turn.translation[i] -= turn.rotation[3 * i + j] * point[j];
+  return turn;
+}
+
+RigidTransform shifted(const Point& shift) { return { RigidTransform().rotation, shift }; }
 
 }  // namespace frontalis

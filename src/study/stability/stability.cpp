@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace frontalis
 {
@@ -16,6 +18,30 @@ namespace
 {
 
 constexpr const char* line_format = "{:<20} {:<52} {:>18} {:>8} {:>9} {:>9} {:>8}  {}";
+
+double finite_or_none(double value) { return std::isfinite(value) ? value : std::nan(""); }
+
+std::string percent(double share) { return std::isnan(share) ? "" : readable(100 * share, 2); }
+
+// "held", "stopped with a report: ...", "skipped: ..." or "FAILED: ..."
+std::string verdict_of(const Trial& trial)
+{
+  if (!trial.skipped.empty())
+    return "skipped: " + trial.skipped;
+  if (!trial.failure.empty())
+    return "FAILED: " + trial.failure;
+  std::string failed;
+  for (const Check& check : trial.checks)
+    if (!check.passed())
+      failed += fmt::format("{}{}: is {:.4g} {}; must be {:.4g} within {}{}", failed.empty() ? "" : "; ", check.name,
+                            check.found, check.unit, check.expected, check.error_text(check.bound),
+                            check.relative ? "" : " " + check.unit);
+  if (!failed.empty())
+    return "FAILED: " + failed;
+  if (trial.stopped.empty())
+    return trial.rollbacks > 0 ? fmt::format("held; the guard went back {} times", trial.rollbacks) : "held";
+  return "stopped with a report: " + trial.stopped;
+}
 
 }  // namespace
 
@@ -33,8 +59,9 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
       const CaseFile file((std::filesystem::path(folder) / (name + ".yaml")).string());
       const auto run = [file, play = play](const StabilitySettings& settings, Trial& trial)
       {
-        play(settings, file, trial);
-        if (const auto unused = file.unused(); !unused.empty())
+        CaseRun now{ file, settings, trial };
+        play(now);
+        if (const auto unused = now.unused(); !unused.empty())
           trial.failure = fmt::format("the case does not use {} of its file", fmt::join(unused, ", "));
       };
       all.push_back({ name, true, file.hard(), file.text(), run });
@@ -68,25 +95,6 @@ std::string trial_heading()
                      "verdict");
 }
 
-std::string verdict_of(const Trial& trial)
-{
-  if (!trial.skipped.empty())
-    return "skipped: " + trial.skipped;
-  if (!trial.failure.empty())
-    return "FAILED: " + trial.failure;
-  std::string failed;
-  for (const Check& check : trial.checks)
-    if (!check.passed())
-      failed += fmt::format("{}{}: {:.4g} {} and not {:.4g} within {}{}", failed.empty() ? "" : "; ", check.name,
-                            check.found, check.unit, check.expected, check.error_text(check.bound),
-                            check.relative ? "" : " " + check.unit);
-  if (!failed.empty())
-    return "FAILED: " + failed;
-  if (trial.stopped.empty())
-    return trial.rollbacks > 0 ? fmt::format("held; the guard went back {} times", trial.rollbacks) : "held";
-  return "stopped with a report: " + trial.stopped;
-}
-
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial)
 {
   if (!trial.skipped.empty())
@@ -96,6 +104,70 @@ std::string trial_line(const StabilityCase& hard_case, const Trial& trial)
                      std::isfinite(trial.worst_jacobian) ? readable(trial.worst_jacobian, 3) : "-",
                      percent(trial.energy_error), percent(trial.hourglass_share), readable(trial.seconds, 2),
                      verdict_of(trial));
+}
+
+std::string trials_json(const Trials& trials)
+{
+  Table table({ "case", "hard", "voxels", "steps", "worst_jacobian", "energy_error", "hourglass_share", "rollbacks",
+                "verdict", "seconds" });
+  for (const auto& [hard_case, trial] : trials)
+    table.add({ hard_case.name, hard_case.hard, static_cast<double>(trial.voxels), static_cast<double>(trial.steps),
+                finite_or_none(trial.worst_jacobian), trial.energy_error, trial.hourglass_share,
+                static_cast<double>(trial.rollbacks), verdict_of(trial), trial.seconds });
+  return table.json();
+}
+
+std::string trials_markdown(const Trials& trials)
+{
+  Table overview(
+      { "case", "what is hard", "voxels", "steps", "worst J", "energy [%]", "hourglass [%]", "seconds", "verdict" });
+  for (const auto& [hard_case, trial] : trials)
+  {
+    const bool ran = trial.skipped.empty();
+    overview.add({ "[" + hard_case.name + "](#" + hard_case.name + ")", hard_case.hard,
+                   ran ? fmt::to_string(trial.voxels) : "", ran ? fmt::to_string(trial.steps) : "",
+                   readable(finite_or_none(trial.worst_jacobian), 3), percent(trial.energy_error),
+                   percent(trial.hourglass_share), readable(trial.seconds, 2),
+                   trial.stopped.empty() ? verdict_of(trial) : "stopped with a report" });
+  }
+  return overview.markdown();
+}
+
+void write_stability(const Trials& trials, const std::string& folder)
+{
+  const std::filesystem::path pictures = std::filesystem::path(folder) / "stability";
+  make_folder(pictures.string());
+  std::string out =
+      "# Hard cases\n\nMotions that explicit codes fail at. Each must hold, or be stopped with a report and the last "
+      "good state. A case passes when all its checks do and every energy, volume ratio and displacement stays "
+      "finite.\n\n*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and "
+      "*hourglass* the energy of hourglass modes, both over the largest term of the ledger. Each case has a file in "
+      "test/stability with its description, sizes, times and bounds. This document is written by `./dev cli stability "
+      "--all --mesh-dir DIR --markdown doc`, and all figures but those of a GPU are from one run of it. `--models DIR` "
+      "writes the model of each motion.\n";
+  out += "\n" + trials_markdown(trials);
+  // a hand-written text about runs on other machines
+  std::ifstream elsewhere(pictures / "elsewhere.md");
+  if (elsewhere)
+    out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
+  for (const auto& [hard_case, trial] : trials)
+  {
+    out += "\n## " + hard_case.name + "\n\n" + hard_case.text + "\n";
+    if (!trial.skipped.empty())
+      out += "\nSkipped: " + trial.skipped + "\n";
+    if (!trial.stopped.empty())
+      out += "\nThe report: *" + trial.stopped + "*\n";
+    if (!trial.checks.empty())
+    {
+      Table checks({ "check", "unit", "expected", "got", "bound", "" });
+      for (const Check& check : trial.checks)
+        checks.add(
+            { check.name, check.unit, check.expected, check.found, check.error_text(check.bound), check.verdict() });
+      out += "\n" + checks.markdown();
+    }
+    out += write_plots(trial.plots, pictures.string());
+  }
+  write_text((std::filesystem::path(folder) / "stability.md").string(), wrapped(out));
 }
 
 }  // namespace frontalis

@@ -3,7 +3,6 @@
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "study/stability/stability_cases.hpp"
-#include "study/stability/stability_models.hpp"
 
 #include <fmt/core.h>
 
@@ -15,8 +14,6 @@ namespace frontalis
 {
 namespace
 {
-
-using Point = std::array<double, 3>;
 
 // Corners (x, z) [m] of a surface that is endless along y.
 using Profile = std::vector<std::array<double, 2>>;
@@ -39,18 +36,18 @@ double distance_to(const Profile& profile, bool thin, const Point& p)
 }
 
 // lets nodes that fulfil a condition slide on a surface
-void slide(Model& model, const Profile& profile, const std::function<bool(const Point&)>& condition)
+void slide(Model& model, const Profile& profile, const Condition& condition)
 {
   slide_on(
       model, fmt::format("surface {}", model.constraint_surfaces.size()),
       [&](const Point& p) { return distance_to(profile, false, p); }, nodes_where(model, condition), 0.5e-3, 100e-3);
 }
 
-// largest error of the level that sliding nodes keep in the field of their surface, and the longest way of one along x
-// [m]
+// largest error of the level that sliding nodes keep in the field of their surface, and their largest displacement
+// along x [m]
 std::pair<double, double> slid(const GuardedTrial& motion)
 {
-  double worst = 0, way = 0;
+  double worst = 0, travel = 0;
   const Vectors u = motion.displacements();
   for (const auto& node : motion.model().sliding)
   {
@@ -60,146 +57,141 @@ std::pair<double, double> slid(const GuardedTrial& motion)
     const double error = level_at(motion.model().constraint_surfaces[node.surface].field, p) - node.distance;
     // where the field ends there is no level
     worst = std::isnan(error) ? 1 : std::max(worst, std::abs(error));
-    way = std::max(way, std::abs(u[node.node][0]));
+    travel = std::max(travel, std::abs(u[node.node][0]));
   }
-  return { worst, way };
+  return { worst, travel };
 }
 
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
-// drags the model for the case's `drag` and looks after each of `looks` equal parts; `activation` gives that of each
-// part
+// Advances by the case's `drag` [s] in forty parts, activation(i) being that of part i. Checks the kept levels
+// after each, and finally that nodes have travelled `least_travel` [mm] along x.
 void drag(
-    const CaseFile& file, Trial& trial, GuardedTrial& motion, const std::string& of, double least_way, int looks,
+    CaseRun& run, GuardedTrial& motion, const std::string& of, double least_travel,
     const std::function<float(int)>& activation = [](int) { return 0.0F; })
 {
-  const double part = file.seconds("drag") / looks;
-  double worst = 0, way = 0;
-  for (int i = 0; i < looks; ++i)
+  constexpr int parts = 40;
+  const double seconds = run.seconds("drag") / parts;
+  double worst = 0, travel = 0;
+  for (int i = 0; i < parts; ++i)
   {
-    motion.advance(part, motion.controls(activation(i)));
-    const auto [error, come] = slid(motion);
+    motion.advance({ seconds, motion.controls(activation(i)) });
+    const auto [error, moved] = slid(motion);
     worst = std::max(worst, error);
-    way = std::max(way, come);
+    travel = std::max(travel, moved);
   }
-  motion.check_balance(file, of);
-  trial.checks.absolute("error of kept levels, " + of, "um", 0, 1e6 * worst, file.bound("kept_level", "um"));
-  trial.checks.absolute("has come that far short of " + readable(least_way) + " mm", "mm", 0,
-                        std::max(0.0, least_way - 1e3 * way), 0);
+  motion.check_balance(of);
+  run.check("error of kept levels, " + of, "um", 0, 1e6 * worst, "kept_level");
+  run.trial.checks.absolute("shortfall from " + readable(least_travel) + " mm of travel", "mm", 0,
+                            std::max(0.0, least_travel - 1e3 * travel), 0);
 }
 
-void sharp_ridge(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
+void sharp_ridge(CaseRun& run)
 {
-  // a ridge of 53° in the way of a soft block whose nodes start over the left slope and the ridge
-  VoxelBox box;
-  box.size = file.size();
-  box.materials = { neo_hookean(10e3, 0.49) };
-  Model model = voxel_model(box);
-  model.damping = file.number("damping", "1/s");
-  const double ridge = 1e-3 * file.number("ridge", "mm");
+  // A ridge with an angle of 53° at its top obstructs a soft block, which starts above the left slope and the top.
+  Model model = damped_block(run);
+  model.materials = { neo_hookean(10e3, 0.49) };
+  const double ridge = 1e-3 * run.number("ridge", "mm");
   slide(model, { { ridge - 49e-3, -98e-3 }, { ridge, -1e-3 }, { ridge + 49e-3, -98e-3 } }, underside);
-  model.gravity = { { file.number("pull", "m/s2"), 0, 0 } };
-  GuardedTrial motion(settings, trial, model);
-  drag(file, trial, motion, "over the ridge", file.number("least_way", "mm"), 40);
+  model.gravity = { { run.number("pull", "m/s2"), 0, 0 } };
+  GuardedTrial motion(run, model);
+  drag(run, motion, "over the ridge", run.number("least_way", "mm"));
   motion.plot("sharp_ridge", "A soft block is dragged over a ridge of 53°");
 }
 
-void off_the_edge(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
+void off_the_edge(CaseRun& run)
 {
-  const std::vector<double> rims = file.numbers("rims", "mm");
-  const std::vector<double> ways = file.numbers("least_ways", "mm", rims.size());
+  const std::vector<double> rims = run.numbers("rims", "mm");
+  const std::vector<double> ways = run.numbers("least_ways", "mm", rims.size());
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
-    Model model = damped_block(file);
+    Model model = damped_block(run);
     // the spacing is below two thirds of the distance, so that the other side does not reach the nodes' cells
     const Profile sheet{ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } };
     slide_on(
         model, "sheet", [&](const Point& p) { return distance_to(sheet, true, p); }, nodes_where(model, underside),
         0.15e-3, 15e-3);
-    model.gravity = { { file.number("pull", "m/s2"), 0, -9.81 } };
-    GuardedTrial motion(settings, trial, model);
-    drag(file, trial, motion, "off an edge at " + readable(rims[i]) + " mm", ways[i], 40);
+    model.gravity = { { run.number("pull", "m/s2"), 0, -9.81 } };
+    GuardedTrial motion(run, model);
+    drag(run, motion, "off an edge at " + readable(rims[i]) + " mm", ways[i]);
     motion.plot(fmt::format("off_the_edge_{}", i + 1),
                 fmt::format("A block is dragged off an edge at {:g} mm of the surface that it slides on", rims[i]));
   }
 }
 
-void two_surfaces(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
+void two_surfaces(CaseRun& run)
 {
   // a layer of one voxel between surfaces that are 0.6 mm apart where it starts and 0.4 mm where it ends
-  Model model = damped_block(file);
+  Model model = damped_block(run);
   slide(model, { { -40e-3, 0.2e-3 }, { 60e-3, 0.2e-3 } }, underside);
   slide(model, { { -40e-3, 0.8e-3 }, { 10e-3, 0.8e-3 }, { 30e-3, 0.6e-3 }, { 60e-3, 0.6e-3 } },
         [](const Point& p) { return !underside(p); });
-  add_muscle(model, Muscle{ "sheet", 1e3 * file.number("stress", "kPa"), false, true }, along_x);
-  model.gravity = { { file.number("pull", "m/s2"), 0, -9.81 } };
-  GuardedTrial motion(settings, trial, model);
-  drag(file, trial, motion, "between two surfaces", file.number("least_way", "mm"), 40,
-       [](int look) { return look % 10 < 5 ? 1.0F : 0.0F; });
+  add_muscle(model, Muscle{ "sheet", 1e3 * run.number("stress", "kPa"), false, true }, along_x);
+  model.gravity = { { run.number("pull", "m/s2"), 0, -9.81 } };
+  GuardedTrial motion(run, model);
+  drag(run, motion, "between two surfaces", run.number("least_way", "mm"),
+       [](int part) { return part % 10 < 5 ? 1.0F : 0.0F; });
   motion.plot("two_surfaces", "A sheet of one voxel is drawn between surfaces 0.6 mm apart");
 }
 
-void bone_jump(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
+void bone_jump(CaseRun& run)
 {
-  Model model = damped_block(file);
+  Model model = damped_block(run);
   hold_face(model, 0, false, "bone");
-  RigidTransform jumped;
-  const std::vector<double> jump_by = file.numbers("jump", "mm", 3);
-  for (std::size_t i = 0; i < 3; ++i)
-    jumped.translation[i] = 1e-3 * jump_by[i];
-  const double frame = file.seconds("frame"), step = make_solver(std::make_shared<const Model>(model))->time_step();
-  for (const auto& jump : { std::pair("frame", frame), std::pair("millisecond", 1e-3), std::pair("step", step) })
+  const std::vector<double> jump = run.numbers("jump", "mm", 3);
+  const RigidTransform jumped = shifted({ { 1e-3 * jump[0], 1e-3 * jump[1], 1e-3 * jump[2] } });
+  const double frame = run.seconds("frame"), step = make_solver(std::make_shared<const Model>(model))->time_step();
+  const std::pair<std::string, double> times[] = { { "frame", frame }, { "millisecond", 1e-3 }, { "step", step } };
+  for (const auto& time : times)
   {
-    const std::string name = jump.first;
-    const double seconds = jump.second;
-    GuardedTrial motion(settings, trial, model);
-    // the bone moves ten times as fast as sound in the tissue
+    const std::string& name = time.first;
+    const double seconds = time.second;
+    GuardedTrial motion(run, model);
+    // within a time step, the bone moves ten times faster than sound in the tissue
     const bool violent = seconds < 1e-4;
     const auto play = [&]
     {
-      motion.advance(seconds, motion.controls(0, jumped), 1);
-      motion.advance(file.seconds("watched"), motion.controls(0, jumped), 40);
-      motion.check_balance(file, "within a " + name);
+      motion.advance({ seconds, motion.controls(0, jumped), 1 });
+      motion.advance({ run.seconds("watched"), motion.controls(0, jumped), 40 });
+      motion.check_balance("within a " + name);
     };
     if (violent)
       motion.hold_or_stop(play);
     else
       play();
     motion.plot("bone_jump_" + name, "A bone jumps by 5 mm within a " + name);
-    if (violent && !trial.stopped.empty())
+    if (violent && !run.trial.stopped.empty())
       continue;
-    motion.advance(file.seconds("rest"), motion.controls(0, jumped), 10);
+    motion.advance({ run.seconds("rest"), motion.controls(0, jumped), 10 });
     const Vectors moved(model.nodes.size(), jumped.translation);
-    trial.checks.absolute(std::string("off its place after a jump within a ") + name, "um", 0,
-                          1e6 * farthest(motion.displacements(), moved), file.bound("place", "um"));
+    run.check("distance from the goal after a jump within a " + name, "um", 0,
+              1e6 * farthest(motion.displacements(), moved), "place");
   }
 }
 
-// turning a bone turns gravity for the tissue that hangs on it
-void turning_gravity(const StabilitySettings& settings, const CaseFile& file, Trial& trial)
+// turning the bone changes the direction of gravity relative to the tissue that is attached to it
+void turning_gravity(CaseRun& run)
 {
-  Model model = damped_block(file);
+  Model model = damped_block(run);
   model.gravity = { { 0, 0, -9.81 } };
   hold_face(model, 0, false, "head");
-  GuardedTrial motion(settings, trial, model);
+  GuardedTrial motion(run, model);
   std::mt19937 random(3);
-  const auto value = [&] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
-  const double seconds = file.seconds("turn"), largest = file.number("largest_turn", "rad");
-  const int turns = static_cast<int>(file.number("turns"));
-  motion.advance(seconds, motion.controls(), 10);
+  const double seconds = run.seconds("turn"), largest = run.number("largest_turn", "rad");
+  const int turns = static_cast<int>(run.number("turns"));
+  motion.advance({ seconds, motion.controls(), 10 });
   for (int turn = 0; turn < turns; ++turn)
   {
-    Point axis{ { value(), value(), value() } };
-    const double angle = largest / std::hypot(axis[0], axis[1], axis[2]) * value();
+    Point axis{ { drawn_from(random), drawn_from(random), drawn_from(random) } };
+    const double angle = largest / std::hypot(axis[0], axis[1], axis[2]) * drawn_from(random);
     for (double& x : axis)
       x *= angle;
-    motion.advance(seconds, motion.controls(0, turned_about(axis, { { 0, 2e-3, 2e-3 } })), 4);
+    motion.advance({ seconds, motion.controls(0, turned_about(axis, { { 0, 2e-3, 2e-3 } })), 4 });
   }
-  motion.check_balance(file, "turned at random", "turning_gravity",
+  motion.check_balance("turned at random", "turning_gravity",
                        "Gravity is switched on at once, and the head turned at random every 20 ms");
-  const Controls end = motion.solver().controls();
-  motion.settle(end, 1e-4, file.seconds("longest_settling"));
-  trial.checks.absolute("smallest J at rest", "1", 1, motion.monitor().worst_jacobian, file.bound("smallest_J"));
+  motion.settle(motion.solver().controls());
+  run.check("smallest J at rest", "1", 1, motion.monitor().worst_jacobian, "smallest_J");
 }
 
 }  // namespace

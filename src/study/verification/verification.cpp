@@ -36,17 +36,12 @@ std::vector<VerificationCase> verification_cases()
            { "calculix", false, verify_calculix } };
 }
 
-void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>& condition)
-{
-  for (const auto node : nodes_where(model, condition))
-    model.rigid.push_back({ node, -1 });
-}
-
 Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range)
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range, bool y_log)
 {
   Plot plot{ title, x_label, y_label };
-  plot.x_log = plot.y_log = true;
+  plot.x_log = true;
+  plot.y_log = y_log;
   plot.x_ticks = x_ticks;
   plot.x_range = x_range;
   plot.key = "below";
@@ -55,14 +50,15 @@ Plot convergence_plot(const std::string& title, const std::string& x_label, cons
 
 std::string findings_json(const Findings& findings)
 {
+  const double none = std::nan("");
   Table table({ "case", "check", "unit", "expected", "found", "error", "bound", "relative", "verdict" });
   for (const auto& [name, finding] : findings)
   {
     for (const auto& check : finding.checks)
-      table.add({ name, check.name, check.unit, check.expected, check.found, check.error, check.bound,
+      table.add({ name, check.name, check.unit, check.expected, check.found, check.error(), check.bound,
                   check.relative ? "yes" : "no", check.verdict() });
     if (!finding.skipped.empty())
-      table.add({ name, finding.skipped, "", std::nan(""), std::nan(""), std::nan(""), std::nan(""), "", "skipped" });
+      table.add({ name, finding.skipped, "", none, none, none, none, "", "skipped" });
   }
   return table.json();
 }
@@ -75,12 +71,12 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// the sections of a file of texts, by name of their case; none if there is no such file
+// the sections of text.md by the names of their cases; none if the file is missing
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);
   std::map<std::string, CaseText> texts;
-  CaseText ignored;  // what stands above the first section
+  CaseText ignored;  // text above the first section
   CaseText* text = &ignored;
   std::string* part = &ignored.before;
   for (std::string line; std::getline(file, line);)
@@ -110,9 +106,8 @@ void write_manual(const Findings& findings, const std::string& path)
   const std::map<std::string, CaseText> texts = read_texts((pictures / "text.md").string());
   std::string out =
       "# Verification\n\nThe solver against closed forms, published figures and CalculiX. The table says how many "
-      "checks "
-      "of each case pass; a check passes when its error is within its bound. Figures without a bound are only *shown*. "
-      "Errors and bounds in % are relative.\n\nThis document is written by `./dev cli verify --markdown "
+      "checks of each case pass; a check passes when its error is within its bound. Figures without a bound are only "
+      "*shown*. Errors and bounds in % are relative.\n\nThis document is written by `./dev cli verify --markdown "
       "doc/verification.md` with the texts of verification/text.md, and all figures are from one run of it.\n";
   Table overview({ "case", "checks", "passed" });
   std::string sections;
@@ -132,15 +127,15 @@ void write_manual(const Findings& findings, const std::string& path)
     sections += "\n## " + text.title + "\n\n<a id=\"" + name + "\"></a>\n" + text.before + "\n";
     if (!finding.skipped.empty())
       sections += "\nSkipped: " + finding.skipped + "\n";
+    Table table({ "check", "unit", "expected", "got", "error", "bound", "" });
+    for (const Check& check : checks)
+      table.add({ check.name, check.unit, check.expected, check.found, check.error_text(check.error()),
+                  check.error_text(check.bound), check.verdict() });
     if (!checks.empty())
-      sections += "\n" + check_table(checks).markdown();
-    for (const auto& [caption, table] : finding.tables)
-      sections += "\n" + caption + ":\n\n" + table.markdown();
-    for (const auto& [file, plot] : finding.plots)
-    {
-      write_plot(plot, (pictures / file).string());
-      sections += "\n![" + plot.title + "](" + manual.stem().string() + "/" + file + ".png)\n";
-    }
+      sections += "\n" + table.markdown();
+    for (const auto& [caption, figures] : finding.tables)
+      sections += "\n" + caption + ":\n\n" + figures.markdown();
+    sections += write_plots(finding.plots, pictures.string());
     if (!text.after.empty())
       sections += "\n" + text.after + "\n";
   }

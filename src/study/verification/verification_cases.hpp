@@ -1,32 +1,17 @@
 #pragma once
 
+#include "frontalis/study/statics.hpp"
 #include "frontalis/study/verification.hpp"
-#include "frontalis/study/voxel_model.hpp"
 
 namespace frontalis
 {
 
-// one function per case; verification.cpp lists them
-Finding verify_rigid_motion(const VerificationSettings& settings);
-Finding verify_affine_motion(const VerificationSettings& settings);
-Finding verify_energy_gradient(const VerificationSettings& settings);
-Finding verify_uniaxial_stretch(const VerificationSettings& settings);
-Finding verify_simple_shear(const VerificationSettings& settings);
-Finding verify_active_bar(const VerificationSettings& settings);
-Finding verify_published_bar(const VerificationSettings& settings);
-Finding verify_cantilever(const VerificationSettings& settings);
-Finding verify_vibration(const VerificationSettings& settings);
-Finding verify_convergence(const VerificationSettings& settings);
-Finding verify_cook(const VerificationSettings& settings);
-Finding verify_staircase(const VerificationSettings& settings);
-Finding verify_wrinkling(const VerificationSettings& settings);
-Finding verify_viscosity(const VerificationSettings& settings);
-Finding verify_hertz(const VerificationSettings& settings);
-Finding verify_energy_balance(const VerificationSettings& settings);
-Finding verify_precision(const VerificationSettings& settings);
-Finding verify_heart_beam(const VerificationSettings& settings);
-Finding verify_calculix(const VerificationSettings& settings);
-Finding verify_heart_ellipsoid(const VerificationSettings& settings);
+// the cases, listed in verification.cpp
+using VerificationFunction = void(const Backend& backend, Finding& finding);
+VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gradient, verify_uniaxial_stretch,
+    verify_simple_shear, verify_active_bar, verify_published_bar, verify_cantilever, verify_vibration,
+    verify_convergence, verify_cook, verify_staircase, verify_wrinkling, verify_viscosity, verify_hertz,
+    verify_energy_balance, verify_precision, verify_heart_beam, verify_heart_ellipsoid, verify_calculix;
 
 inline constexpr HourglassControl hourglass_forms[] = { HourglassControl::scalar, HourglassControl::assumed_strain };
 inline std::string name_of(HourglassControl form)
@@ -34,11 +19,14 @@ inline std::string name_of(HourglassControl form)
   return form == HourglassControl::scalar ? "scalar" : "assumed strain";
 }
 
-/// Holds the nodes that fulfil a condition on their position at rest [m].
-void clamp(Model& model, const std::function<bool(const std::array<double, 3>&)>& condition);
+/// A solver that works in the calling thread.
+inline std::unique_ptr<Solver> solver_of(const Model& model, const Backend& backend)
+{
+  return make_solver(std::make_shared<const Model>(model), { backend, 1, 0 });
+}
 
-/// A plot with logarithmic axes and its legend below.
+/// A plot with a logarithmic x axis, for voxel edges or numbers of voxels, and the legend below.
 Plot convergence_plot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range);
+                      const std::vector<double>& x_ticks, const std::array<double, 2>& x_range, bool y_log = true);
 
 }  // namespace frontalis

@@ -1,7 +1,6 @@
 // contact with rigid bodies: a sphere on a layer
 
 #include "frontalis/model/sample_field.hpp"
-#include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <cmath>
@@ -59,19 +58,18 @@ void touch_with_top(Contact& contact, const Model& model)
 
 }  // namespace
 
-Finding verify_hertz(const VerificationSettings& settings)
+void verify_hertz(const Backend& backend, Finding& finding)
 {
   // a quarter of the layer; lengths in voxels: contact radius, thickness, half of the width
   constexpr std::int32_t contact_radius = 8, thickness = 24, width = 40;
   constexpr double edge = 0.5e-3, young = 34e3, poisson = 0.3, density = 1000;
   const double radius = contact_radius * edge / 0.1, depth = 0.1 * contact_radius * edge;
-  Finding finding;
   Model model = voxel_model({ { width, width, thickness } }, edge, neo_hookean(young, poisson, density));
   model.hourglass = HourglassControl::assumed_strain;
   for (const int axis : { 0, 1 })
     prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
               { { axis == 0, axis == 1, false } });
-  clamp(model, [](const auto& p) { return p[2] == 0; });
+  hold(model, [](const auto& p) { return p[2] == 0; });
   model.bones = { "sphere" };
   Contact contact;
   contact.name = "sphere";
@@ -80,7 +78,7 @@ Finding verify_hertz(const VerificationSettings& settings)
   touch_with_top(contact, model);
   model.contacts.push_back(contact);
   EquilibriumSettings search;
-  search.backend = settings.backend;
+  search.backend = backend;
   search.period = 4 * thickness * edge * std::sqrt(density / shear_modulus(young, poisson));
   search.bone_pose.translation[2] = -depth;
   const RestState state = find_equilibrium(model, search);
@@ -94,7 +92,6 @@ Finding verify_hertz(const VerificationSettings& settings)
       nodes_where(model, [&](const auto& p) { return p[0] == 0 && p[1] == 0 && p[2] > (thickness - 0.5) * edge; });
   finding.checks.absolute("depth of the middle below the sphere, in voxels", "1", 0,
                           (mean_displacement(state.displacements, middle)[2] + depth) / edge, 0.05);
-  return finding;
 }
 
 }  // namespace frontalis

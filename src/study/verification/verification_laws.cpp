@@ -1,7 +1,6 @@
-// forces of the element and the laws, which must be exact but for rounding
+// forces of elements and stresses of laws, which must be exact except for rounding, and contraction of free bars
 
 #include "frontalis/physics/materials/lookup.hpp"
-#include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <algorithm>
@@ -13,9 +12,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 34e3, poisson = 0.49, edge = 1e-3;
+constexpr double young = 34e3, poisson = 0.49, edge = 1e-3;  // young [Pa], edge [m]
 
-using Gradient = std::array<double, 9>;  // row by row
+using Gradient = std::array<double, 9>;  // 3 x 3, row-major
 
 Model small_block(const Material& material, std::int32_t n, HourglassControl hourglass = HourglassControl::scalar)
 {
@@ -31,6 +30,14 @@ double largest(const Vectors& vectors)
     for (const double c : v)
       value = std::max(value, std::abs(c));
   return value;
+}
+
+Vectors internal_forces(Solver& solver, const Vectors& displacements)
+{
+  Vectors forces;
+  solver.set_displacements(displacements);
+  solver.internal_forces(forces);
+  return forces;
 }
 
 // first Piola-Kirchhoff stress [Pa] of a homogeneously deformed block, from the forces on three of its faces
@@ -63,12 +70,23 @@ std::vector<std::pair<std::string, Material>> every_law()
   return laws;
 }
 
+// equilibrium stretch along x of a free bar of 4 x 2 x 2 voxels
+double contracted(const Material& material, const Muscle& muscle, float activation, const Backend& backend)
+{
+  Model model = voxel_model({ { 4, 2, 2 } }, edge, material);
+  add_muscle(model, muscle, along_x);
+  hold_mirror_planes(model);
+  const auto end = nodes_where(model, [](const auto& p) { return p[0] > 3.5 * edge; });
+  const double period = 16e-3 / std::sqrt(3 * material.parameters[0] / material.density);
+  const RestState rest = find_equilibrium(model, { backend, period, 1e-5, activation });
+  return 1 + mean_displacement(rest.displacements, end)[0] / 4e-3;
+}
+
 }  // namespace
 
-Finding verify_rigid_motion(const VerificationSettings& settings)
+void verify_rigid_motion(const Backend& other, Finding& finding)
 {
-  Finding finding;
-  // Rodrigues' formula
+  // rotation by 1.2 rad about (1, 2, 3) by Rodrigues' formula
   const double length = std::sqrt(14.0), a[3] = { 1 / length, 2 / length, 3 / length };
   const double c = std::cos(1.2), s = std::sin(1.2);
   const double cross[9] = { 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0 };
@@ -76,23 +94,19 @@ Finding verify_rigid_motion(const VerificationSettings& settings)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       R[3 * i + j] = c * (i == j) + s * cross[3 * i + j] + (1 - c) * a[i] * a[j];
-  for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-12 }, { settings.backend, 2e-5 } })
+  for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-12 }, { other, 2e-5 } })
     for (const auto form : hourglass_forms)
     {
-      const auto model = std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 3, form));
-      const auto solver = make_solver(model, { backend, 1, 0 });
-      solver->set_displacements(affine_displacements(*model, R, { { 2e-3, 0, 0 } }));
-      Vectors forces;
-      solver->internal_forces(forces);
+      const Model model = small_block(neo_hookean(young, poisson), 3, form);
+      const Vectors forces =
+          internal_forces(*solver_of(model, backend), affine_displacements(model, R, { { 2e-3, 0, 0 } }));
       finding.checks.absolute("force over E h², " + backend + ", " + name_of(form), "1", 0,
                               largest(forces) / (young * edge * edge), bound);
     }
-  return finding;
 }
 
-Finding verify_affine_motion(const VerificationSettings& settings)
+void verify_affine_motion(const Backend& other, Finding& finding)
 {
-  Finding finding;
   const Gradient F{ { 1.3, 0.2, -0.1, 0.05, 0.85, 0.15, 0.1, -0.2, 0.95 } };
   double mode[3][8] = {};
   const double one[3] = { 1, 1, 1 };
@@ -102,34 +116,28 @@ Finding verify_affine_motion(const VerificationSettings& settings)
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], one);
   const auto law =
       physics::stress(physics::NeoHookean<double>{ shear_modulus(young, poisson), bulk_modulus(young, poisson) }, k);
-  for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-11 }, { settings.backend, 2e-5 } })
+  for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-11 }, { other, 2e-5 } })
   {
-    const auto model =
-        std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 4, HourglassControl::assumed_strain));
-    const auto solver = make_solver(model, { backend, 1, 0 });
-    solver->set_displacements(affine_displacements(*model, F));
-    Vectors forces;
-    solver->internal_forces(forces);
+    const Model model = small_block(neo_hookean(young, poisson), 4, HourglassControl::assumed_strain);
+    const auto solver = solver_of(model, backend);
+    const Vectors forces = internal_forces(*solver, affine_displacements(model, F));
     double inside = 0, error = 0;
     for (std::size_t n = 0; n < forces.size(); ++n)
-      if (const auto& node = model->nodes[n];
-          *std::min_element(node.begin(), node.end()) > 0 && *std::max_element(node.begin(), node.end()) < 4)
+      if (const auto [least, most] = std::minmax_element(model.nodes[n].begin(), model.nodes[n].end());
+          *least > 0 && *most < 4)
         inside = std::max(inside, largest({ forces[n] }));
-    const Gradient P = piola_stress(*model, *solver);
+    const Gradient P = piola_stress(model, *solver);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         error = std::max(error,
                          std::abs(P[3 * i + j] - law.on_gradient * k.F.a[i][j] - law.on_cofactor * k.cofactor.a[i][j]));
-    const std::string of = ", " + backend;
-    finding.checks.absolute("force inside over E h²" + of, "1", 0, inside / (young * edge * edge), bound);
-    finding.checks.absolute("error of stress over E" + of, "1", 0, error / young, bound);
+    finding.checks.absolute("force inside over E h², " + backend, "1", 0, inside / (young * edge * edge), bound);
+    finding.checks.absolute("error of stress over E, " + backend, "1", 0, error / young, bound);
   }
-  return finding;
 }
 
-Finding verify_energy_gradient(const VerificationSettings& settings)
+void verify_energy_gradient(const Backend& other, Finding& finding)
 {
-  Finding finding;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-0.3 * edge, 0.3 * edge);
   for (const auto& [law, material] : every_law())
@@ -137,9 +145,9 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
     {
       if (form == HourglassControl::assumed_strain && material.law != Law::neo_hookean)
         continue;
-      const auto model = std::make_shared<const Model>(small_block(material, 2, form));
-      const auto energies = make_solver(model, { "reference", 1, 0 });
-      Vectors u(model->nodes.size());
+      const Model model = small_block(material, 2, form);
+      const auto energies = solver_of(model, "reference");
+      Vectors u(model.nodes.size());
       for (auto& v : u)
         for (auto& c : v)
           c = value(random);
@@ -155,29 +163,21 @@ Finding verify_energy_gradient(const VerificationSettings& settings)
             const Monitor monitor = energies->monitor();
             slopes[n][axis] += side * (monitor.internal + monitor.hourglass) / (2 * step);
           }
-      for (const auto& [backend, bound] :
-           { std::pair<Backend, double>{ "reference", 1e-6 }, { settings.backend, 2e-5 } })
+      for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-6 }, { other, 2e-5 } })
       {
-        const auto solver = make_solver(model, { backend, 1, 0 });
-        solver->set_displacements(u);
-        Vectors forces;
-        solver->internal_forces(forces);
-        Vectors errors(u.size());
+        Vectors errors = internal_forces(*solver_of(model, backend), u);
         for (std::size_t n = 0; n < u.size(); ++n)
           for (int axis = 0; axis < 3; ++axis)
-            errors[n][axis] = forces[n][axis] - slopes[n][axis];
-        std::string name = law + ", " + backend;
-        if (form == HourglassControl::assumed_strain)
-          name += ", " + name_of(form);
-        finding.checks.absolute(name, "1", 0, largest(errors) / largest(slopes), bound);
+            errors[n][axis] -= slopes[n][axis];
+        const std::string name = form == HourglassControl::assumed_strain ? ", " + name_of(form) : "";
+        finding.checks.absolute(law + ", " + backend + name, "1", 0, largest(errors) / largest(slopes), bound);
       }
     }
-  return finding;
 }
 
-Finding verify_uniaxial_stretch(const VerificationSettings& settings)
+void verify_uniaxial_stretch(const Backend& backend, Finding& finding)
 {
-  Finding finding;
+  // stretch, P11/μ, lateral stretch, J
   const double expected[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
                                   { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                   { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
@@ -193,42 +193,33 @@ Finding verify_uniaxial_stretch(const VerificationSettings& settings)
     const auto end = nodes_where(model, [&](const auto& p) { return p[0] > 1.5 * edge; });
     const auto side = nodes_where(model, [&](const auto& p) { return p[1] > 1.5 * edge; });
     prescribe(model, end, { { true, false, false } }, { { (row[0] - 1) * length, 0, 0 } });
-    EquilibriumSettings relax{ settings.backend, 3e-3 };
-    relax.tolerance = 1e-6;
-    RestState rest = find_equilibrium(model, relax);
+    const RestState rest = find_equilibrium(model, { backend, 3e-3, 1e-6 });
     const double stress = internal_force(*rest.solver, end)[0] / (length * length) / shear_modulus(young, poisson);
     const double lateral = 1 + mean_displacement(rest.displacements, side)[1] / length;
     const std::string at = " at stretch " + readable(row[0]);
     finding.checks.relative("P11/μ" + at, "1", row[1], stress, 2e-4);
     finding.checks.relative("lateral stretch" + at, "1", row[2], lateral, 2e-5);
     finding.checks.relative("J" + at, "1", row[3], row[0] * lateral * lateral, 4e-5);
-    for (std::size_t c = 0; c < 2; ++c)
-      plot.curves[c].x.push_back(row[0]);
-    plot.curves[0].y.push_back(row[1]);
-    plot.curves[1].y.push_back(stress);
+    plot.curves[0].add(row[0], row[1]);
+    plot.curves[1].add(row[0], stress);
   }
   finding.plots.emplace_back("uniaxial_stretch", plot);
-  return finding;
 }
 
-Finding verify_simple_shear(const VerificationSettings& settings)
+void verify_simple_shear(const Backend& backend, Finding& finding)
 {
-  Finding finding;
-  const double mu = shear_modulus(young, poisson);
   for (const double gamma : { 0.2, 0.8 })
   {
-    const auto model = std::make_shared<const Model>(small_block(neo_hookean(young, poisson), 2));
-    const auto solver = make_solver(model, { settings.backend, 1, 0 });
+    const Model model = small_block(neo_hookean(young, poisson), 2);
+    const auto solver = solver_of(model, backend);
     const Gradient F{ { 1, gamma, 0, 0, 1, 0, 0, 0, 1 } };
-    solver->set_displacements(affine_displacements(*model, F));
-    const Gradient P = piola_stress(*model, *solver);
+    solver->set_displacements(affine_displacements(model, F));
+    const Gradient P = piola_stress(model, *solver);
     // J = 1: sigma = P F^T
     const auto sigma = [&](int i, int j)
     {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k)
-        sum += P[3 * i + k] * F[3 * j + k];
-      return sum / mu;
+      return (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) /
+             shear_modulus(young, poisson);
     };
     const std::string at = " at γ = " + readable(gamma);
     const double square = gamma * gamma;
@@ -237,7 +228,26 @@ Finding verify_simple_shear(const VerificationSettings& settings)
     finding.checks.absolute("σ22/μ" + at, "1", -square / 3, sigma(1, 1), 1e-4);
     finding.checks.absolute("σ33/μ" + at, "1", -square / 3, sigma(2, 2), 1e-4);
   }
-  return finding;
+}
+
+void verify_active_bar(const Backend& backend, Finding& finding)
+{
+  const double mu = 1e4;
+  Material material;
+  material.density = 1000;
+  material.parameters = { { mu, 2000 * mu } };
+  // Ta/μ, stretch
+  for (const auto& [stress, stretch] : { std::pair{ 0.1, 0.96873 }, { 0.5, 0.87358 }, { 1, 0.79370 }, { 2, 0.69336 } })
+    finding.checks.relative("stretch at Ta/μ = " + readable(stress), "1", stretch,
+                            contracted(material, Muscle{ "bar", stress * mu, false, false }, 1, backend), 5e-4);
+}
+
+void verify_published_bar(const Backend& backend, Finding& finding)
+{
+  for (const auto& [stress, stretch] : { std::pair{ 0.3e6, 0.75 }, { 5e6, 0.52 } })
+    finding.checks.absolute("stretch with " + readable(stress / 1e6) + " MPa", "1", stretch,
+                            contracted(neo_hookean(0.5e6, 0.49), Muscle{ "bar", stress, false, true }, 0.75F, backend),
+                            5e-3);
 }
 
 }  // namespace frontalis

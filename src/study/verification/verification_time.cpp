@@ -1,17 +1,16 @@
-// motions over time: viscous relaxation, the balance of energies, a million steps in single precision
+// time dependence: viscous relaxation, the balance of energies, a million steps in single precision
 
-#include "frontalis/study/equilibrium.hpp"
 #include "study/verification/verification_cases.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace frontalis
 {
 namespace
 {
 
-// shear force on the upper side of a block
+// shear force on the upper side of a block [N]
 double shear_force(Solver& solver, const Model& model)
 {
   return internal_force(
@@ -20,50 +19,46 @@ double shear_force(Solver& solver, const Model& model)
 
 Model sheared_block(const std::array<double, 2>& share, const std::array<double, 2>& time)
 {
-  VoxelBox box;
-  box.size = { { 3, 2, 2 } };
-  box.materials = { neo_hookean(34e3, 0.49) };
-  box.materials[0].viscous_share = share;
-  box.materials[0].viscous_time = time;
-  Model model = voxel_model(box);
+  Material material = neo_hookean(34e3, 0.49);
+  material.viscous_share = share;
+  material.viscous_time = time;
+  Model model = voxel_model({ { 3, 2, 2 } }, 1e-3, material);
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     prescribe(model, { static_cast<std::int32_t>(n) }, { { true, true, true } },
               { { 0.1 * rest_position(model, n)[1], 0, 0 } });
   return model;
 }
 
-// a bar under gravity that is held at one end
-Model hanging_bar(const std::array<std::int32_t, 3>& size, double gravity)
+// a bar along x under gravity [m/s2], fixed at one end
+Model hanging_bar(const Voxel& size, double gravity)
 {
   Model model = voxel_model(size, 1e-3, neo_hookean(34e3, 0.45));
-  clamp(model, [](const auto& p) { return p[0] == 0; });
+  hold(model, [](const auto& p) { return p[0] == 0; });
   model.gravity = { { gravity, 0, -0.3 * gravity } };
   return model;
 }
 
 }  // namespace
 
-Finding verify_viscosity(const VerificationSettings& settings)
+void verify_viscosity(const Backend& backend, Finding& finding)
 {
-  Finding finding;
   Plot plot{ "Stress of a sheared block that is held", "time [s]", "stress over the elastic one [1]" };
   plot.x_log = true;
   plot.key = "bottom left";
   struct Series
   {
-    const char* name;
+    std::string name;
     std::array<double, 2> share, time;
   };
   for (const auto& series : { Series{ "one term", { { 0.4, 0 } }, { { 0.02, 0 } } },
                               Series{ "two terms", { { 0.3, 0.2 } }, { { 0.01, 0.1 } } } })
   {
     const Model model = sheared_block(series.share, series.time);
-    const auto elastic = make_solver(std::make_shared<const Model>(sheared_block({}, {})), { settings.backend, 1, 0 });
-    const auto viscous = make_solver(std::make_shared<const Model>(model), { settings.backend, 1, 0 });
+    const auto elastic = solver_of(sheared_block({}, {}), backend), viscous = solver_of(model, backend);
     elastic->advance(1e-4, elastic->controls());
     const double at_once = shear_force(*elastic, model);
-    Plot::Curve theory{ std::string(series.name) + ", closed form", {}, {}, Plot::Style::line };
-    Plot::Curve measured{ std::string(series.name) + ", solver", {}, {}, Plot::Style::points };
+    Plot::Curve theory{ series.name + ", closed form", {}, {}, Plot::Style::line };
+    Plot::Curve measured{ series.name + ", solver", {}, {}, Plot::Style::points };
     const auto left = [&](double t)
     {
       double sum = 1;
@@ -79,28 +74,20 @@ Finding verify_viscosity(const VerificationSettings& settings)
     {
       viscous->advance(then - now, viscous->controls());
       now = then;
-      const double found = shear_force(*viscous, model) / at_once;
-      measured.add(now, found);
-      finding.checks.relative(std::string(series.name) + ", after " + readable(now) + " s", "1", left(now), found,
-                              2e-3);
+      measured.add(now, shear_force(*viscous, model) / at_once);
+      finding.checks.relative(series.name + ", after " + readable(now) + " s", "1", left(now), measured.y.back(), 2e-3);
     }
-    plot.curves.push_back(theory);
-    plot.curves.push_back(measured);
+    plot.curves.insert(plot.curves.end(), { theory, measured });
   }
   finding.plots.emplace_back("viscosity", plot);
-  return finding;
 }
 
-Finding verify_energy_balance(const VerificationSettings& settings)
+void verify_energy_balance(const Backend& backend, Finding& finding)
 {
-  Finding finding;
   for (const std::string kind : { "undamped", "damped", "viscous" })
   {
     Model model = hanging_bar({ { 12, 4, 4 } }, 9.81);
-    add_muscle(model, Muscle{ "bar", 20e3, true, true },
-               [](std::size_t) {
-                 return std::array<float, 3>{ { 1, 0, 0 } };
-               });
+    add_muscle(model, Muscle{ "bar", 20e3, true, true }, along_x);
     if (kind == "damped")
       model.damping = 40;
     if (kind == "viscous")
@@ -108,7 +95,7 @@ Finding verify_energy_balance(const VerificationSettings& settings)
       model.materials[0].viscous_share = { { 0.3, 0.2 } };
       model.materials[0].viscous_time = { { 0.005, 0.05 } };
     }
-    SolverSettings with_ledger{ settings.backend, 1, 0 };
+    SolverSettings with_ledger{ backend, 1, 0 };
     with_ledger.ledger = true;
     const auto solver = make_solver(std::make_shared<const Model>(model), with_ledger);
     Controls target = solver->controls();
@@ -119,13 +106,12 @@ Finding verify_energy_balance(const VerificationSettings& settings)
     finding.checks.absolute("unexplained, " + kind + " bar", "%", 0,
                             100 * std::abs(ledger.imbalance()) / ledger.largest, 1);
   }
-  return finding;
 }
 
-Finding verify_precision(const VerificationSettings&)
+void verify_precision(const Backend&, Finding& finding)
 {
-  Finding finding;
   constexpr int steps = 1000000;
+  // displacement of the bar's end [mm] after a pressure on it has grown during all steps
   const auto end_displacement = [&](const Backend& backend, Precision precision)
   {
     Model model = hanging_bar({ { 16, 1, 1 } }, 0);
@@ -134,14 +120,11 @@ Finding verify_precision(const VerificationSettings&)
     Load load;
     load.name = "push";
     load.value = { { 0, 0, -6 } };
-    for (const double y : { 0.0, 1e-3 })
-      for (const double z : { 0.0, 1e-3 })
-      {
-        load.mesh.vertices.push_back({ { 16e-3, y, z } });
-        load.binding.voxel.push_back(15);
-        load.binding.coordinates.push_back({ { 1, y > 0 ? 1.0F : 0.0F, z > 0 ? 1.0F : 0.0F } });
-      }
+    load.mesh.vertices = {
+      { { 16e-3, 0, 0 } }, { { 16e-3, 0, 1e-3 } }, { { 16e-3, 1e-3, 0 } }, { { 16e-3, 1e-3, 1e-3 } }
+    };
     load.mesh.triangles = { { { 0, 2, 3 } }, { { 0, 3, 1 } } };
+    load.binding = bind_points(model, load.mesh.vertices);
     constexpr double time_step = 5e-6;
     load.ramp = steps * time_step;
     model.loads.push_back(load);
@@ -150,20 +133,14 @@ Finding verify_precision(const VerificationSettings&)
     solver->advance(load.ramp, solver->controls());
     Vectors u;
     solver->displacements(u);
-    return mean_displacement(u, end)[2];
+    return 1e3 * mean_displacement(u, end)[2];
   };
-  const double expected = 1e3 * end_displacement("reference", Precision::double_precision);
-  struct Way
-  {
-    const char* name;
-    Precision precision;
-    double bound;
-  };
-  for (const auto& way : { Way{ "single", Precision::single, 1e-3 }, Way{ "compensated", Precision::compensated, 1e-3 },
-                           Way{ "double", Precision::double_precision, 1e-7 } })
-    finding.checks.relative(std::string(way.name) + ", end's displacement", "mm", expected,
-                            1e3 * end_displacement("cpu", way.precision), way.bound);
-  return finding;
+  const double expected = end_displacement("reference", Precision::double_precision);
+  for (const auto& [name, precision, bound] :
+       { std::tuple("single", Precision::single, 1e-3), std::tuple("compensated", Precision::compensated, 1e-3),
+         std::tuple("double", Precision::double_precision, 1e-7) })
+    finding.checks.relative(std::string(name) + ", end's displacement", "mm", expected,
+                            end_displacement("cpu", precision), bound);
 }
 
 }  // namespace frontalis

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "cuda/backend/device_memory.hpp"
+#include "cuda/kernels/step_kernel.hpp"
+#include "frontalis/model/model.hpp"
+#include "solver/stepping/array_list.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Sliding nodes and the fields of their surfaces in device memory.
+class DeviceContacts : public EffectPart
+{
+public:
+  DeviceContacts(const Model& model, const std::vector<std::uint32_t>& device_node);
+
+  /// Enters sliding nodes into the tasks of all model nodes.
+  void add_tasks(std::vector<NodeTask>& task_of) const;
+  /// Fills in what a step needs.
+  void describe(StepArguments& g) const;
+  std::size_t rubbing() const { return friction_.size(); }  ///< nodes with friction
+  void list_arrays(ArrayList& list) override;
+  void run(EffectSet running) override;
+  void reset() override;
+
+private:
+  void add_fields(const Model& model);
+
+  bool rubs_ = true;
+  std::vector<std::int32_t> node_;     // model node of each sliding node
+  std::vector<std::int32_t> gliding_;  // its index into glides_; -1: its surface is still
+  std::vector<DeviceArray<std::int32_t>> tables_;
+  std::vector<DeviceArray<float>> field_samples_;
+  DeviceArray<physics::DistanceField> fields_;
+  DeviceArray<SlidingNodeField> sliding_;
+  DeviceArray<float4> at_, samples_, planes_;
+  DeviceArray<float> friction_, pressing_;
+  DeviceArray<GlidingNode> glides_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "bake/voxels/voxelise.hpp"
+
+namespace frontalis
+{
+
+/// Scene to local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node of the grid.
+struct LocalFrame
+{
+  int first = 0;
+  Vector3d origin{ 0, 0, 0 };  ///< scene coordinates [m]
+
+  int scene_axis(int local) const { return (first + local) % 3; }
+  /// Local components of a vector given by its scene components.
+  template <class T>
+  std::array<T, 3> turn(const std::array<T, 3>& scene) const
+  {
+    return { scene[scene_axis(0)], scene[scene_axis(1)], scene[scene_axis(2)] };
+  }
+  Vector3d turn(const Vector3d& scene) const
+  {
+    return { scene[scene_axis(0)], scene[scene_axis(1)], scene[scene_axis(2)] };
+  }
+  Vector3d to_local(const Vector3d& scene) const { return turn(Vector3d(scene - origin)); }
+  TriangleMesh to_local(TriangleMesh mesh) const
+  {
+    for (Vector3& v : mesh.vertices)
+      v = to_array(to_local(to_vector(v)));
+    return mesh;
+  }
+  /// Scene coordinates [m] of a point in local coordinates [m].
+  Vector3d to_scene(const Vector3d& local) const
+  {
+    Vector3d p = origin;
+    for (int a = 0; a < 3; ++a)
+      p[scene_axis(a)] += local[a];
+    return p;
+  }
+  /// Scene coordinates of the point (i, j, k) of the model's grid, in voxel edges from the origin.
+  Vector3d grid_point(const Model& model, double i, double j, double k) const
+  {
+    return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
+  }
+  Vector3d voxel_centre(const Model& model, std::size_t e) const
+  {
+    const auto& v = model.voxels[e];
+    return grid_point(model, v[0] + 0.5, v[1] + 0.5, v[2] + 0.5);
+  }
+};
+
+// The stages of the bake that fill the model, in the order of the calls.
+
+/// Chooses as local x the axis along which rows of voxels are longest, sorts the voxels, and fills the model's grid,
+/// mixtures and muscle weights. add_fibres() fills the fibre directions.
+LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model);
+
+/// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.
+void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
+
+/// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
+/// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the
+/// side with most of the tissue within two voxels of it. If several constraints apply to a node, rigid takes precedence
+/// over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several sliding
+/// surfaces the nearest. Throws Error for a constraint that restricts no node.
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                    BakeMonitor& monitor);
+
+/// Removes loose components. Only a common face connects voxels, not an edge or a corner. It keeps the largest
+/// component and all others with a restricted node and at least a hundredth of the largest one's voxels.
+void remove_islands(Model& model, BakeMonitor& monitor);
+
+/// Mixes the material of each layer that is too thin to be sampled into the voxels through which its surface passes.
+/// Area in voxels that were left out is added to the voxel below. All these voxels get the same proportion of the
+/// layer's material, which preserves its volume. So no voxel with little tissue gets stiffer than others, which would
+/// shorten the time step.
+void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor);
+
+/// Fills the model's directions of materials whose fibre families follow a surface. In each voxel the families are
+/// turned by the shortest rotation from the normal of their plane to the surface's normal at the point closest to the
+/// voxel's centre. The sign of the plane's normal is that which agrees with the surface's normals in most voxels. In a
+/// voxel with several such materials the one with the largest proportion is used.
+void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor);
+
+/// A mesh in local coordinates, and its vertices bound to voxels.
+struct BoundMesh
+{
+  TriangleMesh mesh;
+  Binding binding;
+  std::size_t triangles = 0;    ///< number of triangles inside the crop
+  std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
+  Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
+};
+/// Largest distance of a bound point from its voxel [m].
+double extrapolation_of(const Scene& scene, const Model& model);
+/// Binds those triangles of a surface in scene coordinates that lie in the crop and whose vertices can all be bound.
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
+                    double extrapolation, BakeMonitor& monitor);
+
+/// Fills the model's skin, landmarks and loads and binds their points to voxels. Throws Error if no triangle of a load
+/// can be bound, a vertex of the skin is too far from all voxels, or a landmark is too far from the skin.
+void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor);
+
+/// Volumes of the muscles that are bounded by surfaces, in the order of the model's muscles.
+std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeMonitor& monitor);
+
+}  // namespace frontalis

@@ -1,0 +1,38 @@
+#include "cli/command_options.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+namespace frontalis
+{
+
+void add_backend_option(CLI::App& command, Backend& backend, bool automatic)
+{
+  std::vector<Backend> names = backend_names();
+  if (!automatic)
+    names.erase(std::remove(names.begin(), names.end(), "auto"), names.end());
+  command.add_option("--backend", backend, "the solver's implementation (" + backend + ")")
+      ->check(CLI::IsMember(std::move(names)));
+}
+
+void add_solver_options(CLI::App& command, SolverSettings& settings)
+{
+  add_backend_option(command, settings.backend, true);
+  command.add_option("--threads", settings.threads, "CPU threads (0: one per core)")->check(CLI::Range(0, 1024));
+}
+
+void check_seconds(double seconds)
+{
+  if (!(seconds > 0) || !std::isfinite(seconds))
+    throw WrongUsage("--seconds: must be a number greater than 0");
+}
+
+std::string plot_path(const std::string& option)
+{
+  std::filesystem::path path = option;
+  if (!option.empty() && path.extension() != ".png")
+    throw WrongUsage("--plot: '" + option + "' must end in .png");
+  return path.replace_extension().string();
+}
+
+}  // namespace frontalis

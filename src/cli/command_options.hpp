@@ -1,0 +1,55 @@
+#pragma once
+
+#include "cli/command.hpp"
+
+#include "frontalis/solver/solver.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+// What the options of several subcommands share.
+
+/// Declares an option whose value must be above 0.
+template <class Value>
+CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& value, const std::string& text)
+{
+  return command.add_option(name, value, text)->check(CLI::PositiveNumber);
+}
+
+/// Declares --backend; its default is what `backend` holds. `automatic`: "auto" is allowed too.
+void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
+
+/// Declares --backend and --threads.
+void add_solver_options(CLI::App& command, SolverSettings& settings);
+
+/// Throws WrongUsage if --seconds is not a number greater than 0.
+void check_seconds(double seconds);
+
+/// The path of --plot FILE.png without its extension, for write_plot(); empty without the option. Throws WrongUsage on
+/// another extension.
+std::string plot_path(const std::string& option);
+
+/// The cases that `only` names, in the order of `cases`; if it is empty, the short cases, or all cases with `all`.
+/// Throws WrongUsage on a name that no case has.
+template <class Case>
+std::vector<Case> chosen_cases(std::vector<Case> cases, const std::vector<std::string>& only, bool all)
+{
+  std::string names;
+  for (const Case& c : cases)
+    names += " " + c.name;
+  for (const std::string& name : only)
+    if (std::none_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == name; }))
+      throw WrongUsage("--only: there is no case '" + name + "'; there are" + names);
+  const auto left_out = [&](const Case& c)
+  { return only.empty() ? !all && !c.quick : std::find(only.begin(), only.end(), c.name) == only.end(); };
+  cases.erase(std::remove_if(cases.begin(), cases.end(), left_out), cases.end());
+  return cases;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,163 @@
+#include "cli/given_controls.hpp"
+
+#include "cli/command.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
+#include <boost/algorithm/string.hpp>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <set>
+
+namespace frontalis
+{
+namespace
+{
+
+// the fields of a line between commas, without white space around them
+std::vector<std::string> fields_of(const std::string& line)
+{
+  std::vector<std::string> fields;
+  boost::split(fields, line, [](char c) { return c == ','; });
+  for (std::string& field : fields)
+    boost::trim(field);
+  return fields;
+}
+
+// the number that the whole text represents, finite or not; nothing if it is not a number
+std::optional<double> number_from(const std::string& text)
+{
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional<double>(value) : std::nullopt;
+}
+
+// the activations of a row, whose columns after the first have the names of muscles
+std::vector<float> row_activation(const Model& model, const std::vector<std::string>& header,
+                                  const std::vector<double>& row, const std::string& place)
+{
+  std::map<std::string, double> named;
+  for (std::size_t c = 1; c < header.size(); ++c)
+    if (!named.emplace(header[c], row[c]).second)
+      throw Error(place + "'" + header[c] + "' is there twice; must be there once");
+  try
+  {
+    return target_activation(model, {}, named);
+  }
+  catch (const Error& error)
+  {
+    throw Error(place + error.what());
+  }
+}
+
+}  // namespace
+
+std::map<std::string, double> parse_activation_list(const std::string& text)
+{
+  std::map<std::string, double> listed;
+  for (const std::string& entry : text.empty() ? std::vector<std::string>() : fields_of(text))
+  {
+    const std::size_t equals = entry.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw WrongUsage("--activate: '" + entry + "' is not written MUSCLE=VALUE");
+    const std::optional<double> value = number_from(entry.substr(equals + 1));
+    if (!value)
+      throw WrongUsage("--activate: '" + entry + "' has no number after '='; write MUSCLE=VALUE,MUSCLE=VALUE");
+    if (!listed.emplace(entry.substr(0, equals), *value).second)
+      throw WrongUsage("--activate: '" + entry.substr(0, equals) + "' is given twice");
+  }
+  return listed;
+}
+
+std::vector<float> target_activation(const Model& model, const std::string& expression,
+                                     const std::map<std::string, double>& listed)
+{
+  std::vector<float> activation = expression_activation(model, expression.empty() ? "relax" : expression);
+  set_activations(model, listed, activation);
+  return activation;
+}
+
+std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts)
+{
+  std::vector<RigidTransform> bones(model.bones.size());
+  std::set<std::string> given;
+  for (const std::string& text : texts)
+  {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::vector<double> values;
+    if (equals != std::string::npos && equals > 0)
+      for (const std::string& field : fields_of(text.substr(equals + 1)))
+        if (const std::optional<double> value = number_from(field))
+          values.push_back(*value);
+    if (values.size() != 6 || std::count(text.begin(), text.end(), ',') != 5)
+      throw WrongUsage("--bone: '" + text + "' is not written NAME=X,Y,Z,RX,RY,RZ (mm, degrees)");
+    if (!given.insert(name).second)
+      throw WrongUsage("--bone: '" + name + "' is given twice");
+    constexpr double degree = 3.14159265358979323846 / 180;
+    set_bone_motion(model, name,
+                    rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
+                                 { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } }),
+                    bones);
+  }
+  return bones;
+}
+
+ActivationCurve ramp_to(const std::vector<float>& target, double ramp)
+{
+  if (ramp <= 0)
+    return { { 0 }, { target } };
+  return { { 0, ramp }, { std::vector<float>(target.size(), 0), target } };
+}
+
+ActivationCurve read_activation_curve(const std::string& path, const Model& model)
+{
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line))
+    throw Error(path + ": cannot be read, or is empty");
+  const auto header = fields_of(line);
+  if (header[0] != "time")
+    throw Error(path + ":1: the first column must be called time");
+  ActivationCurve curve{ { 0 },
+                         { row_activation(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
+  bool empty = true;
+  for (int row = 2; std::getline(file, line); ++row)
+  {
+    if (line.find_first_not_of(" \t\r") == std::string::npos)
+      continue;
+    const std::string place = fmt::format("{}:{}: ", path, row);
+    const auto fields = fields_of(line);
+    if (fields.size() != header.size())
+      throw Error(fmt::format("{}found {} fields; the header has {}", place, fields.size(), header.size()));
+    std::vector<double> numbers;
+    for (const std::string& field : fields)
+    {
+      numbers.push_back(number_from(field).value_or(NAN));
+      if (!std::isfinite(numbers.back()))
+        throw Error(place + "found '" + field + "'; must be a number");
+    }
+    const double time = numbers[0];
+    if (!(time >= 0) || (!empty && time <= curve.time.back()))
+      throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
+    empty = false;
+    // the first knot is at 0, also where the table has no row for it
+    if (time > 0)
+    {
+      curve.time.push_back(time);
+      curve.activation.emplace_back();
+    }
+    curve.activation.back() = row_activation(model, header, numbers, place);
+  }
+  if (empty)
+    throw Error(path + ": has no row below its header");
+  return curve;
+}
+
+}  // namespace frontalis

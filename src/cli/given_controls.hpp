@@ -1,0 +1,32 @@
+#pragma once
+
+#include "frontalis/runner/named_controls.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Reads "frontalis_left=0.75,procerus=0.2". Throws WrongUsage on any other form.
+std::map<std::string, double> parse_activation_list(const std::string& text);
+
+/// One activation per muscle: that of the expression (may be empty), replaced by that of the list; 0 for the others.
+/// Throws Error on values outside 0..1, and on unknown muscles and expressions, with those that the model has.
+std::vector<float> target_activation(const Model& model, const std::string& expression,
+                                     const std::map<std::string, double>& listed);
+
+/// Reads "jaw=0,0,-2,0,10,0", one text per bone: shift along x, y, z [mm] and rotation vector about the origin
+/// [degrees], both in the face frame. Returns one motion per bone of the model, in the local frame. Throws WrongUsage
+/// on any other form, and Error on unknown bones and motions that are not finite.
+std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
+
+/// From rest to a target over a ramp.
+ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
+
+/// Reads a table with a header `time,MUSCLE,MUSCLE,...` and one row per knot, times ascending. Up to the first row
+/// activations grow linearly from 0. Throws Error with the file's line.
+ActivationCurve read_activation_curve(const std::string& path, const Model& model);
+
+}  // namespace frontalis

@@ -1,0 +1,225 @@
+#include "cli/run_output.hpp"
+
+#include "cli/reactions.hpp"
+#include "frontalis/study/table.hpp"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+#include <utility>
+#include <vector>
+
+namespace frontalis
+{
+namespace
+{
+
+double ratio(double numerator, double denominator) { return denominator > 0 ? numerator / denominator : 0; }
+
+double hourglass_share(const Monitor& monitor)
+{
+  return ratio(monitor.hourglass, monitor.internal + monitor.hourglass);
+}
+
+double updates_per_second(const Model& model, const Profile& profile)
+{
+  return ratio(static_cast<double>(model.voxels.size()) * static_cast<double>(profile.steps), profile.stepping);
+}
+
+// motion of a landmark in the face frame [mm]: forward (x), left (y), up (z)
+std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
+{
+  std::array<double, 3> motion{};
+  for (std::size_t i = 0; i < 3; ++i)
+    motion[i] = 1e3 * (static_cast<double>(summary.end.landmarks[landmark][i]) - summary.rest.landmarks[landmark][i]);
+  return motion;
+}
+
+// terms of the ledger by name [J]
+std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
+{
+  return { { "initial", l.initial },       { "kinetic", l.kinetic },      { "internal", l.internal },
+           { "hourglass", l.hourglass },   { "viscous", l.viscous },      { "damping", l.damping },
+           { "friction", l.friction },     { "muscle", l.muscle },        { "load", l.load },
+           { "gravity", l.gravity },       { "contact", l.contact },      { "contact_stored", l.contact_stored },
+           { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+}
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
+
+template <class T>
+void append(std::string& bytes, const T& numbers)
+{
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof numbers[0]);
+}
+
+std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int32_t, 3>>& triangles, double time)
+{
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment face frame, metres, time {:.6f} s\nelement vertex {}\n"
+      "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      time, skin.vertices.size(), triangles.size());
+  bytes.reserve(bytes.size() + 24 * skin.vertices.size() + 13 * triangles.size());
+  for (std::size_t v = 0; v < skin.vertices.size(); ++v)
+  {
+    append(bytes, skin.vertices[v]);
+    append(bytes, skin.normals[v]);
+  }
+  for (const std::array<std::int32_t, 3>& triangle : triangles)
+  {
+    bytes += '\3';
+    append(bytes, triangle);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void print_set_up(const Model& model, const RunSummary& summary)
+{
+  fmt::print("backend            {}\n", summary.backend);
+  fmt::print("voxels             {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
+             model.spacing[1] * 1e3, model.spacing[2] * 1e3);
+  fmt::print("nodes              {}, of which rigid {}, sliding {}\n", model.nodes.size(), model.rigid.size(),
+             model.sliding.size());
+  fmt::print("time step          {:.3f} us\n", summary.time_step * 1e6);
+  std::fflush(stdout);
+}
+
+void print_result(const Model& model, const RunSummary& summary)
+{
+  for (std::size_t l = 0; l < model.landmarks.size(); ++l)
+  {
+    const std::array<double, 3> motion = motion_of(summary, l);
+    fmt::print("landmark           {}: {:+.3f} mm up, {:+.3f} mm forward, {:+.3f} mm left\n", model.landmarks[l],
+               motion[2], motion[0], motion[1]);
+  }
+  fmt::print("kinetic/internal   {:.3g} at the end, {:.3g} peak over peak\n",
+             ratio(summary.monitor.kinetic, summary.monitor.internal),
+             ratio(summary.peak_kinetic, summary.peak_internal));
+  fmt::print("hourglass share    {:.3g} of the elastic energy at the end\n", hourglass_share(summary.monitor));
+  fmt::print("worst J            {:.4f} at the end, {:.4f} in the run\n", summary.monitor.worst_jacobian,
+             summary.worst_jacobian);
+  if (summary.ledger)
+  {
+    for (const auto& [name, joules] : terms_of(*summary.ledger))
+      fmt::print("energy             {:<14} {:+.5e} J\n", name, joules);
+    fmt::print("energy balance     closes within {:.3g} % of the largest term\n",
+               100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
+  }
+  print_reactions(model, summary.reactions);
+  if (summary.guard)
+    fmt::print("guard              {} checks, went back {} times{}\n", summary.guard->checks, summary.guard->rollbacks,
+               summary.guard->rollbacks > 0 ? ", the last because " + words_for(summary.guard->latest) : "");
+  if (summary.equilibrium)
+    fmt::print("equilibrium        {}: {:.2e} of the displacement is left\n",
+               summary.equilibrium->reached ? "reached" : "not reached", summary.equilibrium->residual);
+  fmt::print("simulated          {:.4f} s in {} steps, {:.3f} us the last\n", summary.seconds, summary.profile.steps,
+             summary.time_step * 1e6);
+  fmt::print("wall               {:.3f} s: stepping {:.3f}, skin {:.3f}, energies {:.3f}{}\n", summary.wall,
+             summary.profile.stepping, summary.profile.skin, summary.profile.monitor,
+             summary.guard ? fmt::format(", guard {:.3f}", summary.guard->seconds) : "");
+  fmt::print("real-time factor   {:.4f}", ratio(summary.seconds, summary.wall));
+  if (model.time_scaling != 1)
+    fmt::print(" with time scaling {:g}, which is not real time; {:.4f} without", model.time_scaling,
+               ratio(summary.seconds / model.time_scaling, summary.wall));
+  fmt::print("\nelement updates    {:.2f} million per second\n", updates_per_second(model, summary.profile) * 1e-6);
+  if (!summary.complete)
+    fmt::print("the run was interrupted; these figures are those reached until then\n");
+}
+
+std::string json_of(const Model& model, const RunSummary& summary)
+{
+  const Monitor& monitor = summary.monitor;
+  nlohmann::ordered_json json{ { "complete", summary.complete } };
+  const auto add = [&json](const nlohmann::ordered_json& more) { json.update(more); };
+  if (!summary.failure.empty())
+    add({ { "failure", summary.failure } });
+  auto landmarks = nlohmann::ordered_json::object();
+  for (std::size_t l = 0; l < model.landmarks.size(); ++l)
+  {
+    const auto [forward, left, up] = motion_of(summary, l);
+    landmarks[model.landmarks[l]] = { { "forward_mm", forward }, { "left_mm", left }, { "up_mm", up } };
+  }
+  add({ { "backend", summary.backend },
+        { "voxels", model.voxels.size() },
+        { "nodes", model.nodes.size() },
+        { "rigid_nodes", model.rigid.size() },
+        { "sliding_nodes", model.sliding.size() },
+        { "scene_hash", model.scene_hash },
+        { "time_scaling", model.time_scaling },
+        { "time_step_s", summary.time_step },
+        { "steps", summary.profile.steps },
+        { "frames", summary.frames },
+        { "simulated_s", summary.seconds },
+        { "landmarks", landmarks },
+        { "kinetic_J", monitor.kinetic },
+        { "internal_J", monitor.internal },
+        { "hourglass_J", monitor.hourglass },
+        { "kinetic_over_internal", ratio(monitor.kinetic, monitor.internal) },
+        { "peak_kinetic_over_peak_internal", ratio(summary.peak_kinetic, summary.peak_internal) },
+        { "hourglass_share", hourglass_share(monitor) } });
+  if (summary.ledger)
+    for (const auto& [name, joules] : terms_of(*summary.ledger))
+      add({ { fmt::format("ledger_{}_J", name), joules } });
+  for (std::size_t c = 0; c < summary.reactions.size(); ++c)
+    json["reactions"][model.contacts[c].name] = { { "force_N", summary.reactions[c].force },
+                                                  { "moment_Nm", summary.reactions[c].moment } };
+  if (const auto& guard = summary.guard)
+    add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
+  if (const auto& found = summary.equilibrium)
+    add({ { "equilibrium_reached", found->reached }, { "equilibrium_residual", found->residual } });
+  add({ { "worst_jacobian", summary.worst_jacobian },
+        { "wall_s", summary.wall },
+        { "stepping_s", summary.profile.stepping },
+        { "real_time_factor", ratio(summary.seconds, summary.wall) },
+        { "element_updates_per_s", updates_per_second(model, summary.profile) } });
+  return json_text(json);
+}
+
+FrameFolder::FrameFolder(std::string path, const Model& model)
+    : path_(std::move(path)), model_(model), table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
+{
+  make_folder(path_);
+  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
+  std::vector<std::filesystem::path> earlier;
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
+      earlier.push_back(entry.path());
+  for (const std::filesystem::path& file : earlier)
+    std::filesystem::remove(file);
+}
+
+void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reaction>& reactions)
+{
+  if (frames_ == 0)
+    first_ = skin;
+  write_text(fmt::format("{}/skin_{:04}.ply", path_, frames_), ply_of(skin, model_.skin.triangles, time));
+  for (std::size_t l = 0; l < skin.landmarks.size(); ++l)
+  {
+    const std::array<float, 3>& now = skin.landmarks[l];
+    const std::array<float, 3>& then = first_.landmarks[l];
+    table_ += fmt::format("{},{:.6f},{},{:.9g},{:.9g},{:.9g},{:.6f},{:.6f},{:.6f}\n", frames_, time,
+                          model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
+                          1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
+  }
+  reactions_ += reaction_rows(model_, frames_, time, reactions);
+  ++frames_;
+}
+
+void FrameFolder::finish(const std::string& summary)
+{
+  write_text(path_ + "/landmarks.csv", table_);
+  if (!model_.contacts.empty())
+    write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
+  write_text(path_ + "/run.json", summary);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/solver/guard.hpp"
+
+#include <optional>
+#include <string>
+
+namespace frontalis
+{
+
+/// The result of a run.
+struct RunSummary
+{
+  std::string backend;
+  double seconds = 0;    ///< simulated, on the clock of the activations [s]
+  double wall = 0;       ///< wall time without building the model and the solver [s]
+  double time_step = 0;  ///< [s]
+  int frames = 0;
+  bool complete = true;     ///< false: interrupted or stopped
+  std::string failure;      ///< why it was stopped; empty: it was not stopped
+  Monitor monitor;          ///< at the end
+  double peak_kinetic = 0;  ///< [J]
+  double peak_internal = 0;
+  double worst_jacobian = 1;  ///< of the whole run
+  Profile profile;
+  std::optional<GuardCounts> guard;        ///< where the motion was guarded
+  std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
+  std::vector<Reaction> reactions;         ///< at the end, face frame, one per contact of the model
+  std::optional<Equilibrium> equilibrium;  ///< empty: none was looked for
+  SkinState rest;                          ///< face frame
+  SkinState end;                           ///< face frame
+};
+
+/// Prints backend, voxels, nodes and time step, before the run.
+void print_set_up(const Model& model, const RunSummary& summary);
+
+/// Prints the motion of the landmarks, the energies and the speed.
+void print_result(const Model& model, const RunSummary& summary);
+
+/// The same as JSON.
+std::string json_of(const Model& model, const RunSummary& summary);
+
+/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. Every file is written whole or
+/// not at all.
+class FrameFolder
+{
+public:
+  /// Makes the folder if it is missing and removes the files of an earlier run from it. Throws Error.
+  FrameFolder(std::string path, const Model& model);
+
+  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
+  void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), reactions.csv where the
+  /// model has contact (force [N] and moment [N m], face frame) and run.json.
+  void finish(const std::string& summary);
+
+private:
+  std::string path_;
+  const Model& model_;
+  int frames_ = 0;
+  SkinState first_;
+  std::string table_, reactions_;
+};
+
+}  // namespace frontalis
