@@ -36,13 +36,11 @@ void GlidingNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* cons
     Point p = motion.place, w = motion.velocity;
     double taken = 0;
     physics::LevelPlane<double> plane{};
-    if ((state.slip < 0 || norm(p - state.reference) > state.slip) && node.level.plane_at(p, plane))
+    if (node.level.plane_at(p, plane))
     {
       taken = physics::turn_with_plane(state.normal, plane.normal, w);
       state.normal = plane.normal;
       state.height = dot(plane.normal, p) - plane.distance;
-      state.slip = plane.slip;
-      state.reference = p;
     }
     taken += physics::slide(state.normal, state.height, p, w);
     if (rubs_ && node.friction > 0)
