@@ -22,6 +22,7 @@ enum class Effect : std::uint8_t
   rigid_nodes,
   sliding,
   friction,
+  contact,
   output_fields
 };
 
@@ -34,7 +35,7 @@ struct EffectTraits
 };
 
 /// One entry per effect, in the order of the enumeration Effect.
-inline constexpr std::array<EffectTraits, 11> effect_traits{ {
+inline constexpr std::array<EffectTraits, 12> effect_traits{ {
     { "elasticity", "materials, and what stabilises their elements", "nothing else holds a voxel together",
       "nothing else holds a voxel together" },
     { "fibre_stiffness", "passive stress along muscle fibres", "", "" },
@@ -47,6 +48,7 @@ inline constexpr std::array<EffectTraits, 11> effect_traits{ {
     { "rigid_nodes", "nodes held by bones, still or moved", "", "the tissue would come off its bones" },
     { "sliding", "nodes that keep their distance from a surface", "", "" },
     { "friction", "of sliding nodes, after Coulomb", "", "" },
+    { "contact", "rigid bodies that tissue touches and leaves, with friction", "", "" },
     { "output_fields", "strain and stress of the skin", "", "it is computed only where somebody asks for it" },
 } };
 

@@ -2,6 +2,7 @@
 
 #include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
+#include "bake/voxels/contact_bodies.hpp"
 #include "frontalis/model/effects.hpp"
 
 namespace frontalis
@@ -128,6 +129,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 
   monitor.begin("skin");
   bind_surfaces(scene, surfaces, frame, model, monitor);
+  bind_contacts(scene, surfaces, frame, model, monitor);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

@@ -2,6 +2,7 @@
 #include "cli/given_controls.hpp"
 #include "cli/model_source.hpp"
 #include "cli/progress.hpp"
+#include "cli/reactions.hpp"
 #include "cli/run_output.hpp"
 
 #include "frontalis/error.hpp"
@@ -77,6 +78,7 @@ void Run::look()
         fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
                     "time_step_share, smaller activations or more damping",
                     time));
+  summary.reactions = reactions_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;
   summary.time_step = solver.time_step();
@@ -131,7 +133,7 @@ void Run::play()
     if (frame == 0)
       summary.rest = summary.end;
     if (folder)
-      folder->add(time, summary.end);
+      folder->add(time, summary.end, summary.reactions);
     summary.frames = frame + 1;
     summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
@@ -162,7 +164,7 @@ void Run::settle()
   summary.equilibrium = found;
   summary.complete = !interrupt_requested() || found.reached;
   if (folder)
-    folder->add(time, summary.end);
+    folder->add(time, summary.end, summary.reactions);
 }
 
 void check_options(const RunOptions& options)
@@ -277,7 +279,8 @@ void add_run_command(CLI::App& app)
       ->delimiter(',');
   add_positive(*command, "--seconds", options->seconds, "simulated seconds (1)");
   command->add_option("--frames", options->frames,
-                      "folder for skin_NNNN.ply, landmarks.csv and run.json; files of an earlier run are replaced");
+                      "folder for skin_NNNN.ply, landmarks.csv, reactions.csv (of bodies that tissue touches) and "
+                      "run.json; files of an earlier run are replaced");
   add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");
   add_solver_options(*command, options->solver);
   command

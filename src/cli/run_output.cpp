@@ -1,5 +1,6 @@
 #include "cli/run_output.hpp"
 
+#include "cli/reactions.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
@@ -43,10 +44,11 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
 // terms of the ledger by name [J]
 std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
 {
-  return { { "initial", l.initial },     { "kinetic", l.kinetic },       { "internal", l.internal },
-           { "hourglass", l.hourglass }, { "viscous", l.viscous },       { "damping", l.damping },
-           { "friction", l.friction },   { "muscle", l.muscle },         { "load", l.load },
-           { "gravity", l.gravity },     { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+  return { { "initial", l.initial },       { "kinetic", l.kinetic },      { "internal", l.internal },
+           { "hourglass", l.hourglass },   { "viscous", l.viscous },      { "damping", l.damping },
+           { "friction", l.friction },     { "muscle", l.muscle },        { "load", l.load },
+           { "gravity", l.gravity },       { "contact", l.contact },      { "contact_stored", l.contact_stored },
+           { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
 }
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
@@ -108,10 +110,11 @@ void print_result(const Model& model, const RunSummary& summary)
   if (summary.ledger)
   {
     for (const auto& [name, joules] : terms_of(*summary.ledger))
-      fmt::print("energy             {:<10} {:+.5e} J\n", name, joules);
+      fmt::print("energy             {:<14} {:+.5e} J\n", name, joules);
     fmt::print("energy balance     closes within {:.3g} % of the largest term\n",
                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
   }
+  print_reactions(model, summary.reactions);
   if (summary.guard)
     fmt::print("guard              {} checks, went back {} times{}\n", summary.guard->checks, summary.guard->rollbacks,
                summary.guard->rollbacks > 0 ? ", the last because " + words_for(summary.guard->latest) : "");
@@ -166,6 +169,9 @@ std::string json_of(const Model& model, const RunSummary& summary)
   if (summary.ledger)
     for (const auto& [name, joules] : terms_of(*summary.ledger))
       add({ { fmt::format("ledger_{}_J", name), joules } });
+  for (std::size_t c = 0; c < summary.reactions.size(); ++c)
+    json["reactions"][model.contacts[c].name] = { { "force_N", summary.reactions[c].force },
+                                                  { "moment_Nm", summary.reactions[c].moment } };
   if (const auto& guard = summary.guard)
     add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
   if (const auto& found = summary.equilibrium)
@@ -182,7 +188,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model)
     : path_(std::move(path)), model_(model), table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
 {
   make_folder(path_);
-  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|run\.json)(\.partial)?)");
+  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
   std::vector<std::filesystem::path> earlier;
   for (const auto& entry : std::filesystem::directory_iterator(path_))
     if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
@@ -191,7 +197,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model)
     std::filesystem::remove(file);
 }
 
-void FrameFolder::add(double time, const SkinState& skin)
+void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reaction>& reactions)
 {
   if (frames_ == 0)
     first_ = skin;
@@ -204,12 +210,15 @@ void FrameFolder::add(double time, const SkinState& skin)
                           model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
                           1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
   }
+  reactions_ += reaction_rows(model_, frames_, time, reactions);
   ++frames_;
 }
 
 void FrameFolder::finish(const std::string& summary)
 {
   write_text(path_ + "/landmarks.csv", table_);
+  if (!model_.contacts.empty())
+    write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
   write_text(path_ + "/run.json", summary);
 }
 

@@ -26,6 +26,7 @@ struct RunSummary
   Profile profile;
   std::optional<GuardCounts> guard;        ///< where the motion was guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
+  std::vector<Reaction> reactions;         ///< at the end, face frame, one per contact of the model
   std::optional<Equilibrium> equilibrium;  ///< empty: none was looked for
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
@@ -49,8 +50,9 @@ public:
   FrameFolder(std::string path, const Model& model);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
-  void add(double time, const SkinState& skin);
-  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame) and run.json.
+  void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), reactions.csv where the
+  /// model has contact (force [N] and moment [N m], face frame) and run.json.
   void finish(const std::string& summary);
 
 private:
@@ -58,7 +60,7 @@ private:
   const Model& model_;
   int frames_ = 0;
   SkinState first_;
-  std::string table_;
+  std::string table_, reactions_;
 };
 
 }  // namespace frontalis

@@ -238,6 +238,23 @@ void check_constraints(const Model& model)
   check_each("prescribed (load)", index_below(model.loads.size()), model.prescribed, &PrescribedNode::load);
 }
 
+void check_contacts(const Model& model)
+{
+  for (const Contact& contact : model.contacts)
+  {
+    const std::string name = "contacts '" + contact.name + "'";
+    check_field(name, contact.field);
+    check_not_negative(name, "reach", contact.reach);
+    index_below(model.bones.size(), -1)(name + " (bone)", 0, contact.bone);
+    check_not_negative(name, "friction", contact.friction);
+    check_length(name + " (area)", contact.area.size(), contact.points.size(), "point");
+    check_binding(name + ".binding", contact.binding, contact.points.size(), model.voxels.size());
+    check_each(name + " (points)", check_finite, contact.points);
+    for (const double area : contact.area)
+      check_not_negative(name, "an area", area);
+  }
+}
+
 void check_loads(const Model& model)
 {
   check_entry("gravity", 0, check_finite, model.gravity);
@@ -306,6 +323,7 @@ void check_model(const Model& model)
   check_material_directions(model);
   check_fibres(model);
   check_constraints(model);
+  check_contacts(model);
   check_loads(model);
   check_mesh("skin", model.skin);
   check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());

@@ -78,6 +78,14 @@ std::size_t count_surface_loads(const Model& model)
   return static_cast<std::size_t>(std::count_if(model.loads.begin(), model.loads.end(), is_surface_load));
 }
 
+std::size_t contact_points(const Model& model)
+{
+  std::size_t count = 0;
+  for (const Contact& contact : model.contacts)
+    count += contact.points.size();
+  return count;
+}
+
 // what the model has of an effect that is not switched off
 EffectPresence found(const Model& model, Effect effect)
 {
@@ -120,6 +128,11 @@ EffectPresence found(const Model& model, Effect effect)
                                                  [&](const SlidingNode& node)
                                                  { return model.constraint_surfaces[node.surface].friction > 0; })),
           "surfaces with friction", "no surface has friction");
+    case Effect::contact:
+    {
+      const std::size_t points = contact_points(model);
+      return { points > 0, points > 0 ? counted(points, "point") + " of tissue" : "no body to touch", 0, points };
+    }
     case Effect::output_fields:
       return { !model.skin.vertices.empty(), model.skin.vertices.empty() ? "no skin" : "on request", 0, 0 };
   }
@@ -201,6 +214,9 @@ void remove(Model& model, Effect effect, EffectSet off)
     case Effect::friction:
       for (ConstraintSurface& surface : model.constraint_surfaces)
         surface.friction = 0;
+      break;
+    case Effect::contact:
+      model.contacts.clear();
       break;
     case Effect::elasticity:
     case Effect::output_fields:

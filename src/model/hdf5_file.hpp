@@ -60,6 +60,7 @@ public:
   void close();
 
   void make_group(const std::string& path);
+  bool has(const std::string& path) const { return H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0; }
 
   /// Writes an array, and makes its group if it is missing. Entries are numbers, enums or arrays of numbers.
   template <class T>
@@ -87,7 +88,6 @@ public:
 
 private:
   explicit Hdf5File(hid_t file) : file_(file) {}
-  bool has(const std::string& path) const { return H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0; }
   void write(const std::string& path, const void* data, hsize_t rows, hsize_t width, hid_t memory, hid_t type);
   /// Rows of an array, checking its width.
   hsize_t rows(const std::string& path, hsize_t width) const;

@@ -30,6 +30,9 @@ class ModelWriter
 public:
   ModelWriter(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
+  /// Whether to go on with a group that is only in files where `stored` holds.
+  bool group_if(bool stored, const std::string&) const { return stored; }
+
   template <class T>
   void operator()(const std::string& path, const std::vector<T>& values)
   {
@@ -64,6 +67,8 @@ class ModelReader
 {
 public:
   ModelReader(const Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
+
+  bool group_if(bool, const std::string& path) const { return file_.has(group_ + "/" + path); }
 
   template <class T>
   void operator()(const std::string& path, std::vector<T>& values)

@@ -3,6 +3,7 @@
 #include "model/model_archive.hpp"
 
 #include "frontalis/model/model.hpp"
+#include "model/contact_layout.hpp"
 
 #include <string>
 #include <utility>
@@ -77,6 +78,8 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive.table("sliding", model.sliding, Column{ "node", &SlidingNode::node },
                 Column{ "surface", &SlidingNode::surface }, Column{ "distance", &SlidingNode::distance },
                 Column{ "constraint", &SlidingNode::constraint });
+
+  exchange_contacts(archive, "contacts", model.contacts);
 
   archive("gravity", model.gravity);
   archive.table("loads", model.loads, Column{ "name", &Load::name }, Column{ "kind", &Load::kind },

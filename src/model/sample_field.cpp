@@ -65,45 +65,23 @@ void visit_bricks(const SampledField& field, const Point& p, double way, const V
         visit((static_cast<std::size_t>(k) * field.bricks[1] + j) * field.bricks[0] + i);
 }
 
-}  // namespace
-
-void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
-{
-  for (std::size_t n = 0; n < count; ++n)
-    body(n);
-}
-
-SampledField sample_field(const std::vector<Point>& rest, const Distance& distance, double spacing, double travel,
-                          const Loop& loop)
+// An empty table for the box from `lower` to `upper`.
+SampledField empty_field(const Point& lower, const Point& upper, double spacing)
 {
   SampledField field;
   field.spacing = spacing;
-  if (rest.empty())
-    return field;
-  std::vector<double> level(rest.size());
-  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]).value; });
-  const double edge = DistanceField::brick_edge * spacing;
+  field.origin = lower;
   for (int axis = 0; axis < 3; ++axis)
-  {
-    const auto range = std::minmax_element(rest.begin(), rest.end(),
-                                           [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
-    field.origin[axis] = (*range.first)[axis] - travel;
     field.bricks[axis] =
-        1 + static_cast<std::int32_t>(((*range.second)[axis] + travel - field.origin[axis] + spacing) / edge);
-  }
+        1 + static_cast<std::int32_t>((upper[axis] - lower[axis] + spacing) / (DistanceField::brick_edge * spacing));
   field.table.resize(static_cast<std::size_t>(field.bricks[0]) * field.bricks[1] * field.bricks[2], -1);
+  return field;
+}
 
-  std::vector<Band> bands(field.table.size());
-  for (std::size_t n = 0; n < rest.size(); ++n)
-  {
-    visit_bricks(field, rest[n], travel,
-                 [&](std::size_t brick)
-                 {
-                   bands[brick].least = std::min(bands[brick].least, level[n] - spacing);
-                   bands[brick].largest = std::max(bands[brick].largest, level[n] + spacing);
-                 });
-    visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
-  }
+// Samples the bricks that reach into their bands.
+void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
+{
+  const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;
   std::vector<std::size_t> places;
   for (std::size_t b = 0; b < bands.size(); ++b)
     if (bands[b].least < bands[b].largest)
@@ -142,6 +120,59 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
     field.table[places[n]] = stored++;
     field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
   }
+}
+
+}  // namespace
+
+void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
+{
+  for (std::size_t n = 0; n < count; ++n)
+    body(n);
+}
+
+SampledField sample_field(const std::vector<Point>& rest, const Distance& distance, double spacing, double travel,
+                          const Loop& loop)
+{
+  if (rest.empty())
+    return empty_field({}, {}, spacing);
+  std::vector<double> level(rest.size());
+  loop(rest.size(), [&](std::size_t n) { level[n] = distance(rest[n]).value; });
+  Point lower{}, upper{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto range = std::minmax_element(rest.begin(), rest.end(),
+                                           [&](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+    lower[axis] = (*range.first)[axis] - travel;
+    upper[axis] = (*range.second)[axis] + travel;
+  }
+  SampledField field = empty_field(lower, upper, spacing);
+  std::vector<Band> bands(field.table.size());
+  for (std::size_t n = 0; n < rest.size(); ++n)
+  {
+    visit_bricks(field, rest[n], travel,
+                 [&](std::size_t brick)
+                 {
+                   bands[brick].least = std::min(bands[brick].least, level[n] - spacing);
+                   bands[brick].largest = std::max(bands[brick].largest, level[n] + spacing);
+                 });
+    visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
+  }
+  fill(field, bands, distance, loop);
+  return field;
+}
+
+SampledField sample_band(const Point& lower, const Point& upper, const Distance& distance, double spacing, double reach,
+                         const Loop& loop)
+{
+  const double margin = reach + 2 * spacing;
+  Point from = lower, to = upper;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    from[axis] -= margin;
+    to[axis] += margin;
+  }
+  SampledField field = empty_field(from, to, spacing);
+  fill(field, std::vector<Band>(field.table.size(), { -margin, margin, false }), distance, loop);
   return field;
 }
 

@@ -126,7 +126,10 @@ void add_anatomy(const Scene& scene, Content& content)
 void add_restrictions(const Scene& scene, Content& content)
 {
   for (const SceneConstraint& c : scene.constraints)
-    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    if (c.on.empty())
+      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    else
+      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction, c.on);
   for (const SceneLoad& load : scene.loads)
     content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp, load.crop);
   content.line("gravity", scene.gravity);

@@ -25,15 +25,19 @@ void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
 {
   const auto read = [&](const Node& entry, Mapping& mapping, SceneConstraint& constraint)
   {
-    const std::string kind = one_of(entry, mapping, { "rigid", "sliding" });
+    const std::string kind = one_of(entry, mapping, { "rigid", "sliding", "contact" });
     if (kind.empty())
       return;
-    constraint.kind = kind == "rigid" ? SceneConstraint::Kind::rigid : SceneConstraint::Kind::sliding;
+    using Kind = SceneConstraint::Kind;
+    constraint.kind = kind == "rigid" ? Kind::rigid : kind == "sliding" ? Kind::sliding : Kind::contact;
     constraint.surfaces = mapping.optional(kind).references(names.surfaces);
-    constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
+    if (constraint.kind == Kind::contact)
+      constraint.on = mapping.optional("on").reference(names.surfaces);
+    else
+      constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
     constraint.crop = read_region(mapping.optional("crop"));
     constraint.bone = mapping.optional("bone").name();
-    if (constraint.kind == SceneConstraint::Kind::sliding)
+    if (constraint.kind != Kind::rigid)
       constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
   };
   read_list(node, scene.constraints, read);

@@ -69,8 +69,10 @@ void read_effects(const Node& node, Scene& scene)
     return;
   Mapping mapping(node);
   EffectSet present = EffectSet::all();
-  const bool has_friction = std::any_of(scene.constraints.begin(), scene.constraints.end(),
-                                        [](const SceneConstraint& constraint) { return constraint.friction > 0; });
+  const bool has_friction =
+      std::any_of(scene.constraints.begin(), scene.constraints.end(),
+                  [](const SceneConstraint& constraint)
+                  { return constraint.kind == SceneConstraint::Kind::sliding && constraint.friction > 0; });
   present = present.with(Effect::friction, has_friction);
   for (const Effect effect : every_effect())
     if (const Node entry = mapping.optional(name_of(effect)); entry.given())

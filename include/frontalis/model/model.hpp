@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/model/contact.hpp"
 #include "frontalis/model/restriction.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
@@ -52,6 +53,7 @@ struct Model
   std::vector<ConstraintSurface> constraint_surfaces;
   std::vector<RigidNode> rigid;
   std::vector<SlidingNode> sliding;
+  std::vector<Contact> contacts;
 
   // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]

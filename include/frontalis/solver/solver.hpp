@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/model.hpp"
 #include "frontalis/solver/allocation.hpp"
+#include "frontalis/solver/reaction.hpp"
 #include "frontalis/solver/solver_state.hpp"
 
 #include <cstdint>
@@ -124,6 +125,8 @@ public:
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
+  /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
+  virtual std::vector<Reaction> reactions() const { return {}; }
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

@@ -11,10 +11,11 @@ namespace frontalis
 struct EquilibriumSettings
 {
   Backend backend = "cpu";
-  double period = 0;        ///< approximate period of the slowest vibration [s]
-  double tolerance = 1e-4;  ///< of Solver::settle
-  float activation = 0;     ///< activation of every muscle, 0..1
-  double ramp = 1;          ///< number of periods over which loads and activations grow
+  double period = 0;              ///< approximate period of the slowest vibration [s]
+  double tolerance = 1e-4;        ///< of Solver::settle
+  float activation = 0;           ///< activation of every muscle, 0..1
+  double ramp = 1;                ///< number of periods over which loads and activations grow
+  RigidTransform bone_pose = {};  ///< of every bone, at the end of the ramp
 };
 
 /// Model at rest under its loads.

@@ -72,15 +72,6 @@ private:
   double extrapolation_;
 };
 
-struct BoundMesh
-{
-  TriangleMesh mesh;
-  Binding binding;
-  std::size_t triangles = 0;    ///< number of triangles inside the crop
-  std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
-  Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
-};
-
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
                     BakeMonitor& monitor)
 {
@@ -142,11 +133,22 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
 
 }  // namespace
 
+double extrapolation_of(const Scene& scene, const Model& model)
+{
+  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
+  return scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+}
+
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
+                    double extrapolation, BakeMonitor& monitor)
+{
+  return bind_mesh(whole, crop, frame, PointBinder(model, extrapolation), monitor);
+}
+
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)
 {
-  const double edge = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
-  const double extrapolation = scene.skin.extrapolation > 0 ? scene.skin.extrapolation : 2 * edge;
+  const double extrapolation = extrapolation_of(scene, model);
   const PointBinder binder(model, extrapolation);
 
   if (!scene.skin.surface.empty())

@@ -83,6 +83,21 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
 void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
+/// A mesh in local coordinates, and its vertices bound to voxels.
+struct BoundMesh
+{
+  TriangleMesh mesh;
+  Binding binding;
+  std::size_t triangles = 0;    ///< number of triangles inside the crop
+  std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
+  Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
+};
+/// Largest distance of a bound point from its voxel [m].
+double extrapolation_of(const Scene& scene, const Model& model);
+/// Binds those triangles of a surface in scene coordinates that lie in the crop and whose vertices can all be bound.
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
+                    double extrapolation, BakeMonitor& monitor);
+
 /// Fills the model's skin, landmarks and loads and binds their points to voxels. Throws Error if no triangle of a load
 /// can be bound, a vertex of the skin is too far from all voxels, or a landmark is too far from the skin.
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,

@@ -32,9 +32,10 @@ public:
 
 private:
   using Base = HostBackend<Real, float>;
-  using typename Base::Components;
-  using Base::account_, Base::conditions_, Base::discretisation_, Base::loads_, Base::model_, Base::relaxed_;
+  using Base::account_, Base::conditions_, Base::contact_, Base::discretisation_, Base::loads_, Base::model_,
+      Base::relaxed_;
   using Base::restricted_, Base::runs, Base::u_, Base::v_;
+  using typename Base::Components;
   using Arguments = CpuKernelArguments<Real>;
 
   void rest() override;
@@ -43,6 +44,7 @@ private:
   void kick(Arguments& g, double seconds) const;
   void run_on_all(const Arguments& g, KernelTask task);
   void choose_passive();
+  void add_load(std::int32_t n, const physics::Vec3<double>& force, const Arguments& g);
   void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
   void account(int thread, const Arguments& g);
 

@@ -99,17 +99,24 @@ Work CpuSolver<Real>::work(bool open)
 
 // The update is linear in the force, so loads may be added after it.
 template <class Real>
+void CpuSolver<Real>::add_load(std::int32_t n, const physics::Vec3<double>& force, const Arguments& g)
+{
+  const double components[3] = { force.x, force.y, force.z };
+  for (int axis = 0; axis < 3; ++axis)
+    physics::add_load(g.gain * inverse_mass_[n], g.dt, static_cast<Real>(components[axis]), g.next[axis][n],
+                      g.v[axis][n]);
+}
+
+template <class Real>
 void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arguments& g)
 {
   const auto& nodes = loads_.nodes();
   for (auto l = std::lower_bound(nodes.begin(), nodes.end(), first) - nodes.begin();
        l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < last; ++l)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const auto n = nodes[l];
-      physics::add_load(g.gain * inverse_mass_[n], g.dt, static_cast<Real>(loads_.forces()[l][axis]), g.next[axis][n],
-                        g.v[axis][n]);
-    }
+  {
+    const auto& force = loads_.forces()[l];
+    add_load(nodes[l], { force[0], force[1], force[2] }, g);
+  }
 }
 
 // Accounts for the work of a step in a thread's planes.
@@ -155,12 +162,12 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           g.activation = activation.data() + step * muscles;
           if (account_)
             account_->before(begin, end, g.v);
-          if (!loads_.idle())
-          {
-            if (t == 0)
-              loads_.update(plan.time + step * plan.dt, g.u);
+          if (!contact_.idle())
+            contact_.look(t, team_.size(), g.u, constraint_steps[step]);
+          if (!loads_.idle() && t == 0)
+            loads_.update(plan.time + step * plan.dt, g.u);
+          if (!loads_.idle() || !contact_.idle())
             team_.barrier();
-          }
           const auto task =
               plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
@@ -168,10 +175,15 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             seen[t] = frequency_squared;
           if (!loads_.idle())
             add_loads(begin, end, g);
+          if (!contact_.idle())
+            contact_.add(t, slab_[t], slab_[t + 1],
+                         [&](std::int32_t n, const physics::Vec3<double>& force) { add_load(n, force, g); });
           if (account_)
             account_->unconstrained(begin, end, g.v);
           if (!restricted_.idle())
             restricted_.apply(begin, end, g.next, g.v, g.u, constraint_steps[step]);
+          if (!contact_.idle())
+            contact_.moved(slab_[t], slab_[t + 1], g.u, g.next);
           if (account_)
             account(t, g);
           team_.barrier();

@@ -25,9 +25,12 @@ EnergyLedgerKeeper::EnergyLedgerKeeper(const Model& model, const Discretisation&
 void EnergyLedgerKeeper::open(double time, double dt)
 {
   backend_.work(true);
+  NodalVectors none;
+  backend_.contact_energy(true, none);
   ledger_ = {};
   const EnergyLedger now = balance(time, dt);
-  ledger_.initial = now.kinetic + now.internal + now.hourglass - now.gravity - now.load - now.constraint;
+  ledger_.initial =
+      now.kinetic + now.internal + now.hourglass + now.contact_stored - now.gravity - now.load - now.constraint;
 }
 
 EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
@@ -40,12 +43,12 @@ EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
   l.hourglass = stored.hourglass;
   l.viscous = noted.viscous;
   l.damping = noted.damping;
-  l.friction = noted.friction;
+  l.friction = noted.friction + latest.friction;
   l.muscle = noted.muscle;
   l.load = noted.load + latest.load;
   l.constraint = noted.constraint + noted.friction + latest.constraint;
   for (const double term : { l.initial, l.kinetic, l.internal, l.hourglass, l.viscous, l.damping, l.friction, l.muscle,
-                             l.load, l.gravity, l.constraint })
+                             l.load, l.gravity, l.contact, l.contact_stored, l.constraint })
     l.largest = std::max(l.largest, std::abs(term));
   return l;
 }
@@ -76,10 +79,15 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
   backend_.get(NodalField::displacements, u);
   backend_.get(NodalField::velocities, v);
   backend_.internal_forces(nullptr, internal);
+  NodalVectors touching(u.size());
+  const ContactEnergy contact = backend_.contact_energy(false, touching);
   const NodalVectors external = external_forces(time, u);
   const physics::Kick<double> kick = conditions_.kick<double>(dt);
   const bool weighs = conditions_.running.has(Effect::gravity);
   Work work;
+  work.friction = contact.lost;
+  l.contact = contact.work;
+  l.contact_stored = contact.stored;
   l.kinetic = l.gravity = 0;
   for (std::size_t n = 0; n < u.size(); ++n)
   {
@@ -87,8 +95,8 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
     const double weight = mass * (discretisation_.weight_share.empty() ? 1.0 : double(discretisation_.weight_share[n]));
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double next =
-          physics::kicked(kick, axis, v[n][axis], kick.gain / mass, internal[n][axis] - external[n][axis]);
+      const double next = physics::kicked(kick, axis, v[n][axis], kick.gain / mass,
+                                          internal[n][axis] - external[n][axis] - touching[n][axis]);
       l.kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       l.gravity += weight * pull * u[n][axis];

@@ -13,8 +13,7 @@
 namespace frontalis
 {
 
-ReferenceSolver::ReferenceSolver(const BackendInput& input)
-    : HostBackend(input, 0, slide_plainly<double>)
+ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input, 0, slide_plainly<double>)
 {
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());
@@ -118,6 +117,17 @@ double ReferenceSolver::run(const StepPlan& plan)
     for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
       for (int axis = 0; axis < 3; ++axis)
         f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
+    if (!contact_.idle())
+    {
+      contact_.look(0, 1, pointers(u_).data(), plan.constraint_step(step));
+      contact_.add(0, 0, model_->size[2] + 1,
+                   [&](std::int32_t n, const physics::Vec3<double>& force)
+                   {
+                     f_[0][n] -= force.x;
+                     f_[1][n] -= force.y;
+                     f_[2][n] -= force.z;
+                   });
+    }
     const Components before = u_;
     if (plan.bound_every_step || step + 1 == plan.steps)
       worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
@@ -134,6 +144,8 @@ double ReferenceSolver::run(const StepPlan& plan)
     if (account_)
       account_->unconstrained(0, count, v);
     restricted_.apply(0, count, u, v, old, plan.constraint_step(step));
+    if (!contact_.idle())
+      contact_.moved(0, model_->size[2] + 1, old, u);
     if (account_)
     {
       account_->after(0, model_->size[2] + 1, old, u, v, conditions_.damping, plan.dt, kick);

@@ -2,6 +2,7 @@
 
 #include "frontalis/model/effects.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
+#include "solver/contact/contact_stiffness.hpp"
 #include "solver/stepping/array_list.hpp"
 
 #include <array>
@@ -64,6 +65,7 @@ public:
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
+  ContactStiffness contact;                  ///< part of the bounds, whether a point touches or not
   double frequency_squared_max = 0;          ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

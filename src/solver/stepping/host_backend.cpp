@@ -27,7 +27,10 @@ struct HostState : BackendState
 
 template <class Real, class Relaxed>
 HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide)
-    : StepBackend(input), restricted_(*model_, slide), loads_(*model_, discretisation_)
+    : StepBackend(input),
+      restricted_(*model_, slide),
+      loads_(*model_, discretisation_),
+      contact_(*model_, discretisation_)
 {
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)

@@ -42,6 +42,11 @@ public:
   void set(NodalField field, const NodalVectors& in) override;
   void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
+  ContactEnergy contact_energy(bool open, NodalVectors& forces) override
+  {
+    return contact_.energy(pointers(u_).data(), conditions_.bone, open, forces);
+  }
+  std::vector<Reaction> reactions() const override { return contact_.reactions(); }
   void skin(SkinState& out) override;
 
 protected:
@@ -63,10 +68,11 @@ protected:
   RelaxedStresses<Relaxed> relaxed_;
   RestrictedNodes<Real> restricted_;
   NodalLoads loads_;
+  BodyContact contact_;
   std::unique_ptr<EnergyAccount<Real>> account_;  // if a ledger was asked for
 
 private:
-  std::array<EffectPart*, 3> parts() { return { { &relaxed_, &restricted_, &loads_ } }; }
+  std::array<EffectPart*, 4> parts() { return { { &relaxed_, &restricted_, &loads_, &contact_ } }; }
 };
 
 }  // namespace frontalis

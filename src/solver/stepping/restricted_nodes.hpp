@@ -1,11 +1,9 @@
 #pragma once
 
-#include "frontalis/byte_archive.hpp"
 #include "frontalis/model/model.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 
-#include <string>
 #include <vector>
 
 namespace frontalis

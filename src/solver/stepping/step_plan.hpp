@@ -12,9 +12,10 @@ namespace frontalis
 struct Conditions
 {
   EffectSet running;
-  std::array<double, 3> gravity{};  ///< [m/s2] on the masses as they are scaled; 0 where the effect is off
-  double damping = 0;               ///< mass-proportional [1/s]
-  std::vector<float> activation;    ///< of each muscle now, as its fibres feel it: 0 where contraction is off
+  std::array<double, 3> gravity{};   ///< [m/s2] on the masses as they are scaled; 0 where the effect is off
+  double damping = 0;                ///< mass-proportional [1/s]
+  std::vector<float> activation;     ///< of each muscle now, as its fibres feel it: 0 where contraction is off
+  std::vector<RigidTransform> bone;  ///< poses now
 
   template <class Real>
   physics::Kick<Real> kick(double seconds) const

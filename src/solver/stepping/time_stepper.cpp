@@ -79,6 +79,7 @@ void TimeStepper::renew_conditions()
   conditions_.running = effects_.running();
   conditions_.gravity = effects_.gravity();
   conditions_.activation = effects_.felt(motion_.activation);
+  conditions_.bone = motion_.controls.bone;
 }
 
 void TimeStepper::reset()
@@ -169,7 +170,11 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
       return *found;
     NodalVectors u;
     displacements(u);
-    const auto forces_at = [this](const NodalVectors& at, NodalVectors& out) { backend_->internal_forces(&at, out); };
+    const auto forces_at = [this](const NodalVectors& at, NodalVectors& out)
+    {
+      backend_->internal_forces(&at, out);
+      discretisation_.contact.add_forces(*model_, at, out);
+    };
     return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
   };
   controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
@@ -188,6 +193,7 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   plan.begin = { effects_.felt(before), motion_.controls.bone };
   plan.end = { effects_.felt(motion_.activation), next.bone };
   conditions_.activation = plan.end.activation;
+  conditions_.bone = plan.end.bone;
   const bool switched = controller_.muscles_switched(before, motion_.activation);
   plan.bound_every_step = choice.bound_every_step || switched;
   plan.bound_awaited = choice.bound_awaited || switched;

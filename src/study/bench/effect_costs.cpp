@@ -141,7 +141,8 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
       return spread_of_difference(timer({ { whole.get(), active }, { less.get(), active } }), 0, 1);
     }
     EffectSet moving;
-    for (const Effect e : { Effect::gravity, Effect::surface_loads, Effect::prescribed_displacement, Effect::sliding })
+    for (const Effect e :
+         { Effect::gravity, Effect::surface_loads, Effect::prescribed_displacement, Effect::sliding, Effect::contact })
       moving = moving.with(e);
     const auto held = solver_of(without(*model, moving), settings),
                loose = solver_of(without(*model, moving.with(effect)), settings);

@@ -87,6 +87,7 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
   RestState result{ make_solver(shared, { settings.backend, threads, 0 }), {} };
   Controls target = result.solver->controls();
   std::fill(target.activation.begin(), target.activation.end(), settings.activation);
+  std::fill(target.bone.begin(), target.bone.end(), settings.bone_pose);
   Guard guard(*result.solver, shared);
   guard.advance(settings.ramp * settings.period, target);
   const Equilibrium end = guard.settle(target, settings.tolerance, longest * settings.period);

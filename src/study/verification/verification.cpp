@@ -28,6 +28,7 @@ std::vector<VerificationCase> verification_cases()
            { "staircase", false, verify_staircase },
            { "wrinkling", true, verify_wrinkling },
            { "viscosity", true, verify_viscosity },
+           { "hertz", false, verify_hertz },
            { "energy_balance", true, verify_energy_balance },
            { "precision", false, verify_precision },
            { "heart_beam", false, verify_heart_beam },

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "frontalis/physics/field_spline.hpp"
+#include "frontalis/physics/sliding.hpp"
+
+namespace frontalis
+{
+namespace physics
+{
+
+/// Contact is a stiffness: a point that is g deep in a body is pushed out by the pressure
+///   p = contact_stiffness E g / h,
+/// E Young's modulus of its voxel's mixture, h the shortest voxel edge. Under a pressure of 5 % of E it is thus 1.4 %
+/// of a voxel deep, whatever Poisson's ratio is. (A multiple of the longitudinal modulus instead would be deep in
+/// compressible tissue: 13 times as deep at a ratio of 0.3 as at 0.49.) Where nodes of nearly incompressible tissue
+/// touch, the squared frequency of the model grows by 3.5 %, and steps are 1.7 % shorter.
+constexpr double contact_stiffness = 3.5;
+
+/// Stiffness along the surface of a point that sticks, over that along the normal.
+constexpr double sticking_stiffness = 0.5;
+
+/// What friction knows of a point between two steps.
+template <class T>
+struct Grip
+{
+  Vec3<T> anchor;  ///< where the force along the surface would be zero, in the body's frame [m]
+  T normal;        ///< normal force, delayed by friction_response() [N]
+  T along;         ///< force along the surface [N]
+};
+
+/// A point that touches a body.
+template <class T>
+struct Touch
+{
+  Vec3<T> force;  ///< on the point, in the body's frame [N]
+  Grip<T> grip;
+  T stored;  ///< by the stiffness of contact [J]
+  T lost;    ///< to friction since the step before [J]
+};
+
+/// Contact and Coulomb friction of a point that is inside of a body: field.value < 0. `x`: its place in the body's
+/// frame [m]; `grip`: what this function returned in the step before, or, in the first, x and what let_go() left;
+/// `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(), because
+/// friction that follows the normal force at once makes elastic bodies flutter where they slide.
+///
+/// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction
+/// is the tangential stiffness times the way from the anchor, returned to Coulomb's cone (Simo & Laursen, An augmented
+/// Lagrangian treatment of contact problems involving friction, Computers & Structures 42(1), 1992).
+template <class T>
+FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const Grip<T>& grip, const T& stiffness,
+                             const T& friction, const T& response)
+{
+  using N = Number<T>;
+  const T depth = -field.value, slope = norm(field.gradient);
+  const T pressed = stiffness * depth;
+  const T normal_force = grip.normal + response * (pressed * slope - grip.normal);
+  const Vec3<T> normal = (T(1) / N::max(slope, N::of(1e-9))) * field.gradient;
+  const Vec3<T> way = x - grip.anchor;
+  const Vec3<T> along = way - dot(normal, way) * normal;
+  const T along_stiffness = N::of(sticking_stiffness) * stiffness;
+  const T length = norm(along), trial = along_stiffness * length;
+  const T allowed = mutation::no_friction ? N::of(0) : friction * normal_force;
+  const auto slips = trial > allowed;
+  const T kept = N::select(slips, allowed / N::max(trial, N::of(1e-30)), N::of(1));
+  const Vec3<T> left = kept * along;
+  const Vec3<T> moved = x - left;
+  return { pressed * field.gradient - along_stiffness * left,
+           { { N::select(slips, moved.x, grip.anchor.x), N::select(slips, moved.y, grip.anchor.y),
+               N::select(slips, moved.z, grip.anchor.z) },
+             normal_force,
+             kept * trial },
+           N::of(0.5) * (pressed * depth + along_stiffness * dot(left, left)),
+           N::of(0.5) * (grip.along + kept * trial) * (length - kept * length) };
+}
+
+/// The grip of a point that has left the body loses its force along the surface, and the normal force that friction
+/// follows fades. Returns what is lost to friction [J].
+template <class T>
+FRONTALIS_LAW T let_go(Grip<T>& grip, const T& stiffness, const T& response)
+{
+  const T lost = Number<T>::of(0.5 / sticking_stiffness) * grip.along * grip.along / stiffness;
+  grip.along = T(0);
+  grip.normal = grip.normal - response * grip.normal;
+  return lost;
+}
+
+}  // namespace physics
+}  // namespace frontalis

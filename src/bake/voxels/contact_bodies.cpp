@@ -1,0 +1,187 @@
+#include "bake/voxels/contact_bodies.hpp"
+
+#include "bake/messages.hpp"
+#include "frontalis/model/sample_field.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double largest_spacing = 0.5e-3;  // of samples [m]
+constexpr double spacing_share = 0.5;       // the same in shortest voxel edges
+constexpr double reach_share = 2;           // how far from a surface there are samples, in longest voxel edges
+constexpr double overlap_share = 0.5;       // how deep tissue may lie in a body at rest, in shortest voxel edges
+
+// A closed surface, outwards positive.
+struct Body
+{
+  const PreparedSurface* surface;
+  double sign;
+
+  double distance(const Vector3d& p) const { return sign * surface->signed_distance(p, surface->tree().closest(p)); }
+};
+
+Body closed_body(const PreparedSurface& surface, const std::string& place)
+{
+  if (!surface.closed())
+    throw Error(
+        fmt::format("{}: surface '{}' is open, so that it has no inside that tissue could be kept out of; close "
+                    "it, or take a part of it that is closed",
+                    place, surface.name()));
+  return { &surface, signed_volume(surface.mesh()) < 0 ? -1.0 : 1.0 };
+}
+
+// Distance from the union of several bodies, of a point in local coordinates.
+Distance distance_from(const std::vector<Body>& bodies, const LocalFrame& frame)
+{
+  return [&](const std::array<double, 3>& local)
+  {
+    const Vector3d p = frame.to_scene(to_vector(local));
+    double least = bodies.front().distance(p);
+    for (std::size_t b = 1; b < bodies.size(); ++b)
+      least = std::min(least, bodies[b].distance(p));
+    return least;
+  };
+}
+
+SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model, double reach,
+                      BakeMonitor& monitor)
+{
+  Box box;
+  for (const Body& body : bodies)
+    for (const Vector3& v : body.surface->mesh().vertices)
+      box.extend(frame.to_local(to_vector(v)));
+  const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
+  return sample_band(to_array(box.min()), to_array(box.max()), distance_from(bodies, frame),
+                     std::min(largest_spacing, spacing_share * edge), reach,
+                     [&](std::size_t count, const std::function<void(std::size_t)>& body)
+                     { parallel_for(monitor, count, 1, body); });
+}
+
+// The part of a surface in a box, its triangles halved until no edge is longer than `longest` [m]: only vertices touch.
+// Vertices of halved triangles may lie on edges of others, which changes neither area nor shape.
+TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
+{
+  TriangleMesh mesh;
+  mesh.vertices = surface.vertices;
+  std::vector<Triangle> left;
+  for (const Triangle& t : surface.triangles)
+  {
+    const auto [a, b, c] = corners(surface, t);
+    if (Box(a).extend(b).extend(c).intersects(box))
+      left.push_back(t);
+  }
+  while (!left.empty())
+  {
+    const Triangle t = left.back();
+    left.pop_back();
+    double length = 0;
+    int edge = 0;
+    for (int e = 0; e < 3; ++e)
+      if (const double now = (vertex(mesh, t[(e + 1) % 3]) - vertex(mesh, t[e])).norm(); now > length)
+      {
+        length = now;
+        edge = e;
+      }
+    if (length <= longest)
+    {
+      mesh.triangles.push_back(t);
+      continue;
+    }
+    const std::int32_t from = t[edge], to = t[(edge + 1) % 3], opposite = t[(edge + 2) % 3];
+    const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(to_array(0.5 * (vertex(mesh, from) + vertex(mesh, to))));
+    left.push_back({ from, middle, opposite });
+    left.push_back({ middle, to, opposite });
+  }
+  join_vertices(mesh);
+  return mesh;
+}
+
+// Index in the model of the bone of this name, added if it is new; -1: none.
+std::int32_t bone_of(const std::string& name, Model& model)
+{
+  if (name.empty())
+    return -1;
+  const auto known = std::find(model.bones.begin(), model.bones.end(), name);
+  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
+  if (known == model.bones.end())
+    model.bones.push_back(name);
+  return bone;
+}
+
+// Refuses tissue that lies in a body at rest, which would throw it out.
+void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
+                   const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
+{
+  const double allowed = overlap_share * *std::min_element(model.spacing.begin(), model.spacing.end());
+  const Distance distance = distance_from(bodies, frame);
+  double deepest = 0;
+  Vector3d where{ 0, 0, 0 };
+  for (const auto& p : contact.points)
+    if (const double level = distance(p).value; level < -deepest)
+    {
+      deepest = -level;
+      where = frame.to_scene(to_vector(p));
+    }
+  if (deepest > allowed)
+    throw Error(fmt::format(
+        "{}: at rest its surface lies {} inside of the body, for example at {}; at most {}, half of a "
+        "voxel, are allowed: move the body away, or crop the part that it must not touch",
+        place, length_text(deepest, scene.unit), place_text(where, scene.unit), length_text(allowed, scene.unit)));
+}
+
+}  // namespace
+
+void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                   BakeMonitor& monitor)
+{
+  const double extrapolation = extrapolation_of(scene, model);
+  for (const SceneConstraint& constraint : scene.constraints)
+  {
+    if (constraint.kind != SceneConstraint::Kind::contact)
+      continue;
+    const std::string place = place_in_scene(scene, "constraint", constraint);
+    Contact contact;
+    contact.name = constraint.name;
+    contact.bone = bone_of(constraint.bone, model);
+    contact.friction = constraint.friction;
+    contact.reach = reach_share * *std::max_element(model.spacing.begin(), model.spacing.end());
+
+    std::vector<Body> bodies;
+    for (const std::string& name : constraint.surfaces)
+      bodies.push_back(closed_body(named_surface(surfaces, name, place), place));
+    const auto shape_of = [&](const std::string& name)
+    {
+      return std::find_if(scene.surfaces.begin(), scene.surfaces.end(),
+                          [&](const Surface& surface) { return surface.name == name; })
+          ->shape;
+    };
+    const auto shape = shape_of(constraint.surfaces.front());
+    if (bodies.size() == 1 && shape && shape->kind == Shape::Kind::sphere)
+      contact.field = sphere_field(to_array(frame.to_local(to_vector(shape->centre))), shape->radius);
+    else
+      contact.field = field_of(bodies, frame, model, contact.reach, monitor);
+
+    const std::string& on = constraint.on.empty() ? scene.skin.surface : constraint.on;
+    const TriangleMesh surface = refined(named_surface(surfaces, on, place).mesh(), to_box(constraint.crop),
+                                         *std::min_element(model.spacing.begin(), model.spacing.end()));
+    const BoundMesh bound = bind_mesh(surface, constraint.crop, frame, model, extrapolation, monitor);
+    if (bound.mesh.triangles.empty())
+      throw Error(
+          fmt::format("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue; check 'on' "
+                      "and the crop",
+                      place, on, length_text(extrapolation, scene.unit)));
+    if (bound.too_far > 0)
+      monitor.found(fmt::format("constraint '{}': {} triangles of '{}' left out, too far from the tissue",
+                                constraint.name, bound.too_far, on));
+    set_points(contact, bound.mesh, bound.binding);
+    check_overlap(scene, place, contact, bodies, frame, model);
+    model.contacts.push_back(std::move(contact));
+  }
+}
+
+}  // namespace frontalis

@@ -1,0 +1,351 @@
+#include "solver/contact/body_contact.hpp"
+
+#include "frontalis/model/sample_field.hpp"
+#include "solver/contact/gliding_nodes.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = physics::Vec3<double>;
+
+// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+constexpr double forgotten_depth = 1e-9;
+
+// Runs of bound nodes are joined over this many others.
+constexpr std::int32_t largest_gap = 8;
+
+// More than rounding errors take from a way that is found in single precision.
+constexpr double rounding = 1.00001;
+
+}  // namespace
+
+BodyContact::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
+{
+  for (std::size_t c = 0; c < model.contacts.size(); ++c)
+  {
+    const Contact& contact = model.contacts[c];
+    fields_.push_back(view(contact.field));
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+      if (contact.area[p] > 0)
+        points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
+                            static_cast<float>(discretisation.contact.of(c, p)), vector(contact.points[p]) });
+  }
+  if (points_.empty())
+    return;
+  std::stable_sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.voxel < b.voxel; });
+  const auto planes = static_cast<std::size_t>(model.size[2]);
+  plane_points_.assign(planes + 2, 0);
+  std::vector<std::int32_t> nodes;
+  for (const Point& point : points_)
+  {
+    ++plane_points_[model.voxels[point.voxel][2] + 1];
+    nodes.insert(nodes.end(), model.voxel_nodes[point.voxel].begin(), model.voxel_nodes[point.voxel].end());
+    float weight[8], sum = 0;
+    physics::trilinear_weights(point.coordinates[0], point.coordinates[1], point.coordinates[2], weight);
+    for (const float w : weight)
+      sum += std::abs(w);
+    spread_ = std::max(spread_, double(sum));
+  }
+  std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
+  std::sort(nodes.begin(), nodes.end());
+  plane_runs_.assign(planes + 2, 0);
+  for (const auto node : nodes)
+  {
+    const auto plane = model.nodes[node][2];
+    const bool goes_on = !runs_of_nodes_.empty() && node <= runs_of_nodes_.back().last + largest_gap &&
+                         model.nodes[runs_of_nodes_.back().first][2] == plane;
+    if (!goes_on)
+    {
+      runs_of_nodes_.push_back({ node, node });
+      ++plane_runs_[plane + 1];
+    }
+    runs_of_nodes_.back().last = node + 1;
+  }
+  std::partial_sum(plane_runs_.begin(), plane_runs_.end(), plane_runs_.begin());
+  reset();
+}
+
+void BodyContact::run(EffectSet running)
+{
+  runs_ = running.has(Effect::contact);
+  if (!runs_)
+    reset();
+}
+
+void BodyContact::reset()
+{
+  if (points_.empty())
+    return;
+  const std::size_t bodies = fields_.size(), planes = static_cast<std::size_t>(model_.size[2]);
+  forces_.assign(points_.size(), {});
+  next_.assign(bodies, {});
+  motion_.assign(bodies, {});
+  grips_.assign(points_.size(), {});
+  due_.assign(points_.size(), 0);
+  touches_.assign(points_.size(), Touching::no);
+  chunks_.assign((points_.size() + chunk_size - 1) / chunk_size, {});
+  bodies_.assign(bodies, {});
+  node_way_.assign(planes + 1, 0);
+  sums_.assign(planes * bodies, {});
+  opened_.assign(1, {});
+}
+
+void BodyContact::list_arrays(ArrayList& list)
+{
+  const Effect effect = Effect::contact;
+  list.add(effect, "points", points_);
+  list.add(effect, "points", plane_points_);
+  list.add(effect, "bound nodes", runs_of_nodes_);
+  list.add(effect, "bound nodes", plane_runs_);
+  list.add(effect, "bodies", fields_);
+  list.add(effect, "forces", forces_);
+  list.add(effect, "bodies", next_);
+  list.add(effect, "bodies", motion_);
+  list.add_state(effect, "grips", grips_);
+  list.add_state(effect, "distances", due_);
+  list.add_state(effect, "distances", touches_);
+  list.add_state(effect, "distances", chunks_);
+  list.add_state(effect, "bodies", bodies_);
+  list.add_state(effect, "distances", node_way_);
+  list.add_state(effect, "sums", sums_);
+  list.add_state(effect, "sums", opened_);
+}
+
+template <class Real>
+Vector BodyContact::place(const Point& point, const Real* const u[3]) const
+{
+  const auto& c = point.coordinates;
+  const auto& nodes = model_.voxel_nodes[point.voxel];
+  double weight[8];
+  physics::trilinear_weights<double>(c[0], c[1], c[2], weight);
+  Vector p = point.rest;
+  for (int b = 0; b < 8; ++b)
+    p = p + weight[b] * Vector{ double(u[0][nodes[b]]), double(u[1][nodes[b]]), double(u[2][nodes[b]]) };
+  return p;
+}
+
+RigidTransform BodyContact::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
+{
+  const std::int32_t bone = model_.contacts[body].bone;
+  return bone < 0 ? RigidTransform() : bones[bone];
+}
+
+std::vector<BodyContact::BodyState> BodyContact::next(const ConstraintStep& step) const
+{
+  std::vector<BodyState> now;
+  double way = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+  {
+    now.push_back({ body_pose(b, step.bone_before), 0, step.dt });
+    way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
+  }
+  way += bodies_.front().way + spread_ * *std::max_element(node_way_.begin(), node_way_.end());
+  for (BodyState& body : now)
+    body.way = bodies_.front().dt > 0 ? way : 0;
+  return now;
+}
+
+// Distance from a body of a point that has no samples around it, or less.
+double BodyContact::slack(const Contact& contact, const Vector& x) const
+{
+  const SampledField& field = contact.field;
+  const double p[3] = { x.x, x.y, x.z };
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const double begin = field.origin[axis] - 0.5 * field.spacing;
+    const double end = begin + field.bricks[axis] * physics::DistanceField::brick_edge * field.spacing;
+    const double outside = std::max({ begin - p[axis], p[axis] - end, 0.0 });
+    squared += outside * outside;
+  }
+  return std::max(0.5 * contact.reach, std::sqrt(squared));
+}
+
+template <class Real>
+void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+{
+  const Point& point = points_[p];
+  const double stiffness = double(point.stiffness);
+  const Contact& contact = model_.contacts[point.body];
+  const physics::DistanceField& field = fields_[point.body];
+  const physics::Pose pose = pose_of(body.pose);
+  const Vector x = pose.inwards(place(point, u)), arm = pose.turned(x);
+  physics::FieldValue<double> value{};
+  const bool sampled = physics::sample(field, physics::field_point(field, x), value);
+  physics::Grip<double>& grip = grips_[p];
+  due_[p] = 0;
+  if (sampled && value.value < 0)
+  {
+    const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
+    touches_[p] = Touching::yes;
+    grip = touch.grip;
+    forces_[p] = { pose.turned(touch.force), arm, touch.lost };
+    return;
+  }
+  forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
+  touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
+  if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
+    return;
+  grip.normal = 0;
+  // the gradient of a spline of distances is not longer than sqrt(3)
+  if (touches_[p] == Touching::no)
+    due_[p] = body.way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+}
+
+template <class Real>
+void BodyContact::look(int thread, int threads, const Real* const u[3], const ConstraintStep& step)
+{
+  const std::vector<BodyState> now = next(step);
+  const double response = physics::friction_response(step.dt);
+  const std::size_t begin = chunks_.size() * thread / threads, end = chunks_.size() * (thread + 1) / threads;
+  for (std::size_t c = begin; c < end; ++c)
+  {
+    Chunk& chunk = chunks_[c];
+    if (chunk.due > now.front().way)
+      continue;
+    chunk = { std::numeric_limits<double>::max(), 0 };
+    for (std::size_t p = c * chunk_size; p < std::min((c + 1) * chunk_size, points_.size()); ++p)
+    {
+      const BodyState& body = now[points_[p].body];
+      if (!(due_[p] > body.way))
+        look_at(p, u, body, response);
+      chunk.due = std::min(chunk.due, due_[p]);
+      chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
+    }
+  }
+  if (thread != 0)
+    return;
+  for (std::size_t b = 0; b < now.size(); ++b)
+    motion_[b] = bodies_[b].dt > 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
+  next_ = now;
+}
+
+void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
+{
+  if (thread == 0)
+    bodies_ = next_;
+  const std::size_t bodies = motion_.size();
+  std::vector<Reaction> now(bodies);
+  for (auto k = first; k < std::min(last, model_.size[2]); ++k)
+  {
+    std::fill(now.begin(), now.end(), Reaction());
+    PlaneSum* const sums = sums_.data() + k * bodies;
+    each_touching(plane_points_[k], plane_points_[k + 1],
+                  [&](std::int32_t p)
+                  {
+                    add_reaction(now[points_[p].body], forces_[p].arm, forces_[p].force);
+                    sums[points_[p].body].lost += forces_[p].lost;
+                  });
+    for (std::size_t b = 0; b < bodies; ++b)
+    {
+      sums[b].work += work_between(sums[b].reaction, now[b], motion_[b]);
+      sums[b].reaction = now[b];
+    }
+  }
+}
+
+template <class Real>
+void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3])
+{
+  for (auto k = first; k < last; ++k)
+  {
+    // squares, in lanes that the compiler makes vectors of
+    constexpr std::int32_t width = 8;
+    Real longest[width] = {};
+    const auto compare = [&](std::int32_t lane, std::int32_t n)
+    {
+      const Real x = after[0][n] - before[0][n], y = after[1][n] - before[1][n], z = after[2][n] - before[2][n];
+      const Real squared = x * x + y * y + z * z;
+      longest[lane] = squared > longest[lane] ? squared : longest[lane];
+    };
+    for (auto run = plane_runs_[k]; run < plane_runs_[k + 1]; ++run)
+    {
+      const auto [begin, end] = runs_of_nodes_[run];
+      std::int32_t n = begin;
+      for (; n + width <= end; n += width)
+        for (std::int32_t lane = 0; lane < width; ++lane)
+          compare(lane, n + lane);
+      for (; n < end; ++n)
+        compare(0, n);
+    }
+    node_way_[k] = rounding * std::sqrt(double(*std::max_element(longest, longest + width)));
+  }
+}
+
+std::vector<Reaction> BodyContact::reactions() const
+{
+  std::vector<Reaction> total(model_.contacts.size());
+  for (std::size_t s = 0; s < sums_.size(); ++s)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      Reaction& sum = total[s % fields_.size()];
+      sum.force[axis] += sums_[s].reaction.force[axis];
+      sum.moment[axis] += sums_[s].reaction.moment[axis];
+    }
+  return total;
+}
+
+template <class Real>
+ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                                  std::vector<std::array<double, 3>>& forces)
+{
+  ContactEnergy energy;
+  if (idle())
+    return energy;
+  for (const PlaneSum& sum : sums_)
+  {
+    energy.work += sum.work;
+    energy.lost += sum.lost;
+  }
+  // The sums end at the start of the latest step. The rest is what the next step will add.
+  std::vector<Reaction> now(fields_.size());
+  for (std::size_t p = 0; p < points_.size(); ++p)
+  {
+    const Point& point = points_[p];
+    const physics::DistanceField& field = fields_[point.body];
+    const physics::Pose pose = pose_of(body_pose(point.body, bones));
+    const Vector x = pose.inwards(place(point, u));
+    physics::FieldValue<double> value{};
+    const double stiffness = double(point.stiffness), response = physics::friction_response(bodies_[point.body].dt);
+    if (!physics::sample(field, physics::field_point(field, x), value) || value.value >= 0)
+    {
+      physics::Grip<double> grip = grips_[p];
+      energy.lost += physics::let_go<double>(grip, stiffness, response);
+      continue;
+    }
+    const auto touch =
+        physics::touch<double>(value, x, grip_at(p, x), stiffness, model_.contacts[point.body].friction, response);
+    energy.stored += touch.stored;
+    energy.lost += touch.lost;
+    const Vector force = pose.turned(touch.force);
+    add_reaction(now[point.body], pose.turned(x), force);
+    if (!forces.empty())
+      push_point(point, force, 0, model_.size[2] + 1,
+                 [&](std::int32_t node, const Vector& part) { add_vector(forces[node], part); });
+  }
+  const std::vector<Reaction> before = reactions();
+  for (std::size_t b = 0; b < now.size(); ++b)
+    if (bodies_[b].dt > 0)
+      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, body_pose(b, bones)));
+  if (open)
+    opened_[0] = energy;
+  energy.work -= opened_[0].work;
+  energy.lost -= opened_[0].lost;
+  return energy;
+}
+
+#define FRONTALIS_BODY_CONTACT(Real)                                                                         \
+  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                    \
+  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);  \
+  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool, \
+                                             std::vector<std::array<double, 3>>&);
+FRONTALIS_BODY_CONTACT(float)
+FRONTALIS_BODY_CONTACT(double)
+
+}  // namespace frontalis

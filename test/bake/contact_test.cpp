@@ -1,0 +1,148 @@
+// Bodies that tissue touches, and the points of the tissue.
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
+#include "frontalis/model/model_file.hpp"
+#include "frontalis/model/sample_field.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+
+namespace
+{
+
+using namespace frontalis;
+
+/// A block of 20 x 12 x 8 mm whose lower corner is the origin, and a body 1 mm above it.
+Scene touched_block()
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 10e-3, 6e-3, 4e-3 }, { 20e-3, 12e-3, 8e-3 }),
+                     box_surface("plate", { 10e-3, 6e-3, 12e-3 }, { 10e-3, 8e-3, 6e-3 }),
+                     sphere_surface("ball", { 10e-3, 6e-3, 14e-3 }, 5e-3) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  SceneConstraint touch;
+  touch.name = "touch";
+  touch.kind = SceneConstraint::Kind::contact;
+  touch.surfaces = { "ball" };
+  touch.on = "block";
+  touch.bone = "finger";
+  touch.friction = 0.3;
+  touch.crop.lower[2] = 7.9e-3;
+  touch.line = 9;
+  scene.constraints = { touch };
+  return scene;
+}
+
+std::array<double, 3> local(const Model& model, const std::array<double, 3>& scene)
+{
+  std::array<double, 3> p{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      p[i] += model.to_scene.rotation[3 * j + i] * (scene[j] - model.to_scene.translation[j]);
+  return p;
+}
+
+TEST(BakedContact, ASphereIsExactAndPointsHaveTheAreaOfTheSurface)
+{
+  const Model model = bake(touched_block());
+  ASSERT_EQ(model.contacts.size(), 1u);
+  const Contact& contact = model.contacts[0];
+  EXPECT_EQ(contact.name, "touch");
+  EXPECT_EQ(model.bones, std::vector<std::string>{ "finger" });
+  EXPECT_EQ(contact.bone, 0);
+  EXPECT_EQ(contact.friction, 0.3);
+  EXPECT_TRUE(contact.field.samples.empty());
+  EXPECT_NEAR(level_at(contact.field, local(model, { 10e-3, 6e-3, 8e-3 })), 1e-3, 1e-12);
+  // the upper side, and strips of 0.1 mm at the others
+  EXPECT_NEAR(std::accumulate(contact.area.begin(), contact.area.end(), 0.0), 240e-6 + 64e-3 * 0.1e-3, 1e-9);
+  // large triangles of the surface are cut
+  EXPECT_GT(contact.points.size(), 21u * 13u);
+  EXPECT_TRUE(effects_of(model).has(Effect::contact));
+  EXPECT_EQ(model.constraints, std::vector<std::string>{ "touch" });
+}
+
+TEST(BakedContact, OtherBodiesAreSampledAsOneAroundTheirSurfaces)
+{
+  Scene scene = touched_block();
+  scene.constraints[0].surfaces = { "plate", "ball" };
+  const Model model = bake(scene);
+  const SampledField& field = model.contacts[0].field;
+  EXPECT_EQ(field.radius, 0);
+  EXPECT_NEAR(field.spacing, 0.5e-3, 1e-15);
+  EXPECT_NEAR(model.contacts[0].reach, 2e-3, 1e-15);
+  for (const double z : { 7.1e-3, 8e-3, 8.9e-3, 9.2e-3, 10.9e-3 })
+    EXPECT_NEAR(level_at(field, local(model, { 7.5e-3, 6e-3, z })), 9e-3 - z, 0.03e-3) << z;
+  // only the ball reaches so high
+  EXPECT_NEAR(level_at(field, local(model, { 10e-3, 6e-3, 20e-3 })), 1e-3, 0.05e-3);
+  EXPECT_TRUE(std::isnan(level_at(field, local(model, { 10e-3, 6e-3, 60e-3 }))));
+}
+
+TEST(BakedContact, WhatCannotBeIsRefused)
+{
+  Scene scene = touched_block();
+  scene.constraints[0].on = "ball";
+  scene.surfaces[2].shape->centre[2] = 24e-3;
+  EXPECT_EQ(fault_of(scene).find("test.yaml:9: constraint 'touch': no triangle of surface 'ball' lies in its crop"), 0u)
+      << fault_of(scene);
+  scene = touched_block();
+  scene.surfaces[2].shape->centre[2] = 12e-3;
+  EXPECT_EQ(fault_of(scene).find("test.yaml:9: constraint 'touch': at rest its surface lies"), 0u) << fault_of(scene);
+  scene = touched_block();
+  const std::string folder = std::filesystem::temp_directory_path() / ("contact_test_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const TriangleMesh mesh{ { { { 0, 0, 12e-3 } }, { { 9e-3, 0, 12e-3 } }, { { 0, 9e-3, 12e-3 } } },
+                           { { { 0, 1, 2 } } } };
+  write_obj(mesh, folder + "/sheet.obj", [](const auto&) { return true; });
+  scene.surfaces.push_back(file_surface("sheet", folder + "/sheet.obj"));
+  scene.constraints[0].surfaces = { "sheet" };
+  EXPECT_EQ(fault_of(scene).find("test.yaml:9: constraint 'touch': surface 'sheet' is open"), 0u) << fault_of(scene);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
+{
+  const std::string folder = std::filesystem::temp_directory_path() / ("contact_file_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const auto bytes_of = [&](const Model& model)
+  {
+    write_model(model, folder + "/model.vtkhdf");
+    std::ifstream in(folder + "/model.vtkhdf", std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  };
+  Scene scene = touched_block();
+  scene.constraints[0].surfaces = { "plate" };
+  Model model = bake(scene);
+  const std::string whole = bytes_of(model);
+  EXPECT_NE(whole.find("contacts"), std::string::npos);
+  const Model read = read_model(folder + "/model.vtkhdf");
+  ASSERT_EQ(read.contacts.size(), 1u);
+  const Contact &a = model.contacts[0], &b = read.contacts[0];
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.bone, b.bone);
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.field.table, b.field.table);
+  EXPECT_EQ(a.field.samples, b.field.samples);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.area, b.area);
+  EXPECT_EQ(a.binding.voxel, b.binding.voxel);
+  EXPECT_EQ(a.binding.coordinates, b.binding.coordinates);
+  EXPECT_EQ(bytes_of(read), whole);
+  model.contacts.clear();
+  EXPECT_EQ(bytes_of(model).find("contacts"), std::string::npos);
+  EXPECT_TRUE(read_model(folder + "/model.vtkhdf").contacts.empty());
+  model = read;
+  model.contacts[0].area.pop_back();
+  EXPECT_THROW(check_model(model), Error);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
