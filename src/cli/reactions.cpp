@@ -1,6 +1,6 @@
 #include "cli/reactions.hpp"
 
-#include "solver/contact/gliding_nodes.hpp"
+#include "frontalis/physics/pose.hpp"
 
 #include <fmt/core.h>
 
@@ -14,6 +14,14 @@ namespace
 using Vector = physics::Vec3<double>;
 
 Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
+
+physics::Pose pose_of(const RigidTransform& from)
+{
+  physics::Pose pose;
+  std::copy(from.rotation.begin(), from.rotation.end(), pose.r);
+  std::copy(from.translation.begin(), from.translation.end(), pose.t);
+  return pose;
+}
 
 }  // namespace
 

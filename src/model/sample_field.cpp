@@ -227,6 +227,7 @@ std::int32_t slide_on(Model& model, const std::string& name, const Distance& dis
                       const std::vector<std::int32_t>& nodes, double spacing, double travel)
 {
   std::vector<Point> rest;
+  rest.reserve(nodes.size());
   for (const auto node : nodes)
     rest.push_back(rest_position(model, node));
   return slide_on(model, name, sample_field(rest, distance, spacing, travel), nodes);

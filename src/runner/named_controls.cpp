@@ -16,6 +16,7 @@ template <class Named>
 std::vector<std::string> names_of(const std::vector<Named>& all)
 {
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Named& named : all)
     names.push_back(named.name);
   return names;

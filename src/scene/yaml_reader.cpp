@@ -240,7 +240,7 @@ std::array<double, 3> Node::direction(const std::array<double, 3>& fallback) con
 
 std::string Node::reference(const Names& names) const
 {
-  const std::string text = scalar("a name (" + names.kind + ")").value_or("");
+  std::string text = scalar("a name (" + names.kind + ")").value_or("");
   if (!text.empty())
     check_known(text, names);
   return text;

@@ -1,6 +1,6 @@
 // Nodes that slide over a bone keep to a field of the sheet that tissue faces.
 
-#include "bake/voxels/restricted_nodes.hpp"
+#include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 #include "frontalis/model/sample_field.hpp"
 #include "solver/contact/kept_level.hpp"

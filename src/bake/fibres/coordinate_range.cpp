@@ -105,16 +105,16 @@ DistanceTable::DistanceTable(const MuscleGrid& grid, const CornerField& field, b
     high = std::max(high, cells.back().first);
   }
   std::sort(cells.begin(), cells.end());
-  const std::size_t bins = std::min<std::size_t>(64, std::max<std::size_t>(1, cells.size() / 20));
+  const std::size_t intervals = std::min<std::size_t>(64, std::max<std::size_t>(1, cells.size() / 20));
   values_.push_back(low);
   distances_.push_back(0);
-  for (std::size_t b = 0; b < bins; ++b)
+  for (std::size_t b = 0; b < intervals; ++b)
   {
-    const std::size_t begin = b * cells.size() / bins, end = (b + 1) * cells.size() / bins;
+    const std::size_t begin = b * cells.size() / intervals, end = (b + 1) * cells.size() / intervals;
     double steepness = 0;
     for (std::size_t c = begin; c < end; ++c)
       steepness += cells[c].second / static_cast<double>(end - begin);
-    const double value = b + 1 < bins ? cells[end].first : high;
+    const double value = b + 1 < intervals ? cells[end].first : high;
     distances_.push_back(distances_.back() + (steepness > 0 ? (value - values_.back()) / steepness : 0));
     values_.push_back(value);
   }

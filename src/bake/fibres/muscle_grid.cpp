@@ -39,6 +39,7 @@ CellBox cell_numbers(const MuscleGrid& grid, const Vector3i& size)
 std::vector<Vector3i> face_steps()
 {
   std::vector<Vector3i> steps;
+  steps.reserve(6);
   for (int face = 0; face < 6; ++face)
     steps.emplace_back((face % 2 == 0 ? -1 : 1) * Vector3i::Unit(face / 2));
   return steps;
@@ -88,6 +89,7 @@ void flood_outside(CellBox& box)
 std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
   std::vector<Vector3i> steps;
+  steps.reserve(27);
   for (int s = 0; s < 27; ++s)
     steps.emplace_back(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
   const auto take = [&box](const Vector3i& place)

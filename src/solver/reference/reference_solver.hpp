@@ -41,9 +41,9 @@ private:
 
   std::vector<VoxelProperties> voxels_;
   Components f_;
-  Derivatives centre_;            // dN_b/dX_j at the centre [1/m]
-  Derivatives gauss_[8];          // the same at the Gauss points
-  double hourglass_shape_[4][8];  // +-1 patterns xy, xz, yz, xyz
+  Derivatives centre_;                               // dN_b/dX_j at the centre [1/m]
+  Derivatives gauss_[8];                             // the same at the Gauss points
+  double hourglass_shape_[4][8];                     // +-1 patterns xy, xz, yz, xyz
   bool accounting_ = false;                          // whether fibres record their work
   std::vector<std::array<double, 2>> fibre_memory_;  // latest squared stretch, and stress times volume
   std::vector<double> stiffness_;                    // bound of each voxel at the latest forces [N/m]

@@ -75,8 +75,8 @@ class EffectPart
 public:
   virtual ~EffectPart() = default;
   virtual void list_arrays(ArrayList& list) = 0;
-  /// Follows a change of the running effects. An effect that is off has the state of rest, so that it comes back without
-  /// a history.
+  /// Follows a change of the running effects. An effect that is off has the state of rest, so that it comes back
+  /// without a history.
   virtual void run(EffectSet running) = 0;
   /// Brings its state to rest.
   virtual void reset() = 0;

@@ -120,7 +120,7 @@ Wrinkles skin_wrinkles(double depth, double expected)
   const int middle = static_cast<int>(std::lround(expected / (2 * along)));
   Plot::Curve curve;
   Wrinkles found =
-      find_wrinkles([&](int) { return layers; }, std::max(3, middle - 5), middle + 5, 1, 1e-3 / along, curve);
+      find_wrinkles([&](int) { return Layers(layers); }, std::max(3, middle - 5), middle + 5, 1, 1e-3 / along, curve);
   found.wavelength *= 1 - 0.01 * found.compression;
   return found;
 }
