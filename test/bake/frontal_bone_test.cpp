@@ -126,7 +126,7 @@ struct CoveredBone
 
   CoveredBone(const TriangleMesh& mesh, const Vector3d& forward, double edge)
   {
-    surfaces.push_back(std::make_unique<PreparedSurface>("bone", mesh, 1));
+    surfaces.push_back(std::make_unique<PreparedSurface>("bone", mesh));
     const PreparedSurface& bone = *surfaces[0];
     frame.origin = bone.box().min() - Vector3d::Constant(10e-3);
     model.spacing = { { edge, edge, edge } };
@@ -159,7 +159,7 @@ struct CoveredBone
     restrict_nodes(scene, surfaces, frame, model, monitor);
   }
 
-  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, frame, model), 1 }; }
+  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, frame, model) }; }
   const SampledField& field() const { return model.constraint_surfaces.at(0).field; }
   BakeProgress progress;
 };
