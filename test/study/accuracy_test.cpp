@@ -224,7 +224,7 @@ TEST_F(Accuracy, motions_of_another_backend_serve_and_are_told)
   EXPECT_EQ(row_named(there, "standard").error.rms, row_named(here, "standard").error.rms);
   EXPECT_FALSE(std::isnan(row_named(there, "standard").cost));
   const auto told = [&](const std::string& note)
-  { return note.find("have motions of backend cpu") != std::string::npos; };
+  { return note.find("were computed earlier by backend cpu") != std::string::npos; };
   EXPECT_TRUE(std::any_of(there.notes.begin(), there.notes.end(), told));
 }
 
