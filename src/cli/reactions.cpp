@@ -1,6 +1,7 @@
 #include "cli/reactions.hpp"
 
-#include "frontalis/physics/pose.hpp"
+#include "frontalis/physics/number.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <fmt/core.h>
 
@@ -15,30 +16,21 @@ using Vector = physics::Vec3<double>;
 
 Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
 
-physics::Pose pose_of(const RigidTransform& from)
-{
-  physics::Pose pose;
-  std::copy(from.rotation.begin(), from.rotation.end(), pose.r);
-  std::copy(from.translation.begin(), from.translation.end(), pose.t);
-  return pose;
-}
-
 }  // namespace
 
 std::vector<Reaction> reactions_in_face_frame(const Solver& solver, const Model& model)
 {
   std::vector<Reaction> reactions = solver.reactions();
-  const physics::Pose to_face = pose_of(model.to_face);
-  const Vector origin = to_face.inwards({ 0, 0, 0 });
+  const std::array<double, 3> origin = inverse(model.to_face).translation;
   for (std::size_t c = 0; c < reactions.size(); ++c)
   {
     const std::int32_t bone = model.contacts[c].bone;
-    const physics::Pose pose = pose_of(bone < 0 ? RigidTransform() : solver.controls().bone[bone]);
-    const Vector force = vector(reactions[c].force);
+    const RigidTransform pose = bone < 0 ? RigidTransform() : solver.controls().bone[bone];
+    auto& [force, moment] = reactions[c];
     // from the origin of the local frame to that of the face frame, both carried by the body
-    const Vector moment = vector(reactions[c].moment) - cross(pose.turned(origin), force);
-    const Vector f = to_face.turned(force), m = to_face.turned(moment);
-    reactions[c] = { { { f.x, f.y, f.z } }, { { m.x, m.y, m.z } } };
+    const Vector about_face = vector(moment) - cross(vector(pose.turned(origin)), vector(force));
+    force = model.to_face.turned(force);
+    moment = model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } });
   }
   return reactions;
 }

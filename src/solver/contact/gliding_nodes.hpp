@@ -21,8 +21,8 @@ inline physics::Pose pose_of(const RigidTransform& from)
 }
 
 /// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision, in the
-/// frame of the bone. Their planes are found anew in each step, because friction follows the reaction of the surface:
-/// planes that are kept for several steps change it by 1 to 2 %.
+/// frame of the bone. Their planes are found anew in each step, because friction follows the reaction of the surface,
+/// which jumps where a plane that was kept for several steps is replaced.
 template <class Real>
 class GlidingNodes
 {
