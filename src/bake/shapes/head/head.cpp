@@ -38,11 +38,6 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
   return normals;
 }
 
-bool ends_with(const std::string& text, const std::string& end)
-{
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions)
@@ -156,9 +151,16 @@ Head::Below Head::below(const Vector3d& p) const
                   (c - closest.point).cross(a - closest.point).norm() * normals_[t[1]] +
                   (a - closest.point).cross(b - closest.point).norm() * normals_[t[2]])
                      .normalized();
-  found.thickness = 0.5e-3;
-  while (found.thickness < most && bones_->any(found.skin - found.thickness * found.normal) > 0)
+  // down to the bone, or to the mucosa that lines lids and mouth
+  const Vector3d start = found.skin - step * found.normal;
+  found.thickness = 2 * step;
+  while (found.thickness < most)
+  {
+    const Vector3d at = found.skin - found.thickness * found.normal;
+    if (bones_->any(at) < 0 || tree_->crossed_by(start, at))
+      break;
     found.thickness += step;
+  }
   return found;
 }
 
@@ -199,13 +201,7 @@ std::shared_ptr<const Head> head_of(const Shape& shape)
   return last;
 }
 
-TriangleMesh make_head(const Shape& shape)
-{
-  TriangleMesh mesh = head_of(shape)->part(shape.part, shape.edge);
-  if (ends_with(shape.part, "_right"))
-    flip(mesh);
-  return mesh;
-}
+TriangleMesh make_head(const Shape& shape) { return head_of(shape)->part(shape.part, shape.edge); }
 
 std::optional<ControlNet> head_muscle_net(const Shape& shape) { return head_of(shape)->net(shape.part); }
 

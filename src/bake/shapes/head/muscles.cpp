@@ -11,13 +11,18 @@ constexpr double point_distance = 5e-3;  // [m]
 // A muscle stays this far below the skin where there is room: the thickness of the dermis.
 constexpr double least_cover = 1.8e-3;  // [m]
 
+double length_of(const std::vector<Vector3>& points, bool closed)
+{
+  double length = 0;
+  for (std::size_t i = closed ? 0 : 1; i < points.size(); ++i)
+    length += (to_vector(points[i]) - to_vector(points[i > 0 ? i - 1 : points.size() - 1])).norm();
+  return length;
+}
+
 /// Point at a share of a polyline's length.
 Vector3d along(const std::vector<Vector3>& points, double share)
 {
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    length += (to_vector(points[i]) - to_vector(points[i - 1])).norm();
-  double left = share * length;
+  double left = share * length_of(points, false);
   for (std::size_t i = 1; i < points.size(); ++i)
   {
     const Vector3d a = to_vector(points[i - 1]), b = to_vector(points[i]);
@@ -42,51 +47,46 @@ Value interpolate(const At& at, int count, double t)
          (2 * p1 + (p2 - p0) * s + (2 * p0 - 5 * p1 + 4 * p2 - p3) * s * s + (3 * p1 - p0 - 3 * p2 + p3) * s * s * s);
 }
 
+/// Point of a closed loop through the points, at a share of their number.
+Vector3d around(const std::vector<Vector3>& points, double share)
+{
+  const int count = static_cast<int>(points.size());
+  return interpolate<Vector3d>([&](int i) { return to_vector(points[static_cast<std::size_t>(i) % points.size()]); },
+                               3 * count, count + share * count);
+}
+
 }  // namespace
 
 ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
 {
   const auto& curves = muscle.curves;
   const int count = static_cast<int>(curves.size());
-  std::size_t most = 0;
-  double reach = 0;
+  double reach = 0, width = 0;
   for (int c = 0; c < count; ++c)
   {
-    most = std::max(most, curves[c].points.size());
+    width = std::max(width, length_of(curves[c].points, muscle.ring));
     if (c > 0)
       reach += (along(curves[c].points, 0.5) - along(curves[c - 1].points, 0.5)).norm();
   }
-  // a ring's curves are loops, along which its fibres run
-  int n = 0, across = 0;
+  // a ring's curves are loops, along which its fibres run; otherwise fibres run from curve to curve
   if (muscle.ring)
-  {
-    n = static_cast<int>(most);
-    across = count;
-  }
-  else
-  {
-    n = std::max(4, static_cast<int>(std::ceil(reach / point_distance)) + 1);
-    across = std::max(3, static_cast<int>(most));
-  }
+    std::swap(reach, width);
+  const auto points_over = [](double length, int least)
+  { return std::max(least, static_cast<int>(std::ceil(length / point_distance)) + 1); };
+  const int n = points_over(reach, 4), across = points_over(width, 3);
   ControlNet net;
   net.size = { n, across, 2 };
   net.ring = muscle.ring;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < across; ++j)
     {
-      Vector3d p;
-      double depth = 0;
-      if (muscle.ring)
-      {
-        p = to_vector(curves[j].points[static_cast<std::size_t>(i) % curves[j].points.size()]);
-        depth = curves[j].depth;
-      }
-      else
-      {
-        const double t = static_cast<double>(i) / (n - 1) * (count - 1), s = static_cast<double>(j) / (across - 1);
-        p = interpolate<Vector3d>([&](int c) { return along(curves[c].points, s); }, count, t);
-        depth = interpolate<double>([&](int c) { return curves[c].depth; }, count, t);
-      }
+      const double s = static_cast<double>(j) / (across - 1);
+      const double u = muscle.ring ? static_cast<double>(i) / n : static_cast<double>(i) / (n - 1);
+      // position between the curves
+      const double t = (muscle.ring ? s : u) * (count - 1);
+      const Vector3d p = interpolate<Vector3d>(
+          [&](int c) { return muscle.ring ? around(curves[c].points, u) : along(curves[c].points, s); }, count, t);
+      const double depth = interpolate<double>([&](int c) { return curves[c].depth; }, count, t);
       const Below place = below(p);
       const double room = place.thickness;
       const double half = 0.5 * std::min(muscle.thickness, 0.8 * room);
