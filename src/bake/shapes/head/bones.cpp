@@ -98,17 +98,15 @@ double HeadBones::skull(const Vector3d& p, double hull) const
 {
   const Vector3d q{ p[0], std::abs(p[1]), p[2] };
   double f = hull;
-  // the base: behind the face it rises to the ear and falls to the nape; under the face it ends above the teeth
+  // the base: under the face it ends above the teeth; behind, it rises to the ear and falls to the nape
   const double behind = q[0] < -100e-3 ? -42e-3 + 0.3 * (q[0] + 100e-3) : -34e-3 + 0.133 * (q[0] + 40e-3);
-  const double side = smooth_max(q[0] + 42e-3, -(q[0] + 200e-3));
-  const double base = smooth_max(behind - q[2], side);                // behind
-  const double front = smooth_max(upper_bone - q[2], -42e-3 - q[0]);  // in front
-  f = smooth_max(f, smooth_min(base, front));
+  const double share = std::min(1.0, std::max(0.0, (-40e-3 - q[0]) / 8e-3));
+  f = smooth_max(f, upper_bone + share * (behind - upper_bone) - q[2]);
   // the mouth below the palate
   f = smooth_max(f, -smooth_max(hull + 13e-3, q[2] + 53e-3));
   // orbits, 34 mm wide and 30 mm high at the rim, and the pear-shaped opening of the nose
   f = smooth_max(f, -ellipsoid(q, eye_ + Vector3d(-8e-3, 0.5e-3, 0.5e-3), { 27e-3, 19e-3, 17.5e-3 }));
-  const double half_width = 11.5e-3 - 0.38 * std::max(0.0, q[2] + 42e-3);
+  const double half_width = 11.5e-3 * std::sqrt(std::max(0.0, std::min(1.0, (-25e-3 - q[2]) / 20e-3)));
   const double pear = smooth_max(smooth_max(q[1] - half_width, -50e-3 - q[2]), -30e-3 - q[0]);
   return smooth_max(f, -pear, 4e-3);
 }
@@ -118,14 +116,14 @@ double HeadBones::mandible(const Vector3d& p, double hull) const
   const Vector3d q{ p[0], std::abs(p[1]), p[2] };
   // a horseshoe open to the back, then the ramus
   const double inner = q[1] - 46e-3 * std::sqrt(std::max(0.0, (-16e-3 - q[0]) / 75e-3));
-  const double body = smooth_max(hull, smooth_max(q[2] - lower_bone, q[0] > -16e-3 ? -q[0] - 30e-3 : -inner));
+  const double body = smooth_max(hull, smooth_max(q[2] - lower_bone, q[0] > -16e-3 ? -q[0] - 30e-3 : -inner), 5e-3);
   const double floor = smooth_max(body, -(q[2] + 117e-3));
   double f = smooth_max(floor, -85e-3 - q[0]);
-  const double ramus_front = q[0] + 52e-3, ramus_back = -86e-3 - q[0];
-  const double ramus =
-      smooth_max(smooth_max(hull, -(hull + 9e-3)),
-                 smooth_max(smooth_max(ramus_front, ramus_back), smooth_max(q[2] + 44e-3, -98e-3 - q[2])));
-  f = smooth_min(f, ramus, 6e-3);
+  // its upper edge falls from the coronoid process in front to the notch and rises to the condyle
+  const double front = q[0] + 52e-3 + 0.2 * (q[2] + 70e-3);
+  const double top = q[2] + 37e-3 + 9e-3 * std::sin(pi * std::min(1.0, std::max(0.0, (q[0] + 86e-3) / 28e-3)));
+  const double outline = smooth_max(smooth_max(front, -86e-3 - q[0]), smooth_max(top, -98e-3 - q[2]), 4e-3);
+  f = smooth_min(f, smooth_max(smooth_max(hull, -(hull + 9e-3)), outline), 6e-3);
   return f;
 }
 

@@ -71,10 +71,12 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
   std::vector<Span> spans;
   const auto measure = [](const std::vector<Vector3d>& places, std::size_t from, std::size_t to)
   { return (places[to] - places[from]).norm(); };
+  // dimensions that are not asked for keep the value of the default head
   const auto value_of = [&](const HeadTemplate::Dimension& d)
   {
     const auto given = wanted.find(d.name);
-    return given != wanted.end() ? given->second : d.mean;
+    const std::size_t to = d.to.empty() ? right[d.from] : left[d.to];
+    return given != wanted.end() ? given->second : measure(places_, left[d.from], to);
   };
   for (const auto& d : head.dimensions)
     if (d.derived_from.empty())
