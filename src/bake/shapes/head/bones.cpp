@@ -100,15 +100,16 @@ double HeadBones::skull(const Vector3d& p, double hull) const
   double f = hull;
   // the base: under the face it ends above the teeth; behind, it rises to the ear and falls to the nape
   const double behind = q[0] < -100e-3 ? -42e-3 + 0.3 * (q[0] + 100e-3) : -34e-3 + 0.133 * (q[0] + 40e-3);
-  const double share = std::min(1.0, std::max(0.0, (-40e-3 - q[0]) / 8e-3));
-  f = smooth_max(f, upper_bone + share * (behind - upper_bone) - q[2]);
+  const double share = std::min(1.0, std::max(0.0, (-38e-3 - q[0]) / 14e-3));
+  // the edge between them is steep, and the slope of a field should be near 1
+  f = smooth_max(f, 0.5 * (upper_bone + share * (behind - upper_bone) - q[2]));
   // the mouth below the palate
   f = smooth_max(f, -smooth_max(hull + 13e-3, q[2] + 53e-3));
   // orbits, 34 mm wide and 30 mm high at the rim, and the pear-shaped opening of the nose
   f = smooth_max(f, -ellipsoid(q, eye_ + Vector3d(-8e-3, 0.5e-3, 0.5e-3), { 27e-3, 19e-3, 17.5e-3 }));
   const double half_width = 11.5e-3 * std::sqrt(std::max(0.0, std::min(1.0, (-25e-3 - q[2]) / 20e-3)));
   const double pear = smooth_max(smooth_max(q[1] - half_width, -50e-3 - q[2]), -30e-3 - q[0]);
-  return smooth_max(f, -pear, 4e-3);
+  return smooth_max(f, -smooth_max(pear, q[2] + 25e-3), 3e-3);
 }
 
 double HeadBones::mandible(const Vector3d& p, double hull) const

@@ -124,8 +124,14 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
   }
   for (const Span& span : spans)
     if (std::abs(measure(moved, span.from, span.to) - span.wanted) > 0.5 * derived_tolerance)
-      throw failure("head: dimension '{}' cannot be {:.1f} mm beside the others; {:.1f} mm is the closest",
-                    span.dimension->name, 1e3 * span.wanted, 1e3 * measure(moved, span.from, span.to));
+    {
+      std::vector<std::string> asked;
+      for (const auto& [name, value] : wanted)
+        asked.push_back(fmt::format("'{}' {:.1f} mm", name, 1e3 * value));
+      throw failure("head: dimension '{}' cannot be {:.1f} mm beside {}; {:.1f} mm is the closest",
+                    span.dimension->name, 1e3 * span.wanted, fmt::join(asked, ", "),
+                    1e3 * measure(moved, span.from, span.to));
+    }
   for (const auto& d : head.dimensions)
   {
     const auto given = wanted.find(d.name);
