@@ -13,7 +13,7 @@ import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
-SKIN = {"face": (0.86, 0.68, 0.58), "lid_margin": (0.80, 0.52, 0.47), "lips": (0.74, 0.42, 0.40), "mouth": (0.55, 0.22, 0.22),
+SKIN = {"face": (0.86, 0.68, 0.58), "lid_margin": (0.80, 0.52, 0.47), "lips": (0.74, 0.42, 0.40), "mucosa": (0.62, 0.28, 0.28), "mouth": (0.55, 0.22, 0.22),
         "nostril": (0.5, 0.3, 0.26), "conjunctiva": (0.8, 0.5, 0.48), "cut": (0.6, 0.4, 0.35)}
 IRIS, PUPIL = 5.85e-3, 1.9e-3  # radii [m]
 
@@ -149,7 +149,7 @@ def main(surfaces, cage, pictures):
     eyes = [eye_of(parts[name][0]) for name in ("eye_left", "eye_right")]
     bones = [actor_of(*parts[name], colour) for name, colour in (("skull", (0.9, 0.86, 0.76)), ("mandible", (0.87, 0.82, 0.70)),
                                                                  ("teeth_upper", (0.97, 0.96, 0.92)), ("teeth_lower", (0.97, 0.96, 0.92)))]
-    others = ("face", "cut", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
+    others = ("face", "visible", "cut", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
     muscles = []
     names = [name for name in parts if name not in others]
     kinds = sorted({name.replace("_left", "").replace("_right", "") for name in names})

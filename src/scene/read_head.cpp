@@ -141,7 +141,7 @@ void read_root(const Node& root, HeadTemplate& head)
 
 std::vector<std::string> HeadTemplate::parts() const
 {
-  std::vector<std::string> names{ "skin",        "face",        "skull",    "mandible",
+  std::vector<std::string> names{ "skin",        "face",        "visible",  "skull",    "mandible",
                                   "teeth_upper", "teeth_lower", "eye_left", "eye_right" };
   for (const Muscle& muscle : muscles)
     if (muscle.sided)

@@ -59,12 +59,17 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
   bones_.emplace(*head_, *tree_);
 }
 
-TriangleMesh Head::skin(double edge, bool outer) const
+TriangleMesh Head::skin(const std::string& name, double edge) const
 {
-  // what is seen of the skin ends in the vestibule of the mouth and behind the lids' margins
-  static const std::vector<std::string> seen{ "face", "scalp", "neck", "ear", "lid", "lid_margin", "lips" };
-  TriangleMesh mesh = subdivide(cage_, levels_for(cage_, edge), outer ? seen : std::vector<std::string>{});
-  if (outer)
+  // `face` is what has a dermis; `visible` also lines nostrils and lips; `skin` is closed by the mouth and the sacs
+  // behind the lids
+  std::vector<std::string> groups;
+  if (name != "skin")
+    groups = { "face", "scalp", "neck", "ear", "lid", "lid_margin", "lips" };
+  if (name == "visible")
+    groups.insert(groups.end(), { "nostril", "mucosa" });
+  TriangleMesh mesh = subdivide(cage_, levels_for(cage_, edge), groups);
+  if (!groups.empty())
     mesh = keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
   for (Vector3& p : mesh.vertices)
     p = to_array((*warp_)(to_vector(p)));
@@ -109,8 +114,8 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
 TriangleMesh Head::part(const std::string& name, double wanted_edge) const
 {
   const double edge = wanted_edge > 0 ? wanted_edge : default_edge;
-  if (name == "skin" || name == "face")
-    return skin(edge, name == "face");
+  if (name == "skin" || name == "face" || name == "visible")
+    return skin(name, edge);
   if (name == "eye_left" || name == "eye_right")
     return eye(name == "eye_left", edge);
   if (name == "skull" || name == "mandible" || name == "teeth_upper" || name == "teeth_lower")

@@ -73,7 +73,7 @@ public:
   Vector3d landmark(const std::string& name, bool right = false) const;
 
 private:
-  TriangleMesh skin(double edge, bool outer) const;
+  TriangleMesh skin(const std::string& name, double edge) const;
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
   ControlNet left_net(const HeadTemplate::Muscle& muscle) const;
