@@ -142,7 +142,7 @@ TEST(ContactPointsOfTheGpu, AreThoseOfTheHost)
       EXPECT_LT(worst_force, 1e-4 * most_force) << sampled << friction;
       EXPECT_LT(worst_moment, 1e-4 * most_moment) << sampled << friction;
       const ContactEnergy expected = points.energy(points.host), found = points.energy(points.account);
-      EXPECT_GT(std::abs(expected.work), 1e-6);
+      EXPECT_GT(std::abs(expected.work), 1e-7);
       EXPECT_NEAR(found.work, expected.work, 1e-3 * std::abs(expected.work));
       EXPECT_NEAR(found.lost, expected.lost, 1e-3 * expected.lost);
     }
