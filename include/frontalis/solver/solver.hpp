@@ -125,7 +125,7 @@ public:
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
-  /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
+  /// One per entry of touched_bodies(model), in the latest step; none where the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
   virtual Profile profile() const = 0;
 
