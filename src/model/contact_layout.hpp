@@ -13,7 +13,7 @@ void exchange_field(Archive& archive, const std::string& path, Field& field);
 template <class Archive, class Bound>
 void exchange_binding(Archive& archive, const std::string& path, Bound& binding);
 
-/// The contacts of a model in its file, for both directions. A model without any stores nothing.
+/// Writes or reads the contacts of a model file. A model without contacts stores nothing.
 template <class Archive, class Contacts>
 void exchange_contacts(Archive& archive, const std::string& path, Contacts& contacts)
 {

@@ -86,7 +86,7 @@ std::size_t contact_points(const Model& model)
   return count;
 }
 
-// what the model has of an effect that is not switched off
+// presence of an effect that is not switched off
 EffectPresence found(const Model& model, Effect effect)
 {
   const auto on_voxels = [](std::size_t voxels, const std::string& why, const std::string& otherwise) {
