@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// The time and the poses of bones that restricted nodes follow in one step.
+/// Time and bone poses of one step, for restricted nodes.
 struct ConstraintStep
 {
   double time = 0;  ///< at the end of the step [s]

@@ -67,7 +67,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// A block starts at the first sliding node that is in no block yet, or earlier to stay within the node plane.
+// Collects sliding nodes in blocks. A block starts at the first sliding node that is in no block yet, or earlier so
+// that it ends within the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -140,7 +141,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   const auto index = nodes.block_sliding_[block][lane];
-  // a node that does not slide gets here if its displacement is NaN
+  // the kernel calls this also for a node that does not slide, if its displacement is NaN
   if (index < 0)
     return;
   const Sliding& s = nodes.sliding_[index];
