@@ -29,7 +29,7 @@ std::vector<Reaction> reactions_in_face_frame(const Solver& solver, const Model&
     const std::int32_t bone = bodies[c].bone;
     const RigidTransform pose = bone < 0 ? RigidTransform() : solver.controls().bone[bone];
     auto& [force, moment] = reactions[c];
-    // from the origin of the local frame to that of the face frame, both carried by the body
+    // move the reference point from the origin of the local frame to that of the face frame, both moved with the body
     const Vector about_face = vector(moment) - cross(vector(pose.turned(origin)), vector(force));
     force = model.to_face.turned(force);
     moment = model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } });

@@ -40,7 +40,7 @@ void check(const Model& model)
   }
 }
 
-// The contacts of a model in its file, for both directions. A model without any stores nothing.
+// Writes or reads the contacts of a model file. A model without contacts stores nothing.
 template <class Archive, class Contacts>
 void exchange_contacts(Archive& archive, Contacts& contacts)
 {

@@ -78,7 +78,7 @@ void check_entry(const std::string& array, std::size_t at, const Check& check, c
       check(array, at, number);
 }
 
-/// Checks all entries of an array, or, where a field is named, that field of each.
+/// Checks all entries of an array or, if a field is named, that field of each entry.
 template <class Check, class Entry, class... Field>
 void check_each(const std::string& array, const Check& check, const std::vector<Entry>& entries, Field... field)
 {

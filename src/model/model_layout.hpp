@@ -41,7 +41,7 @@ void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
 /// file. Points are in local coordinates [m].
 void write_vtk_arrays(Hdf5File& file, const Model& model);
 
-/// The one description of our part of the file, for both directions. Derived arrays (nodes) are not in it.
+/// Lists all that a model file stores, once for writing and reading. Derived arrays (nodes) are not stored.
 template <class Archive, class AnyModel>
 void exchange_model(Archive& archive, AnyModel& model)
 {

@@ -20,7 +20,7 @@ struct EffectPresence
   std::size_t nodes = 0;   ///< nodes that it acts on; 0 if it acts on voxels
 };
 
-/// The one place that says which effects a model has.
+/// Tells whether a model has an effect; no other function decides this.
 EffectPresence presence_of(const Model& model, Effect effect);
 EffectSet effects_of(const Model& model);
 
@@ -39,7 +39,7 @@ std::vector<TouchedBody> touched_bodies(const Model& model);
 /// Of each node, the bone that may move it; -1: none.
 std::vector<std::int32_t> moving_bones(const Model& model);
 
-/// Takes effects out of a model, so that nothing is stored for them, and notes their names in Model::switched_off.
+/// Removes effects from a model, so that nothing is stored for them, and adds their names to Model::switched_off.
 /// Throws Error if check_switched_off() does.
 void switch_off(Model& model, EffectSet off);
 
