@@ -48,12 +48,13 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
   sort_by_node(sliding);
-  const auto plain = std::stable_partition(sliding.begin(), sliding.end(),
-                                           [&](const SlidingNode& node)
-                                           {
-                                             const auto& surface = model.constraint_surfaces[node.surface];
-                                             return surface.bone >= 0 || surface.friction > 0;
-                                           });
+  // A plane that was kept for several steps jolts the tissue when it is replaced. Where any surface is rough, no node
+  // keeps planes: friction follows the jolts even of nodes that have none, and would take several percent too much.
+  const auto& surfaces = model.constraint_surfaces;
+  const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
+  const auto plain =
+      std::stable_partition(sliding.begin(), sliding.end(),
+                            [&](const SlidingNode& node) { return rough || surfaces[node.surface].bone >= 0; });
   for (auto node = sliding.begin(); node != plain; ++node)
   {
     const auto& surface = model.constraint_surfaces[node->surface];
