@@ -1,5 +1,5 @@
-// Each scene of test/scene/bad has one fault, and its first line has the expected message. Reading must report that
-// fault and no other.
+// Each scene of test/scene/bad has one fault, and the expected message in its first line. Only that fault must be
+// reported.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/read_scene.hpp"

@@ -70,9 +70,8 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends at the time of the velocities, half a step before the displacements. The work of the remaining half
-// step is that of the present forces. Nodes that do not follow the forces keep their velocity: constraints do the work
-// for that.
+// The account ends at the time of the velocities, half a step before the displacements. The work of that half step is
+// that of the present forces. Nodes that do not follow the forces keep their velocity, at the expense of constraints.
 Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
 {
   EnergyLedger& l = ledger_;

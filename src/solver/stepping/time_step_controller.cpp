@@ -27,8 +27,7 @@ constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
 constexpr double stiffening_ratio = 4;     // squared frequency over that at rest
 constexpr double vibration_change = 0.05;  // relative change of the squared frequency between plans
 constexpr int steps_after_vibration = 256;
-// The bound follows softening slowly: tissue may stiffen again before the next plan, and each change of the step costs
-// accuracy.
+// The bound follows softening slowly: tissue may stiffen again soon, and each change of the step costs accuracy.
 constexpr double slowest_softening = 0.95;  // ratio of squared frequencies of successive plans
 
 }  // namespace
