@@ -25,7 +25,7 @@ using Backend = std::string;
 
 /// The values of SolverSettings::backend in this build, "auto" first.
 std::vector<Backend> backend_names();
-/// Returns the name; throws Error if it is not in backend_names().
+/// Checks and returns the name. Throws Error if it is not in backend_names().
 Backend backend_from_name(const std::string& name);
 /// The backends that can run on this machine, in the order of preference of "auto".
 std::vector<Backend> available_backends();
@@ -133,7 +133,7 @@ public:
   virtual void displacements(std::vector<std::array<double, 3>>& out) const = 0;
   /// Sets the displacements and zeroes the velocities; for tests and studies.
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Nodal velocities [m/s]; for tests and studies.
+  /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
   /// Internal forces [N] at the present displacements (elastic, hourglass, fibres), before constraints.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;
