@@ -7,7 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off keeps its arrays and changes their entries, such as marks of strips with fibres.
+// Switching an effect off keeps its arrays: entries then say that strips have no fibres, nodes have no tasks, and so
+// on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {

@@ -7,8 +7,7 @@ namespace frontalis
 
 /// A curved shell like a forehead, made in code for benchmarks and tests without meshes: part of an ellipsoid with
 /// layers (dermis, hypodermis), four overlapping muscles in a sheet below them with a tendon above. Nodes are rigid
-/// near its rim and slide on the bone elsewhere; skin and landmarks are bound. Local x is up, y lateral, z out of the
-/// face.
+/// near its rim and slide on the bone elsewhere; skin and landmarks are bound. Local x is up, y lateral, z outwards.
 struct ShellSettings
 {
   double voxel = 1e-3;              ///< edge [m]

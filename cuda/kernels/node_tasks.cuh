@@ -85,8 +85,7 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Applies a task after its node's update was written. Not inlined, so that the sweep through a strip keeps its
-/// registers.
+/// Applies a task after its node's update was written. Not inlined, which saves registers in the sweep through a strip.
 template <Effects With>
 static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
                                              int step)

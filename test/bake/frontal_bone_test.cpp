@@ -188,8 +188,7 @@ struct Walker
   }
 };
 
-// Where the nearest point jumps from the rim of the sheet to another part, the field must not: its gradient would
-// exceed 1.
+// Where the nearest point jumps from the rim of the sheet to another part, the field must not: its gradient is about 1.
 void check_slopes(const CoveredBone& bone)
 {
   const physics::DistanceField field = view(bone.field());

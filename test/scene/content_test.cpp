@@ -54,8 +54,7 @@ TEST(Content, depends_on_what_decides_the_bake_alone)
   EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
 }
 
-// Every number of the file changes the hash, except in profiles that are not chosen: a cache must not return a wrong
-// model.
+// Every number of the file changes the hash, except in profiles that are not chosen; else caches return wrong models.
 TEST(Content, depends_on_every_number)
 {
   const std::string text = text_of(source + "/test/scene/every_key.yaml");

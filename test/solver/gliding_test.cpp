@@ -207,7 +207,7 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   }
 }
 
-// Moving nodes back to a surface must not add energy: on a plane, or on a curve, whose tangent plane has an error.
+// Moving nodes back to a surface must not add energy, even if it is curved and its tangent plane has an error.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
