@@ -147,7 +147,7 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
   }
 }
 
-/// Bits of the bound of the squared highest frequency at a node; `voxels` as in sum_forces().
+/// Bits of the bound of the squared highest frequency at a node.
 __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
                                                       std::uint32_t node, float inverse_mass)
 {
