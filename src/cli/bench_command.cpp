@@ -221,7 +221,7 @@ void add_bench_command(CLI::App& app)
   add_solver_options(*command, options->solver);
   command->add_flag("--quick", options->quick, "only the block of 64^3 voxels, a few seconds");
   command->add_flag("--effects", options->effects,
-                    "time effects that a share of the voxels has; of SCENE_OR_MODEL, one active muscle against all");
+                    "time effects that a fraction of the voxels has; on SCENE_OR_MODEL, one active muscle against all");
   command->add_option("--plot", options->plot, "draw the result of --effects: FILE.png, and FILE.svg beside it");
   command->callback([options] { bench(*options); });
 }
