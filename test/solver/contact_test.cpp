@@ -163,8 +163,8 @@ TEST_P(BodiesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_
   EXPECT_LT(std::abs(way(*on_incline(22))), 1e-6);
   for (const double degrees : { 35.0, 60.0 })
   {
-    // damping c, acceleration a: if the block moves by w in a time t, it moves by q w + a t (1 - q) / c in the next t,
-    // with q = exp(-c t)
+    // with damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
+    // next, q = exp(-c t)
     const auto solver = on_incline(degrees);
     const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
     const double acceleration = damping * (second - q * first) / (time * (1 - q));

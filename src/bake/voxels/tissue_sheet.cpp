@@ -18,7 +18,7 @@ namespace frontalis
 namespace
 {
 
-/// How far nodes may slide beyond the places where nodes rest: more than skin moves [m].
+/// How far nodes may slide beyond the area in which nodes rest [m]: farther than skin moves.
 constexpr double travel = 20e-3;
 
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
@@ -39,8 +39,8 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
   return false;
 }
 
-/// Extends a selection of triangles over their edges up to `travel` farther, where the surface does not turn away by
-/// more than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it.
+/// Extends a selection of triangles across their edges by up to `travel`, as long as the surface does not turn by more
+/// than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it.
 void grow(const TriangleMesh& mesh, std::vector<bool>& selected)
 {
   constexpr double least_cosine = 0.2;
@@ -182,7 +182,7 @@ SampledField distance_field(const PreparedSurface& surface, const PreparedSurfac
   const std::vector<std::array<bool, 7>> on_rim = rim_features(sheet.mesh());
   const auto distance = [&](const std::array<double, 3>& local)
   {
-    // neighbouring samples are asked for one after the other
+    // start each search at the triangle found last, because successive samples are neighbours
     thread_local std::int32_t hint = -1;
     const Vector3d p = frame.to_scene(to_vector(local));
     const auto triangles = static_cast<std::int32_t>(sheet.mesh().triangles.size());
@@ -192,7 +192,7 @@ SampledField distance_field(const PreparedSurface& surface, const PreparedSurfac
     const bool at_rim = on_rim[closest.triangle][closest.feature];
     if (!at_rim && signed_distance < 0)
       return SurfaceDistance(signed_distance);
-    // Nothing in a closed surface lies above its sheet, though the sheet alone may seem to say so.
+    // A point inside a closed surface is not above its sheet, even if the sheet alone suggests it.
     if (surface.closed() && surface.signed_distance(p, surface.tree().closest(p, closest.distance + 1e-9)) < 0)
       return SurfaceDistance(-closest.distance);
     if (!at_rim)

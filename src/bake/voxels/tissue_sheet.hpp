@@ -7,9 +7,9 @@
 namespace frontalis
 {
 
-/// The part of a surface that tissue faces, and what nodes that slide may reach beyond it: such as the outer table of
-/// a bone, without the inner one. A closed sphere is returned whole. side: where the tissue lies, +1: on the side of
-/// the outward normals, -1: on the other, 0: on both.
+/// The part of a surface that faces tissue, extended by the distance that sliding nodes may move beyond it: the outer
+/// table of a bone, for example, without the inner one. A closed sphere is returned unchanged. side: where the tissue
+/// is, +1: on the side of the outward normals, -1: on the other, 0: on both.
 TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const LocalFrame& frame, const Model& model);
 
 /// Field of the distance from a surface's sheet (see SampledField) around nodes at `rest`, in local coordinates. Closed

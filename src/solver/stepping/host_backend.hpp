@@ -15,7 +15,7 @@ class RelaxedStresses : public EffectPart
 public:
   std::vector<T> values;
 
-  bool relax() const { return runs_ && !values.empty(); }  ///< whether a stress is to be relaxed
+  bool relax() const { return runs_ && !values.empty(); }  ///< whether there are stresses to relax
   void list_arrays(ArrayList& list) override { list.add_state(Effect::viscosity, "relaxed stresses", values); }
   void run(EffectSet running) override
   {

@@ -87,7 +87,7 @@ void verify_hertz(const Backend& backend, Finding& finding)
   finding.checks.relative("force on the sphere", "N",
                           half_space * layer_factor(poisson, contact_radius / double(thickness)), force, 0.05);
   finding.checks.relative("the same on a half-space", "N", half_space, force, std::nan(""));
-  // tissue in the middle is as deep as the sphere, but for what contact gives way
+  // in the middle, tissue is as deep as the sphere, minus the penetration
   const auto middle =
       nodes_where(model, [&](const auto& p) { return p[0] == 0 && p[1] == 0 && p[2] > (thickness - 0.5) * edge; });
   finding.checks.absolute("depth of the middle below the sphere, in voxels", "1", 0,
