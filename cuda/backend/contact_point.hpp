@@ -9,6 +9,9 @@ namespace frontalis
 namespace cuda
 {
 
+/// Contact on the host: it keeps the account of what the device finds.
+using HostContact = BodyContact<double>;
+
 /// A body in the form of the device, with its field there.
 inline ContactBody contact_body(const Contact& contact, const physics::DistanceField& field)
 {
@@ -17,7 +20,7 @@ inline ContactBody contact_body(const Contact& contact, const physics::DistanceF
 }
 
 /// A point of the host in the form of the device.
-inline ContactPoint contact_point(const Contact& contact, const BodyContact::Point& from)
+inline ContactPoint contact_point(const Contact& contact, const HostContact::Point& from)
 {
   const auto at = physics::field_point(view(contact.field), from.rest);
   const auto& c = from.coordinates;
@@ -31,7 +34,7 @@ inline ContactPoint contact_point(const Contact& contact, const BodyContact::Poi
 }
 
 /// What a step has left of a point, in the form of the host.
-inline BodyContact::Found found_at(const ContactArguments& contact, std::size_t index, const BodyContact::Point& point)
+inline HostContact::Found found_at(const ContactArguments& contact, std::size_t index, const HostContact::Point& point)
 {
   const auto vector = [](const float4& v) { return physics::Vec3<double>{ double(v.x), double(v.y), double(v.z) }; };
   const float4 &force = contact.forces[index], &grip = contact.grips[index];

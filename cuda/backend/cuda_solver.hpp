@@ -12,7 +12,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// The input of one plan on its way to the device, and the frequency bound that its last step reports.
+/// The input of one plan in page-locked memory, and the frequency bound that its last step reports.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -43,7 +43,7 @@ public:
   std::optional<double> highest_frequency_squared(int most_iterations) override;
   Monitor monitor() override;
   Work work(bool open) override;
-  ContactEnergy contact_energy(bool open, NodalVectors& forces) override;
+  void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
   void skin(SkinState& out) override;
 
@@ -60,7 +60,7 @@ private:
   /// `springs`: with those of points of contact.
   void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
-  /// An empty `in` stands for zeros.
+  /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 

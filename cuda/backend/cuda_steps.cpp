@@ -38,7 +38,7 @@ StepArguments CudaSolver::arguments(double dt) const
 }
 
 // Copies the cleared frequency bound, the activations, the poses and the relaxation times of viscous stresses to the
-// device in one transfer from page-locked memory. `relaxation` is empty if stresses do not relax within launches.
+// device in one transfer from page-locked memory. `relaxation` is empty if launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -91,16 +91,16 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
 
 bool CudaSolver::pushes_before_steps() const
 {
-  const DeviceBodyContact* const contact = device_.body_contact();
+  const DevicePart* const contact = device_.touching();
   return contact != nullptr && !contact->idle() && !contact->in_patches();
 }
 
-// Launches all steps at once if nothing has to be done between them, else one launch per step.
+// Launches all steps at once if the host has nothing to do between them, else one launch per step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
     return step(g, begin, end);
-  DeviceBodyContact* const contact = device_.body_contact();
+  DevicePart* const contact = device_.touching();
   for (int s = begin; s < end; ++s)
   {
     device_.loads().update(u_[present_].data(), stream_);
@@ -179,8 +179,7 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // The host waits for the previous plan, so that the device always has work; for the present one if motion changes
-  // fast.
+  // The host waits for the previous plan, so that the device always has work, or for this one if motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
@@ -199,13 +198,13 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   g.u[1 - present] = out;
   g.contact.spring = springs;
   const StepLaunch launch = launch_;
-  if (springs && device_.body_contact() != nullptr)
+  if (springs && device_.touching() != nullptr)
     launch_.effects = device_.launch_with_contact().effects;
   step(g, 0, 1);
   launch_ = launch;
   present_ = present;
-  if (springs && device_.body_contact() != nullptr && !launch_.patches)
-    device_.body_contact()->add_springs(g, stream_);
+  if (springs && device_.touching() != nullptr && !launch_.patches)
+    device_.touching()->add_springs(g, stream_);
 }
 
 void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
@@ -248,24 +247,24 @@ Work CudaSolver::work(bool open)
   return work;
 }
 
-ContactEnergy CudaSolver::contact_energy(bool open, NodalVectors& forces)
+void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger)
 {
-  if (device_.body_contact() == nullptr)
-    return {};
+  if (device_.touching() == nullptr || device_.touching()->idle())
+    return;
   NodalVectors u;
   get(NodalField::displacements, u);
-  return device_.body_contact()->energy(u, conditions_.bone, open, forces);
+  device_.touching()->add_energies(u, conditions_.bone, open, forces, ledger);
 }
 
 // With a ledger the host has followed every step.
 std::vector<Reaction> CudaSolver::reactions() const
 {
-  DeviceBodyContact* const contact = device_.body_contact();
+  DevicePart* const contact = device_.touching();
   if (contact == nullptr)
     return {};
   synchronise();
   if (!account_ && !contact->idle())
-    contact->follow({ 0, 0, conditions_.bone, conditions_.bone });
+    contact->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
   return contact->reactions();
 }
 

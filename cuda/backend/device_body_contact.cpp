@@ -1,6 +1,5 @@
 #include "cuda/backend/device_body_contact.hpp"
 
-#include "cuda/backend/contact_point.hpp"
 #include "cuda/backend/device_model.hpp"
 #include "cuda/kernels/contact_kernels.hpp"
 
@@ -12,7 +11,7 @@ namespace frontalis
 {
 namespace cuda
 {
-std::uint32_t most_contact_points(const Model& model, const VoxelPatches& patches)
+std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patches)
 {
   if (model.contacts.empty())
     return 0;
@@ -28,6 +27,14 @@ std::uint32_t most_contact_points(const Model& model, const VoxelPatches& patche
                                           [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
   }
   return most;
+}
+
+std::unique_ptr<DevicePart> touching_part(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
+                                          const std::vector<std::uint32_t>& device_node)
+{
+  if (model.contacts.empty())
+    return nullptr;
+  return std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node);
 }
 
 DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
@@ -218,21 +225,21 @@ void DeviceBodyContact::follow(const ConstraintStep& step)
   left.forces = forces.data();
   left.arms = arms.data();
   left.holds = holds.data();
-  std::vector<BodyContact::Found> found;
+  std::vector<HostContact::Found> found;
   for (std::size_t p = 0; p < copy_.size(); ++p)
     found.push_back(found_at(left, copy_[p], host_.points()[p]));
   host_.follow(found, step);
 }
 
-ContactEnergy DeviceBodyContact::energy(const Vectors& u, const std::vector<RigidTransform>& bones, bool open,
-                                        Vectors& forces)
+void DeviceBodyContact::add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open,
+                                     Vectors& forces, EnergyLedger& ledger)
 {
   std::vector<double> components[3];
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const auto& moved : u)
       components[axis].push_back(moved[axis]);
   const double* const pointers[3] = { components[0].data(), components[1].data(), components[2].data() };
-  return host_.energy(pointers, bones, open, forces);
+  host_.add_energies(pointers, bones, open, forces, ledger);
 }
 
 }  // namespace cuda

@@ -101,8 +101,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
       of_device[device_node_[n]] = of_node[n];
     mobility_ = DeviceArray<float>(of_device);
   }
-  if (!model.contacts.empty())
-    body_contact_ = std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node_);
+  touching_ = touching_part(model, discretisation, cut, device_node_);
   if (cut.patches)
     add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
@@ -142,8 +141,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   contacts_.describe(g);
-  if (body_contact_)
-    body_contact_->describe(g);
+  if (touching_)
+    touching_->describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());

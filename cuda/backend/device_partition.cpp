@@ -19,7 +19,7 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
   const auto fits = [&](const VoxelPatches& cut)
   {
     return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
-                                           most_contact_points(model, cut)) <= choice.patch_bytes;
+                                           most_touching_points(model, cut)) <= choice.patch_bytes;
   };
   PatchSettings settings = choice.patches;
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
@@ -109,7 +109,7 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  launch_.most_points = most_contact_points(model, patches);
+  launch_.most_points = most_touching_points(model, patches);
   // points of contact have threads of their own as far as possible
   if (launch_.most_points > 0)
     most = std::max(most, patches.most_voxels + launch_.most_points);
