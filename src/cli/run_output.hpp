@@ -26,7 +26,7 @@ struct RunSummary
   Profile profile;
   std::optional<GuardCounts> guard;        ///< empty: the motion was not guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
-  std::vector<Reaction> reactions;         ///< at the end, face frame, one per contact of the model
+  std::vector<Reaction> reactions;         ///< at the end, face frame, one per body that tissue touches
   std::optional<Equilibrium> equilibrium;  ///< empty: the run did not settle
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
@@ -51,8 +51,8 @@ public:
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
   void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
-  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if the model
-  /// has contact, reactions.csv (force [N] and moment [N m], face frame).
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
+  /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
   void finish(const std::string& summary);
 
 private:

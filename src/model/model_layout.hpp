@@ -3,7 +3,7 @@
 #include "model/model_archive.hpp"
 
 #include "frontalis/model/model.hpp"
-#include "model/contact_layout.hpp"
+#include "model/effect_description.hpp"
 
 #include <string>
 #include <utility>
@@ -79,7 +79,7 @@ void exchange_model(Archive& archive, AnyModel& model)
                 Column{ "surface", &SlidingNode::surface }, Column{ "distance", &SlidingNode::distance },
                 Column{ "constraint", &SlidingNode::constraint });
 
-  exchange_contacts(archive, "contacts", model.contacts);
+  exchange_effects(archive, model);
 
   archive("gravity", model.gravity);
   archive.table("loads", model.loads, Column{ "name", &Load::name }, Column{ "kind", &Load::kind },

@@ -159,7 +159,7 @@ struct CoveredBone
     restrict_nodes(scene, surfaces, frame, model, monitor);
   }
 
-  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, frame, model) }; }
+  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, {}, frame, model) }; }
   const SampledField& field() const { return model.constraint_surfaces.at(0).field; }
   BakeProgress progress;
 };

@@ -125,7 +125,7 @@ public:
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
-  /// Forces of the latest step, one per entry of Model::contacts; none if the backend does not compute contact.
+  /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
   virtual Profile profile() const = 0;
 
