@@ -23,7 +23,7 @@ constexpr double travel = 20e-3;
 
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
 
-/// Whether `ask` is true at a point of a triangle, of points at most `spacing` apart.
+/// Whether `ask` is true at any point of a triangle; tries points at most `spacing` [m] apart.
 template <class Ask>
 bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
 {
