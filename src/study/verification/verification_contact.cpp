@@ -149,13 +149,13 @@ void verify_contact_impact(const Backend&, Finding& finding)
     {
       solver->advance(0.1e-3, solver->controls());
       const EnergyLedger l = solver->ledger();
-      const double all = l.kinetic + l.internal + l.hourglass + l.contact_stored, ms = 1e3 * solver->time();
-      stored = std::max(stored, l.contact_stored);
+      const double all = l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"], ms = 1e3 * solver->time();
+      stored = std::max(stored, l["contact_stored"]);
       worst = std::max(worst, relative(all, initial));
       unexplained = std::max(unexplained, 100 * std::abs(l.imbalance()) / initial);
-      plot.curves[0].add(ms, l.kinetic / initial);
-      plot.curves[1].add(ms, (l.internal + l.hourglass) / initial);
-      plot.curves[2].add(ms, l.contact_stored / initial);
+      plot.curves[0].add(ms, l["kinetic"] / initial);
+      plot.curves[1].add(ms, (l["internal"] + l["hourglass"]) / initial);
+      plot.curves[2].add(ms, l["contact_stored"] / initial);
       plot.curves[3].add(ms, all / initial);
     }
     finding.checks.absolute("change of mechanical energy, " + backend, "%", 0, worst, 2);
