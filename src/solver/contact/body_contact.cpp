@@ -15,10 +15,10 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Runs of bound nodes are joined over this many others.
+// Runs of bound nodes are merged if at most this many other nodes are between them.
 constexpr std::int32_t largest_gap = 8;
 
-// More than rounding errors take from a way that is found in single precision.
+// Factor on distances found in single precision that outweighs their rounding errors.
 constexpr double rounding = 1.00001;
 
 }  // namespace
@@ -182,6 +182,7 @@ void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const Bod
   if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
+  // the distance is at least this
   if (touches_[p] == Touching::no)
     due_[p] = body.way + (sampled ? value.value / physics::steepest_field
                                   : physics::distance_without_samples(field, contact.reach, x));
@@ -281,7 +282,7 @@ void BodyContact<Real>::after_step(const NodeShare& share, const Real* const bef
 {
   for (auto k = share.first_plane; k < share.end_plane; ++k)
   {
-    // squares, in lanes that the compiler makes vectors of
+    // squared lengths, in lanes that the compiler can vectorise
     constexpr std::int32_t width = 8;
     Real longest[width] = {};
     const auto compare = [&](std::int32_t lane, std::int32_t n)
@@ -329,7 +330,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums end at the start of the latest step. The rest is what the next step will add.
+  // The sums end at the start of the latest step: add what the next step will add.
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
