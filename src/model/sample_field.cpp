@@ -1,5 +1,7 @@
 #include "frontalis/model/sample_field.hpp"
 
+#include "model/limit_slope.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -120,6 +122,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
     field.table[places[n]] = stored++;
     field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
   }
+  limit_slope(field);
 }
 
 }  // namespace
