@@ -9,8 +9,8 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor)
 {
-  // Over this way a plane leaves a head, whose radius is about 80 mm, by 0.6 mm [m].
-  constexpr double far = 10e-3;
+  // farther than the continuation of a surface by a plane is to be trusted [m]
+  constexpr double far = 2e-3;
   for (const SlidingNode& node : model.sliding)
   {
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
