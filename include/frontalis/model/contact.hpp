@@ -25,6 +25,18 @@ struct Contact
   Binding binding;                            ///< one entry per point
 };
 
+/// Surfaces of the tissue that touch each other and themselves.
+struct SelfContact
+{
+  std::string name;      ///< of its constraint
+  double friction = 0;   ///< Coulomb's coefficient
+  TriangleMesh surface;  ///< at rest, local; surfaces that join share vertices there
+  Binding binding;       ///< of its vertices
+};
+
+/// Area of each vertex [m2]: a third of each of its triangles.
+std::vector<double> vertex_areas(const TriangleMesh& surface);
+
 /// Sets the points of a contact: the vertices of a bound surface, with their areas.
 void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding);
 

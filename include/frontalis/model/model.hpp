@@ -54,6 +54,7 @@ struct Model
   std::vector<RigidNode> rigid;
   std::vector<SlidingNode> sliding;
   std::vector<Contact> contacts;
+  std::vector<SelfContact> self_contacts;
 
   // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]
