@@ -48,7 +48,10 @@ inline double mean(const Vectors& vectors, std::size_t axis)
   return sum / static_cast<double>(vectors.size());
 }
 
-inline double mechanical(const EnergyLedger& l) { return l.kinetic + l.internal + l.hourglass + l.contact_stored; }
+inline double mechanical(const EnergyLedger& l)
+{
+  return l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"];
+}
 
 // A block with a fingertip above it, which is a bone; its lower side is held.
 inline Model block_and_finger(double friction, bool sampled = false)

@@ -95,7 +95,8 @@ protected:
     if (variant.ledger)
     {
       const EnergyLedger l = solver.ledger();
-      seen.work = l.muscle + 3 * l.constraint + 5 * l.viscous + 7 * l.damping + 11 * l.friction + 13 * l.load;
+      seen.work =
+          l["muscle"] + 3 * l["constraint"] + 5 * l["viscous"] + 7 * l["damping"] + 11 * l["friction"] + 13 * l["load"];
     }
     return seen;
   }

@@ -53,7 +53,7 @@ public:
   /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
-  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::apply.
+  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::constrain.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step,
              States& states) const;
   /// See RestrictedNodes::friction_loss.

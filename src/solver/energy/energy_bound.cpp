@@ -70,7 +70,7 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
     const double share = discretisation.weight_share.empty() ? 1.0 : double(discretisation.weight_share[n]);
     squared += 0.5 * discretisation.node_mass[n] * share * share * pull;
   }
-  NodalLoads loads(model, discretisation);
+  NodalLoads<double> loads(model, discretisation);
   const std::vector<double> rest(model.nodes.size(), 0);
   const double* const u[3] = { rest.data(), rest.data(), rest.data() };
   loads.update(1e300, u);

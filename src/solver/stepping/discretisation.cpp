@@ -5,6 +5,7 @@
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "solver/stepping/effect_parts.hpp"
 #include "solver/stepping/mass_factors.hpp"
 #include "solver/material_laws.hpp"
 #include "solver/stepping/step_bound.hpp"
@@ -158,7 +159,7 @@ Discretisation::Discretisation(const Model& model)
         const double time = material.viscous_time[term];
         viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
       }
-  contact = ContactStiffness(model, *this);
+  added = added_stiffness(model, *this);
   const MassScalingSettings& scaling = model.mass_scaling;
   VoxelProperties v;
   if (scaling.kind == MassScalingSettings::Kind::uniform && scaling.factor != 1)
@@ -234,8 +235,9 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   else if (selective_reduced)
     out.hourglass = 0;
   out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
-                                           h[0], h[1], h[2]) +
-                  contact.in_voxel(e);
+                                           h[0], h[1], h[2]);
+  for (const auto& stiffness : added)
+    out.stiffness += stiffness->in_voxel(e);
   if (viscous_terms > 0)
     mix_viscosity(model, e, out);
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "solver/stepping/nodal_loads.hpp"
-#include "solver/stepping/restricted_nodes.hpp"
+#include "solver/stepping/effect_parts.hpp"
 #include "solver/stepping/step_backend.hpp"
 
 #include <algorithm>
@@ -42,11 +41,8 @@ public:
   void set(NodalField field, const NodalVectors& in) override;
   void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
-  ContactEnergy contact_energy(bool open, NodalVectors& forces) override
-  {
-    return contact_.energy(pointers(u_).data(), conditions_.bone, open, forces);
-  }
-  std::vector<Reaction> reactions() const override { return contact_.reactions(); }
+  void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
   void skin(SkinState& out) override;
 
 protected:
@@ -64,15 +60,15 @@ protected:
   /// The same back; components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
 
+  /// The parts that have something to do.
+  std::vector<NodePart<Real>*> active_parts() const;
+
   Components u_, v_;
   RelaxedStresses<Relaxed> relaxed_;
-  RestrictedNodes<Real> restricted_;
-  NodalLoads loads_;
-  BodyContact contact_;
   std::unique_ptr<EnergyAccount<Real>> account_;  // if a ledger was asked for
 
 private:
-  std::array<EffectPart*, 4> parts() { return { { &relaxed_, &restricted_, &loads_, &contact_ } }; }
+  std::vector<std::unique_ptr<NodePart<Real>>> parts_;
 };
 
 }  // namespace frontalis

@@ -12,7 +12,7 @@ struct TimeStepper::MotionSnapshot : Snapshot
   const TimeStepper* owner;
   Motion motion;
   TimeStepController::State time_step;
-  EnergyLedger ledger;
+  EnergyLedger ledger = empty_ledger();
   EffectSet running;
   std::unique_ptr<BackendState> backend;
 
@@ -20,7 +20,10 @@ struct TimeStepper::MotionSnapshot : Snapshot
   {
     motion.archive(archive);
     time_step.archive(archive);
-    archive(ledger)(running);
+    archive(ledger.initial);
+    for (EnergyTerm& term : ledger.terms)
+      archive(term.value);
+    archive(ledger.largest)(running);
     backend->archive(archive);
   }
 };

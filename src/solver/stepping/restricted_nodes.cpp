@@ -164,9 +164,10 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 }
 
 template <class Real>
-void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
-                                  const Real* const before[3], const ConstraintStep& step)
+void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], Real* const v[3],
+                                      const Real* const before[3], const ConstraintStep& step)
 {
+  const std::int32_t first = share.first_node, last = share.end_node;
   const auto block_of = [&](std::int32_t node)
   {
     return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -

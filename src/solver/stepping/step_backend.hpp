@@ -1,7 +1,6 @@
 #pragma once
 
 #include "frontalis/byte_archive.hpp"
-#include "solver/contact/body_contact.hpp"
 #include "solver/energy/energy_account.hpp"
 #include "solver/stepping/array_list.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -82,8 +81,8 @@ public:
   virtual Monitor monitor() = 0;
   /// Work since the account was opened; `open`: opens it now. Only called where SolverSettings::ledger was asked for.
   virtual Work work(bool open) = 0;
-  /// Energies of contact since its account was opened, as BodyContact::energy() has them.
-  virtual ContactEnergy contact_energy(bool /*open*/, NodalVectors& /*forces*/) { return {}; }
+  /// See NodePart::add_energies.
+  virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
   virtual void skin(SkinState& out) = 0;
 

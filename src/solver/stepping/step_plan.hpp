@@ -48,7 +48,7 @@ struct StepPlan
   }
   ConstraintStep constraint_step(int step) const
   {
-    ConstraintStep now{ time + (step + 1) * dt, dt, {}, {} };
+    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {} };
     for (std::size_t b = 0; b < begin.bone.size(); ++b)
     {
       now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));

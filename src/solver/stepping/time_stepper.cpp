@@ -173,7 +173,8 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
     const auto forces_at = [this](const NodalVectors& at, NodalVectors& out)
     {
       backend_->internal_forces(&at, out);
-      discretisation_.contact.add_forces(*model_, at, out);
+      for (const auto& stiffness : discretisation_.added)
+        stiffness->add_forces(*model_, at, out);
     };
     return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
   };
