@@ -133,6 +133,14 @@ EffectPresence found(const Model& model, Effect effect)
       const std::size_t points = contact_points(model);
       return { points > 0, points > 0 ? counted(points, "point") + " of tissue" : "no body to touch", 0, points };
     }
+    case Effect::self_contact:
+    {
+      std::size_t points = 0;
+      for (const SelfContact& contact : model.self_contacts)
+        points += contact.surface.vertices.size();
+      return { points > 0, points > 0 ? counted(points, "point") + " of tissue" : "no surface touches another", 0,
+               points };
+    }
     case Effect::output_fields:
       return { !model.skin.vertices.empty(), model.skin.vertices.empty() ? "no skin" : "on request", 0, 0 };
   }
@@ -217,6 +225,9 @@ void remove(Model& model, Effect effect, EffectSet off)
       break;
     case Effect::contact:
       model.contacts.clear();
+      break;
+    case Effect::self_contact:
+      model.self_contacts.clear();
       break;
     case Effect::elasticity:
     case Effect::output_fields:

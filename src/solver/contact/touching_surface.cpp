@@ -159,6 +159,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
       Vertex v;
       v.voxel = from.binding.voxel[source];
       v.contact = contact;
+      v.source_in_contact = source;
       v.source = first_source + source;
       v.coordinates = from.binding.coordinates[source];
       v.area_share = static_cast<float>(area / std::max(areas[source], 1e-30));
@@ -230,6 +231,24 @@ void TouchingSurface::sort_vertices()
   for (Triangle& t : triangles)
     for (auto& v : t.vertex)
       v = rank[v];
+}
+
+std::vector<std::int32_t> TouchingSurface::voxels() const
+{
+  std::vector<std::int32_t> all;
+  for (const Vertex& vertex : vertices)
+    all.push_back(vertex.voxel);
+  return all;
+}
+
+void TouchingSurface::list_arrays(ArrayList& list, Effect effect) const
+{
+  if (vertices.empty())
+    return;
+  list.add(effect, "vertices", vertices);
+  list.add(effect, "triangles", triangles);
+  list.add(effect, "joined vertices", joined_begin_);
+  list.add(effect, "joined vertices", joined_);
 }
 
 bool TouchingSurface::inseparable(std::size_t v, std::int32_t t) const

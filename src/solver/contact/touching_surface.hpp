@@ -2,6 +2,7 @@
 
 #include "frontalis/model/model.hpp"
 #include "frontalis/physics/surface_foot.hpp"
+#include "solver/stepping/array_list.hpp"
 
 #include <array>
 #include <vector>
@@ -19,7 +20,8 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source;               // vertex of the model's surfaces that it is, counted over all contacts
+    std::int32_t source_in_contact;    // the vertex of the contact's surface that it is
+    std::int32_t source;               // the same, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
     float area_share;                  // of its source's area
     Vector rest;
@@ -59,6 +61,9 @@ public:
   /// Whether a vertex and a triangle never touch: they are joined along the surface by less than `joined_within`, or
   /// are two sides of one sheet of tissue.
   bool inseparable(std::size_t v, std::int32_t t) const;
+
+  std::vector<std::int32_t> voxels() const;  ///< of the vertices
+  void list_arrays(ArrayList& list, Effect effect) const;
 
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;

@@ -21,6 +21,7 @@ public:
   void list_arrays(ArrayList& list, Effect effect);
   /// Sorts points into cells of edge `reach` [m].
   void build(double reach, const std::vector<Vector>& points);
+  double reach() const { return edge_[0]; }
   /// Calls visit(index) for all points within the reach of p, and others; some twice.
   template <class Visit>
   void near(const Vector& p, const Visit& visit) const
@@ -39,7 +40,9 @@ public:
 private:
   std::array<std::int64_t, 3> cell(const Vector& p) const
   {
-    const auto index = [&](double x) { return static_cast<std::int64_t>(std::floor(x / edge_[0])); };
+    // what is not finite is anywhere
+    const auto index = [&](double x)
+    { return std::abs(x) < 1e9 * edge_[0] ? static_cast<std::int64_t>(std::floor(x / edge_[0])) : std::int64_t(0); };
     return { { index(p.x), index(p.y), index(p.z) } };
   }
   // primes of Teschner et al., Optimized spatial hashing for collision detection of deformable objects, VMV 2003

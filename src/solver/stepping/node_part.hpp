@@ -58,9 +58,12 @@ class NodePart : public EffectPart
 public:
   /// Whether there is nothing to do: then none of the functions is called.
   virtual bool idle() const = 0;
+  /// Whether it has something to do before before_step(). Threads wait for each other in between.
+  virtual bool prepares() const { return false; }
   /// Whether it has forces. Threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// From displacements at the start of the step.
+  /// Both from displacements at the start of the step.
+  virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
   /// Overwrites displacements and velocities after the update. `before`: displacements before it.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "bodies_touch.hpp"
+#include "tissue_contact_model.hpp"
+
+namespace frontalis
+{
+namespace test
+{
+
+class TissuesTouch : public BodiesTouch
+{
+};
+
+/// The nodes of the upper of two blocks have this displacement along z [m], the others none.
+inline Vectors lowered(const Model& model, double way)
+{
+  Vectors u(model.nodes.size());
+  for (std::size_t n = 0; n < u.size(); ++n)
+    u[n][2] = 2 * model.nodes[n][2] > model.size[2] ? way : 0;
+  return u;
+}
+
+}  // namespace test
+}  // namespace frontalis

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "block_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace frontalis
+{
+namespace test
+{
+
+/// Adds a piece of surface over part of a grid: `places` gives the position [m] of a point (x, y), `voxel` the one that
+/// moves it. Squares of the grid have a vertex in the middle, so that a uniform pressure gives each node its share. The
+/// surface faces along x cross y, or, if it is `turned`, the other way.
+inline void add_surface(const Model& model, SelfContact& contact, std::int32_t nx, std::int32_t ny, bool turned,
+                        const std::function<std::array<double, 3>(double, double)>& place,
+                        const std::function<std::array<std::int32_t, 3>(double, double)>& voxel)
+{
+  TriangleMesh& mesh = contact.surface;
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  const auto add = [&](double x, double y)
+  {
+    const auto p = place(x, y);
+    const auto at = voxel(x, y);
+    mesh.vertices.push_back(p);
+    const auto found = std::find(model.voxels.begin(), model.voxels.end(), at);
+    contact.binding.voxel.push_back(static_cast<std::int32_t>(found - model.voxels.begin()));
+    std::array<float, 3> coordinates{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      coordinates[axis] = static_cast<float>(p[axis] / model.spacing[axis] - at[axis]);
+    contact.binding.coordinates.push_back(coordinates);
+  };
+  for (int j = 0; j <= ny; ++j)
+    for (int i = 0; i <= nx; ++i)
+      add(i, j);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i)
+    {
+      const std::int32_t a = first + j * (nx + 1) + i, b = a + 1, c = a + nx + 1, d = c + 1;
+      const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
+      add(i + 0.5, j + 0.5);
+      for (const auto& edge :
+           { std::make_pair(a, b), std::make_pair(b, d), std::make_pair(d, c), std::make_pair(c, a) })
+        if (turned)
+          mesh.triangles.push_back({ { edge.second, edge.first, middle } });
+        else
+          mesh.triangles.push_back({ { edge.first, edge.second, middle } });
+    }
+}
+
+/// The upper or lower side of the voxels of layer k.
+inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper)
+{
+  const auto& h = model.spacing;
+  const std::int32_t nx = model.size[0], ny = model.size[1];
+  add_surface(
+      model, contact, nx, ny, !upper,
+      [&](double x, double y) { return std::array<double, 3>{ { x * h[0], y * h[1], (k + (upper ? 1 : 0)) * h[2] } }; },
+      [&](double x, double y)
+      {
+        return std::array<std::int32_t, 3>{ { std::min(static_cast<std::int32_t>(x), nx - 1),
+                                              std::min(static_cast<std::int32_t>(y), ny - 1), k } };
+      });
+}
+
+/// Two blocks, one voxel edge apart along z, whose facing sides touch. Each is `settings.voxels` large.
+inline Model two_blocks(BlockSettings settings, double friction = 0)
+{
+  const std::int32_t height = settings.voxels[2];
+  settings.voxels[2] = 2 * height + 1;
+  settings.keep = [height](std::int32_t, std::int32_t, std::int32_t k) { return k != height; };
+  Model model = block_model(settings);
+  SelfContact contact;
+  contact.name = "blocks";
+  contact.friction = friction;
+  add_side(model, contact, height - 1, true);
+  add_side(model, contact, height + 1, false);
+  model.self_contacts.push_back(contact);
+  return model;
+}
+
+}  // namespace test
+}  // namespace frontalis
