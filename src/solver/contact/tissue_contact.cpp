@@ -31,7 +31,7 @@ constexpr double renewal_share = 0.8;
 // height of the rim's triangle.
 constexpr double opposed = 0.25;
 constexpr double least_upright = 0.2, upright = 0.4;
-constexpr double rim = 0.05;
+constexpr double rim_begin = 0.1, rim_end = 0.3;
 
 // Friction forgets the normal force on a vertex that has left a surface when it is that of this depth [m].
 constexpr double forgotten_depth = 1e-9;
@@ -205,7 +205,7 @@ double TissueContact<Real>::stiffness(std::size_t p, std::int32_t t, const Foot&
   for (std::size_t i = 0; i < 3; ++i)
   {
     if (foot.weight[i] < 0 && triangle.neighbour[i] < 0)
-      share *= ramp(1 + foot.weight[i] / rim);
+      share *= ramp((foot.weight[i] + rim_end) / (rim_end - rim_begin));
     const double weight = std::max(foot.weight[i], 0.0);
     per_area += weight * double(per_area_[triangle.vertex[i]]);
     inside += weight;
