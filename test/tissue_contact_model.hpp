@@ -57,7 +57,9 @@ inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, b
   const std::int32_t nx = model.size[0], ny = model.size[1];
   add_surface(
       model, contact, nx, ny, !upper,
-      [&](double x, double y) { return std::array<double, 3>{ { x * h[0], y * h[1], (k + (upper ? 1 : 0)) * h[2] } }; },
+      [&](double x, double y) {
+        return std::array<double, 3>{ { x * h[0], y * h[1], (k + (upper ? 1 : 0)) * h[2] } };
+      },
       [&](double x, double y)
       {
         return std::array<std::int32_t, 3>{ { std::min(static_cast<std::int32_t>(x), nx - 1),

@@ -1,6 +1,7 @@
 #include "cli/run_output.hpp"
 
 #include "cli/reactions.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
@@ -170,8 +171,8 @@ std::string json_of(const Model& model, const RunSummary& summary)
     for (const auto& [name, joules] : energies_of(*summary.ledger))
       add({ { fmt::format("ledger_{}_J", name), joules } });
   for (std::size_t c = 0; c < summary.reactions.size(); ++c)
-    json["reactions"][model.contacts[c].name] = { { "force_N", summary.reactions[c].force },
-                                                  { "moment_Nm", summary.reactions[c].moment } };
+    json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.reactions[c].force },
+                                                         { "moment_Nm", summary.reactions[c].moment } };
   if (const auto& guard = summary.guard)
     add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
   if (const auto& found = summary.equilibrium)
@@ -217,7 +218,7 @@ void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reac
 void FrameFolder::finish(const std::string& summary)
 {
   write_text(path_ + "/landmarks.csv", table_);
-  if (!model_.contacts.empty())
+  if (!touched_bodies(model_).empty())
     write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
   write_text(path_ + "/run.json", summary);
 }

@@ -1,4 +1,5 @@
-// Each scene of test/scene/bad has one fault, described in its first line. Reading must find that fault and no other.
+// Each scene of test/scene/bad has one fault, and its first line has the expected message. Reading must report that
+// fault and no other.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/read_scene.hpp"

@@ -87,7 +87,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   return model;
 }
 
-// Presses the finger in by 0.8 mm and draws it along x by 2 mm while it turns.
+// Presses the finger in by 0.8 mm and moves it along x by 2 mm while it turns.
 inline void press_and_stroke(Solver& solver, double seconds)
 {
   Controls controls = solver.controls();

@@ -1,4 +1,4 @@
-// Tissue that touches rigid bodies: the forces.
+// Tissue that touches rigid bodies: forces and motion.
 
 #include "bodies_touch.hpp"
 
@@ -49,7 +49,7 @@ TEST_P(BodiesTouch, a_plate_presses_evenly_and_hardly_goes_in)
       }
     EXPECT_LT(most, 0.02e-3);
     EXPECT_LT(most - least, 0.05 * most);
-    // pressure and penetration belong together
+    // pressure and penetration satisfy the contact law
     EXPECT_NEAR(0.5 * (most + least) * 3.5 * settings.young / 1e-3, pressure, 0.03 * pressure);
   }
 }
@@ -83,7 +83,7 @@ TEST_P(BodiesTouch, an_impact_keeps_the_energy)
   EXPECT_GT(least, 0.98 * initial);
   EXPECT_LT(most, 1.02 * initial);
   EXPECT_EQ(solver->reactions()[0].force[2], 0);
-  EXPECT_GT(mean(displacements(*solver), 2), 0.05e-3);  // it has bounced
+  EXPECT_GT(mean(displacements(*solver), 2), 0.05e-3);  // the block has bounced off
 }
 
 // The reaction is the opposite of the rate of change of momentum, its moment that of angular momentum. The plate is
@@ -139,7 +139,7 @@ TEST_P(BodiesTouch, what_a_body_gets_the_tissue_loses)
 
 TEST_P(BodiesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_it)
 {
-  // the angle of friction is 26.6 degrees; gravity begins at once, and the block bounces until it has settled
+  // the angle of friction is 26.6 degrees; gravity starts suddenly, and the block bounces until it has settled
   const double friction = 0.5, damping = 50, gravity = 9.81, settling = 0.15, time = 0.05;
   const auto on_incline = [&](double degrees)
   {
@@ -163,7 +163,8 @@ TEST_P(BodiesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_
   EXPECT_LT(std::abs(way(*on_incline(22))), 1e-6);
   for (const double degrees : { 35.0, 60.0 })
   {
-    // with damping c and acceleration a, a way w in a time t is followed by q w + a t (1 - q) / c, q = exp(-c t)
+    // damping c, acceleration a: if the block moves by w in a time t, it moves by q w + a t (1 - q) / c in the next t,
+    // with q = exp(-c t)
     const auto solver = on_incline(degrees);
     const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
     const double acceleration = damping * (second - q * first) / (time * (1 - q));
@@ -202,8 +203,7 @@ TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
   }
 }
 
-// Points that are far from a body are not looked at. A body that comes from far at a high speed must be met
-// nonetheless.
+// The solver skips points that are far from a body, but must notice a body that approaches at a high speed.
 TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
 {
   const auto near = make(block_and_finger(0)), far = make(block_and_finger(0));
@@ -226,7 +226,7 @@ TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
   EXPECT_NEAR(far->reactions()[0].force[2], expected, 1e-3 * expected);
 }
 
-// An edge of a box that jumps into the tissue by a voxel leaves it as it was.
+// The edge of a wedge jumps into the tissue by a voxel and out again, after which the tissue returns to its shape.
 TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
 {
   Model model = block_and_finger(0.3);

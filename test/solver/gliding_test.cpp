@@ -33,7 +33,7 @@ double from(const std::array<double, 3>& centre, const std::array<double, 3>& p)
   return std::hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]);
 }
 
-// A closed shell around a ball that is a bone, whose field is sampled or in closed form.
+// A closed shell around a ball that is a bone. The ball's field is sampled or in closed form.
 Model shell(const std::array<double, 3>& centre, double friction, bool sampled = false)
 {
   test::BlockSettings s;
@@ -75,7 +75,7 @@ double spin(const Model& model, const Vectors& u, const std::array<double, 3>& c
   return angle / weight;
 }
 
-// A block on an inclined plane, in the frame of the plane.
+// A block on an inclined plane; local axes are those of the plane.
 Model block_on_plane(double degrees, double friction)
 {
   test::BlockSettings s;
@@ -144,7 +144,7 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
       }
     }
     EXPECT_LT(worst, 5e-6);
-    // the body is carried along as a whole
+    // the whole body follows the shift
     EXPECT_NEAR(mean_x(u), shift[0], 0.05e-3 + (friction > 0 ? 0.1e-3 : 0));
     if (friction > 0)
       EXPECT_GT(spin(model, u, centre, shift), 0.5 * std::sin(angle));
@@ -207,8 +207,8 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   }
 }
 
-// Moving nodes back to a surface must add no energy, neither on a plane nor on a curved surface, where the tangent
-// plane has an error before a new one is found.
+// Moving nodes back to a surface must not add energy: on a plane, and on a curved surface, where the tangent plane has
+// an error until it is replaced.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
@@ -244,8 +244,8 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 }
 
 // A shell that spins on a ball. Its nodes change planes, and turning their velocities is part of the reaction. `parts`:
-// a third of the ball is rough, a third is smooth, and a third is a rough ball that is a bone; otherwise all of it is
-// equally rough.
+// the nodes are on three equal balls, a rough one, a smooth one, and a rough one that is a bone; otherwise all are on
+// one rough ball.
 class SpinningShell : public Gliding
 {
 protected:
@@ -330,7 +330,7 @@ TEST_P(SpinningShell, GoesOnInAnotherSolverThatHasTheSameFriction)
   EXPECT_THROW(other->unpack(spinning(model_of(true, 0), GetParam())->pack()), Error);
 }
 
-// Nodes that leave the samples of a field keep their plane, are counted, and stop the motion when they are far.
+// Nodes that leave the samples of a field keep their plane and are counted; when they are far away, the motion stops.
 TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
 {
   for (const bool follows_a_bone : { false, true })

@@ -41,7 +41,7 @@ protected:
   {
     return make_solver(std::make_shared<const Model>(model), { GetParam(), 0, 0, true });
   }
-  // Plays slices of a motion and checks the balance after each.
+  // Plays a motion in slices and checks the balance after each.
   static EnergyLedger play(Solver& solver, const Controls& target, double seconds, int slices)
   {
     EnergyLedger ledger;
@@ -85,7 +85,7 @@ TEST_P(Ledger, closes_for_a_muscle_that_shortens_and_lets_go)
   EXPECT_LT(back["internal"], 0.2 * pulled["internal"]);
 }
 
-// The motion after such a start is as fast as the mesh can carry; the time step is small enough to resolve it.
+// A random distortion excites the highest frequencies of the mesh; the time step is small enough to resolve them.
 TEST_P(Ledger, closes_after_a_random_distortion)
 {
   Model model = bar(20);
@@ -134,7 +134,8 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   EXPECT_GT(ledger["load"], 0);
 }
 
-// Velocities are half a step behind displacements: the first step of another length takes half of both lengths.
+// Velocities are half a step behind displacements: when the step changes, the next one changes them over half of both
+// lengths.
 TEST_P(Ledger, closes_where_the_time_step_changes)
 {
   Model model = bar(0);
@@ -157,7 +158,8 @@ TEST_P(Ledger, is_refused_where_it_was_not_asked_for)
 
 FRONTALIS_EVERY_BACKEND(Ledger);
 
-// The account changes no bit of the motion, and the number of threads changes no bit of the account.
+// The motion is bitwise the same with a ledger and without, and the ledger is bitwise the same on any number of
+// threads.
 TEST(LedgerOnCpu, leaves_the_motion_alone_and_does_not_depend_on_threads)
 {
   Model model = bar(20);

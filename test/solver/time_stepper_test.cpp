@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-/// Records the requests to a scripted backend and holds its answers.
+/// Requests to a scripted backend, and the answers it gives.
 struct Script
 {
   std::vector<StepPlan> plans;
@@ -29,7 +29,7 @@ struct ScriptState : BackendState
   void archive(ByteArchive& archive) override { archive(plans); }
 };
 
-/// Moves nothing and records what it is asked to do.
+/// A backend that moves nothing and records its calls.
 class ScriptedBackend : public StepBackend
 {
 public:
@@ -231,7 +231,7 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   EXPECT_THROW(Stepped().solver.ledger(), Error);
 
   s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
-  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; lost to friction, damping, viscosity
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // done by muscles, loads, constraints; lost to friction, damping, viscosity
   const EnergyLedger now = s.solver.ledger();
   // velocities are half a step behind displacements, and gravity changes them within the step
   const double mass = 1000 * 64e-9;

@@ -50,7 +50,8 @@ TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
       strain += lower / (4e-3 * side);
     }
     for (std::size_t n = 0; n < side; ++n)
-      std::printf("%s%.2f(%.2f,%.2f)", n % 6 == 0 ? "\n" : " ", (u[4 * side + n][2] - u[5 * side + n][2] - 1e-3)*1e6, (u[5*side+n][0]-u[4*side+n][0])*1e6,(u[5*side+n][1]-u[4*side+n][1])*1e6);
+      std::printf("%s%.2f(%.2f,%.2f)", n % 6 == 0 ? "\n" : " ", (u[4 * side + n][2] - u[5 * side + n][2] - 1e-3) * 1e6,
+                  (u[5 * side + n][0] - u[4 * side + n][0]) * 1e6, (u[5 * side + n][1] - u[4 * side + n][1]) * 1e6);
     std::printf("strain %g overlap %g .. %g mm\n", strain, least * 1e3, most * 1e3);
     EXPECT_NEAR(strain, -0.05, 0.005);
     EXPECT_LT(most, 0.02e-3);

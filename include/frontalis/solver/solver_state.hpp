@@ -34,9 +34,9 @@ struct Monitor
   std::int64_t inverted = 0;         ///< voxels with J <= 0
   double critical_time_step = 0;     ///< present value, bounded at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
-  double step_share = 0;             ///< latest time step over the present critical step, by the model's estimate
+  double step_share = 0;             ///< latest time step over the present critical one (model's TimeStepEstimate)
   std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
-  std::int32_t lost_node = -1;       ///< one that is more than 2 mm past it
+  std::int32_t lost_node = -1;       ///< a node that is more than 2 mm past the rim; -1: none
   bool finite = true;
 };
 

@@ -20,9 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision, in the
-/// frame of the bone. Their planes are found anew in each step, because friction follows the reaction of the surface,
-/// which jumps where a plane that was kept for several steps is replaced.
+/// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
+/// precision, in the frame of the bone. Their planes are found anew in each step, because friction follows the reaction
+/// of the surface, which jumps where a plane that was kept for several steps is replaced.
 template <class Real>
 class GlidingNodes
 {

@@ -87,7 +87,7 @@ Work CpuSolver<Real>::work(bool open)
 {
   if (open)
     account_->open();
-  // Fibres store their work in the latest step. When the account is opened they store only stress and stretch.
+  // In the latest step, fibres store their work. When the account is opened, they store only stress and stretch.
   Arguments g = arguments(0, conditions_.activation.data());
   if (open)
     g.muscle_work = nullptr;

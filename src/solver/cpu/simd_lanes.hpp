@@ -6,7 +6,7 @@ namespace frontalis
 {
 
 /// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip` lanes
-/// that lie apart in memory.
+/// that are not contiguous in memory.
 template <class Architecture, class Real, int Strip>
 struct SimdLanes
 {
@@ -46,7 +46,7 @@ struct SimdLanes
     }
   }
 
-  /// Loads the lanes of one strip, or of two.
+  /// Loads a batch from one strip, or from two.
   static FRONTALIS_LAW Batch load(const Real* first, [[maybe_unused]] const Real* second)
   {
 #if defined(__AVX512F__)

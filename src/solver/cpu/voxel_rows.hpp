@@ -79,7 +79,7 @@ struct VoxelRows
   VoxelRows(const Model& model, const Discretisation& discretisation);
   /// Computes the stiffness bounds again after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
-  /// `of_fibres`: the effect to which fibres are attributed.
+  /// Lists the arrays; those of fibres are attributed to the effect `of_fibres`.
   void list_arrays(Effect of_fibres, ArrayList& list) const;
 
   std::int32_t planes = 0;  ///< number of node planes

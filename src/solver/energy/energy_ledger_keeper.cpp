@@ -115,8 +115,9 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends half a step before the displacements, at the time of the velocities. The work since then is that of
-// the present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
+// The account ends at the time of the velocities, half a step before the displacements. The work of the remaining half
+// step is that of the present forces. Nodes that do not follow the forces keep their velocity: constraints do the work
+// for that.
 void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
 {
   NodalVectors u, v, internal;
@@ -141,7 +142,7 @@ void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
       kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       gravity += weight * pull * u[n][axis];
-      // without the correction for mass scaling
+      // surface loads alone, without the correction for mass scaling
       const double force = external[n][axis] - weight * pull + mass * conditions_.gravity[axis];
       load += 0.5 * dt * force * v[n][axis];
       constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;

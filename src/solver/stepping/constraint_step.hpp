@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// The time of one step, and the poses of bones that restricted nodes follow in it.
+/// Time and bone poses of one step.
 struct ConstraintStep
 {
   double time = 0;  ///< at the end of the step [s]

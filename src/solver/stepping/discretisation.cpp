@@ -51,7 +51,7 @@ physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, co
   return parameters;
 }
 
-// Adds a material to the part of its law.
+// Adds a material to the voxel's part with its law.
 void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
@@ -89,8 +89,8 @@ double shear_at_rest(const Material& material)
                                           : law_stiffness(material.law, material.parameters.data(), at_rest());
 }
 
-// Rigid nodes, and nodes whose displacement is prescribed in every direction. Empty if this includes all nodes, so that
-// a model that cannot move has a time step too.
+// Rigid nodes, and nodes with a prescribed displacement in every direction. Empty if these are all nodes, so that a
+// model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
   std::vector<int> directions(model.nodes.size(), 0);

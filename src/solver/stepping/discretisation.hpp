@@ -41,8 +41,8 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
-/// What every backend needs of a model, in double precision. The properties of a voxel are computed on request and not
-/// stored, because each backend keeps its own form of them.
+/// The properties of a model that every backend needs, in double precision. The properties of a voxel are computed on
+/// request and not stored, because each backend stores them in its own form.
 class Discretisation
 {
 public:
@@ -50,7 +50,7 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// Includes the fibre effects of this set in the stiffness bounds. Masses do not change.
+  /// Includes the running fibre effects in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
   void list_arrays(ArrayList& list) const;
   /// The added stiffness of this class; null if the model has none.
@@ -75,7 +75,7 @@ public:
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
-  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< part of the bounds, whether it acts now or not
+  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< in the bounds, whether it acts now or not
   double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

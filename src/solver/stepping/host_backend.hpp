@@ -8,14 +8,14 @@
 namespace frontalis
 {
 
-/// Stresses that viscous voxels have relaxed, in the order of a backend.
+/// Relaxed part of the stresses of viscous voxels, in the order of a backend.
 template <class T>
 class RelaxedStresses : public EffectPart
 {
 public:
   std::vector<T> values;
 
-  bool relax() const { return runs_ && !values.empty(); }  ///< whether there is anything to relax
+  bool relax() const { return runs_ && !values.empty(); }  ///< whether a stress is to be relaxed
   void list_arrays(ArrayList& list) override { list.add_state(Effect::viscosity, "relaxed stresses", values); }
   void run(EffectSet running) override
   {
@@ -29,8 +29,8 @@ private:
   bool runs_ = true;
 };
 
-/// What the backends in host memory share: nodal motion, loads, constraints, the account of energies and snapshots.
-/// Real is the number type of the motion, Relaxed that of RelaxedStresses.
+/// Base of the backends in host memory: nodal motion, loads, constraints, the account of energies and snapshots. Real
+/// is the number type of the motion, Relaxed that of RelaxedStresses.
 template <class Real, class Relaxed>
 class HostBackend : public StepBackend
 {
@@ -57,7 +57,7 @@ protected:
     return { { c[0].data(), c[1].data(), c[2].data() } };
   }
   void interleave(const Components& in, NodalVectors& out) const;
-  /// The same back; components may have more entries.
+  /// Inverse of interleave(); components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
 
   /// The parts that have something to do.
@@ -65,7 +65,7 @@ protected:
 
   Components u_, v_;
   RelaxedStresses<Relaxed> relaxed_;
-  std::unique_ptr<EnergyAccount<Real>> account_;  // if a ledger was asked for
+  std::unique_ptr<EnergyAccount<Real>> account_;  // null without a ledger
 
 private:
   std::vector<std::unique_ptr<NodePart<Real>>> parts_;

@@ -55,7 +55,7 @@ void TimeStepper::restore(const Snapshot& snapshot)
     ledger_->restore(saved->ledger);
   backend_->restore(*saved->backend);
   renew_conditions();
-  // effects stay as they are now
+  // the running effects are not restored: adapt the restored state to them
   std::vector<Effect> switched;
   for (const Effect effect : every_effect())
     if (saved->running.has(effect) != effects_.running().has(effect))
@@ -64,7 +64,7 @@ void TimeStepper::restore(const Snapshot& snapshot)
     effects_switched(switched);
 }
 
-// A motion as bytes begins with what it is a motion of.
+// The bytes begin with an identification of the model and the settings, which unpack() checks.
 std::string TimeStepper::pack()
 {
   std::unique_ptr<Snapshot> snapshot;

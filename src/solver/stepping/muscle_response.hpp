@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// First-order response of muscles to the requested activations, which change linearly over `seconds`: da/dt = (asked -
+/// First-order response of muscles to the commanded activations, which change linearly over `seconds`: da/dt = (asked -
 /// a) / time, with the muscle's rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), limited by the model's
 /// slew rate.
 inline void respond(const Model& model, const std::vector<float>& asked_from, const std::vector<float>& asked_to,

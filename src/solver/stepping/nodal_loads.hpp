@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Nodes with selectively scaled mass, on which gravity is too large.
+/// Nodes with selectively scaled mass, whose weight would be too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// Force that corrects gravity on such a node [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
@@ -41,7 +41,7 @@ public:
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
   const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one per loaded node
 
-  /// The same without the correction of gravity.
+  /// The forces without the correction of gravity.
   const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
   /// Computes the forces at a time from the present nodal displacements.

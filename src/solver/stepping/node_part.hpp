@@ -87,7 +87,7 @@ public:
                             std::vector<std::array<double, 3>>& /*forces*/, EnergyLedger& /*ledger*/)
   {
   }
-  /// One per entry of bodies_of(model) that is the effect's, in the latest step.
+  /// One per entry of touched_bodies(model) that is the effect's, in the latest step.
   virtual std::vector<Reaction> reactions() const { return {}; }
 };
 

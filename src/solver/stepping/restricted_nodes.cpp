@@ -48,12 +48,13 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
   sort_by_node(sliding);
-  const auto plain = std::stable_partition(sliding.begin(), sliding.end(),
-                                           [&](const SlidingNode& node)
-                                           {
-                                             const auto& surface = model.constraint_surfaces[node.surface];
-                                             return surface.bone >= 0 || surface.friction > 0;
-                                           });
+  // A plane that was kept for several steps jolts the tissue when it is replaced. Where any surface is rough, no node
+  // keeps planes: friction follows the jolts even of nodes that have none, and would take several percent too much.
+  const auto& surfaces = model.constraint_surfaces;
+  const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
+  const auto plain =
+      std::stable_partition(sliding.begin(), sliding.end(),
+                            [&](const SlidingNode& node) { return rough || surfaces[node.surface].bone >= 0; });
   for (auto node = sliding.begin(); node != plain; ++node)
   {
     const auto& surface = model.constraint_surfaces[node->surface];
@@ -67,7 +68,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// A block starts at the first sliding node that is in no block yet, or earlier to stay within the node plane.
+// Collects sliding nodes in blocks. A block starts at the first sliding node that is in no block yet, or earlier so
+// that it ends within the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -140,7 +142,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   const auto index = nodes.block_sliding_[block][lane];
-  // a node that does not slide gets here if its displacement is NaN
+  // the kernel calls this also for a node that does not slide, if its displacement is NaN
   if (index < 0)
     return;
   const Sliding& s = nodes.sliding_[index];

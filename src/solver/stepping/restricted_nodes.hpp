@@ -20,8 +20,8 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    typename GlidingNodes<Real>::States gliding;  ///< of those whose surface moves with a bone or has friction
-    std::vector<Block> blocks;                    ///< of the others
+    typename GlidingNodes<Real>::States gliding;  ///< of nodes whose surface moves with a bone or has friction
+    std::vector<Block> blocks;                    ///< of the other nodes
   };
 
   /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.

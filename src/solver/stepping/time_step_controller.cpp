@@ -17,7 +17,7 @@ namespace
 constexpr double cautious_share = 0.55;  // of the critical step, instead of the safety share
 constexpr int cautious_plan = 8;         // steps
 constexpr int vibration_plan = 32;       // steps at most
-// signs of fast change, and for how many steps they call for caution
+// signs of fast change, and the number of steps of caution after each
 constexpr double growth_allowed = 1.1;  // of the frequency squared from one plan to the next
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // of a muscle within a plan
@@ -27,7 +27,7 @@ constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
 constexpr double stiffening_ratio = 4;     // of the frequency squared against rest
 constexpr double vibration_change = 0.05;  // of the frequency squared from one plan to the next
 constexpr int steps_after_vibration = 256;
-// Softening is followed slowly: tissue may stiffen again before the next plan, and each change of the step costs
+// The bound follows softening slowly: tissue may stiffen again before the next plan, and each change of the step costs
 // accuracy.
 constexpr double slowest_softening = 0.95;  // of the frequency squared from one plan to the next
 
@@ -82,7 +82,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     most_steps = cautious_plan;
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
-  // a rounding error must not cost a step
+  // without the tolerance, a rounding error could add a step
   const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
   return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
            cautious, cautious || vibrates };
