@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <map>
 
 namespace frontalis
 {
@@ -50,25 +51,29 @@ inline void add_surface(const Model& model, SelfContact& contact, std::int32_t n
     }
 }
 
-/// The upper or lower side of the voxels of layer k.
-inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper)
+/// The upper or lower side of the voxels of layer k from column `begin` to `end`, moved outwards by `beyond` voxel
+/// edges.
+inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper, double beyond = 0,
+                     std::int32_t begin = 0, std::int32_t end = -1)
 {
   const auto& h = model.spacing;
-  const std::int32_t nx = model.size[0], ny = model.size[1];
+  const std::int32_t last = end < 0 ? model.size[0] : end, ny = model.size[1];
+  const double z = upper ? k + 1 + beyond : k - beyond;
   add_surface(
-      model, contact, nx, ny, !upper,
+      model, contact, last - begin, ny, !upper,
       [&](double x, double y) {
-        return std::array<double, 3>{ { x * h[0], y * h[1], (k + (upper ? 1 : 0)) * h[2] } };
+        return std::array<double, 3>{ { (begin + x) * h[0], y * h[1], z * h[2] } };
       },
       [&](double x, double y)
       {
-        return std::array<std::int32_t, 3>{ { std::min(static_cast<std::int32_t>(x), nx - 1),
+        return std::array<std::int32_t, 3>{ { std::min(begin + static_cast<std::int32_t>(x), last - 1),
                                               std::min(static_cast<std::int32_t>(y), ny - 1), k } };
       });
 }
 
-/// Two blocks, one voxel edge apart along z, whose facing sides touch. Each is `settings.voxels` large.
-inline Model two_blocks(BlockSettings settings, double friction = 0)
+/// Two blocks, one voxel edge apart along z, whose facing sides touch. Each is `settings.voxels` large. `beyond`: how
+/// far the surfaces are outside of the voxels, in voxel edges.
+inline Model two_blocks(BlockSettings settings, double friction = 0, double beyond = 0)
 {
   const std::int32_t height = settings.voxels[2];
   settings.voxels[2] = 2 * height + 1;
@@ -77,8 +82,61 @@ inline Model two_blocks(BlockSettings settings, double friction = 0)
   SelfContact contact;
   contact.name = "blocks";
   contact.friction = friction;
-  add_side(model, contact, height - 1, true);
-  add_side(model, contact, height + 1, false);
+  add_side(model, contact, height - 1, true, beyond);
+  add_side(model, contact, height + 1, false, beyond);
+  model.self_contacts.push_back(contact);
+  return model;
+}
+
+/// Makes one surface of pieces that join: vertices at the same place become one.
+inline void join(SelfContact& contact)
+{
+  std::map<std::array<double, 3>, std::int32_t> first;
+  SelfContact joined{ contact.name, contact.friction, {}, {} };
+  for (const auto& triangle : contact.surface.triangles)
+  {
+    auto& corners = joined.surface.triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const auto v = triangle[i];
+      const auto [found, fresh] =
+          first.emplace(contact.surface.vertices[v], static_cast<std::int32_t>(joined.surface.vertices.size()));
+      corners[i] = found->second;
+      if (!fresh)
+        continue;
+      joined.surface.vertices.push_back(contact.surface.vertices[v]);
+      joined.binding.voxel.push_back(contact.binding.voxel[v]);
+      joined.binding.coordinates.push_back(contact.binding.coordinates[v]);
+    }
+  }
+  contact = joined;
+}
+
+/// A sheet of one voxel along x, folded over a slit one voxel wide: two arms, joined at the end of x. All its sides
+/// along z touch, and the end of the slit.
+inline Model folded_sheet(BlockSettings settings, std::int32_t slit, double friction = 0)
+{
+  settings.voxels[2] = 3;
+  settings.keep = [slit](std::int32_t i, std::int32_t, std::int32_t k) { return k != 1 || i >= slit; };
+  Model model = block_model(settings);
+  SelfContact contact;
+  contact.name = "fold";
+  contact.friction = friction;
+  add_side(model, contact, 0, false);
+  add_side(model, contact, 0, true, 0, 0, slit);
+  add_side(model, contact, 2, false, 0, 0, slit);
+  add_side(model, contact, 2, true);
+  const auto& h = model.spacing;
+  add_surface(
+      model, contact, settings.voxels[1], 1, true,
+      [&](double y, double z) {
+        return std::array<double, 3>{ { slit * h[0], y * h[1], (1 + z) * h[2] } };
+      },
+      [&](double y, double) {
+        return std::array<std::int32_t, 3>{ { slit, std::min(static_cast<std::int32_t>(y), settings.voxels[1] - 1),
+                                              1 } };
+      });
+  join(contact);
   model.self_contacts.push_back(contact);
   return model;
 }

@@ -55,10 +55,13 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
   const std::vector<double> asked = rows(model, true);
   for (Surface& surface : surfaces_)
     for (std::size_t p = 0; p < surface.points.size(); ++p)
+    {
+      double share = 1;
       for (const auto node : model.voxel_nodes[surface.binding->voxel[p]])
         if (asked[node] > stiffest_node * of_flat_side[node])
-          surface.points[p] = std::min(surface.points[p], static_cast<float>(surface.points[p] * stiffest_node *
-                                                                             of_flat_side[node] / asked[node]));
+          share = std::min(share, stiffest_node * of_flat_side[node] / asked[node]);
+      surface.points[p] = static_cast<float>(share * double(surface.points[p]));
+    }
   // What contact adds to a node is shared by its voxels in proportion to their own bounds.
   const std::vector<double> added = rows(model, false);
   for (std::size_t e = 0; e < voxels_.size(); ++e)
