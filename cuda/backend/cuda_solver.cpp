@@ -202,7 +202,7 @@ void CudaSolver::skin(SkinState& out)
 }
 
 // Plans of 0.5 ms are long enough to hide the host's work between them, and short enough for the time step to follow
-// tissue that stiffens. Checks, and looks at all displacements, wait for the device and are therefore rare.
+// tissue that stiffens. The guard's checks and dynamic relaxation wait for the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};

@@ -163,8 +163,7 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // Wait for the bound of the previous plan only, so that the device always has work; if the motion changes fast, for
-  // this plan's.
+  // The host waits for the previous plan, so that the device always has work, or for this one if motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);

@@ -7,8 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off keeps its arrays but changes their entries: strips are marked as having no fibres, nodes as
-// having no tasks, and so on.
+// Switching an effect off keeps its arrays: entries then say that strips have no fibres, nodes have no tasks, and so
+// on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -105,8 +105,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the kernel with the fewest effects that computes the running ones, and that handles the strips' number of
-// rows.
+// Chooses the kernel with the fewest effects that computes the running ones, for the strips' number of rows.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -26,7 +26,7 @@ public:
   void list_arrays(ArrayList& list) override;
   /// While viscosity is switched off, nothing is read or updated.
   void run(EffectSet running) override;
-  /// Switches viscosity; while it is off, nothing is read or updated.
+  /// Sets the arguments that steps need.
   void describe(StepArguments& g) const;
   /// Called once the palette entries of voxels are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);

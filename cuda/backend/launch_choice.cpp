@@ -66,8 +66,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
   cut.patch_bytes = bytes_for_patches();
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
-  // All strips should run at the same time, with 10 % to spare: even a few strips that start later would double the
-  // time.
+  // All strips should run at the same time, with 10 % to spare: a few that start later would double the time.
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;

@@ -1,5 +1,4 @@
-// Kernel time of the CUDA backend on models made in code, compared with a bare element loop (yardstick.hpp) that is
-// measured in the same run.
+// Kernel time of the CUDA backend on models made in code, compared with a bare element loop measured in the same run.
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -102,8 +101,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const double built = wall_seconds() - start;
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no node enters another cell of its field, so that the motion's additional time is the cost of entering
-  // cells
+  // at rest no node enters another cell of its field: the motion's additional time is the cost of entering cells
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();

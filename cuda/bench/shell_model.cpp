@@ -17,7 +17,7 @@ using Point = physics::Vec3<double>;
 constexpr double axes[3] = { 130e-3, 78e-3, 92e-3 };
 constexpr double height = 48e-3;                          // extends from -height to height
 constexpr double half_width = 66e-3;                      // lateral
-constexpr double sheet_from = 3.0e-3, sheet_to = 4.2e-3;  // depth of the muscles
+constexpr double sheet_from = 3.0e-3, sheet_to = 4.2e-3;  // depth of the muscles' sheet
 
 double thickness(double up) { return 5.5e-3 + 1.2e-3 * std::exp(-std::pow((up + height) / 20e-3, 2)); }
 

@@ -5,10 +5,9 @@
 namespace frontalis
 {
 
-/// A curved shell like a forehead, made in code for benchmarks and tests that have no meshes: part of an ellipsoid with
+/// A curved shell like a forehead, made in code for benchmarks and tests without meshes: part of an ellipsoid with
 /// layers (dermis, hypodermis), four overlapping muscles in a sheet below them with a tendon above. Nodes are rigid
-/// near its rim and slide on the bone elsewhere; skin and landmarks are bound to it. Local x is up, y is lateral, z
-/// points out of the face.
+/// near its rim and slide on the bone elsewhere; skin and landmarks are bound. Local x is up, y lateral, z outwards.
 struct ShellSettings
 {
   double voxel = 1e-3;              ///< edge [m]

@@ -63,8 +63,8 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
-// Adds voxels' stiffness to the nodes at one of their corners. A node is this corner of at most one voxel, so the order
-// of the sum is fixed.
+// Adds voxels' stiffness to nodes at one corner. A node is this corner of at most one voxel, which fixes the sum's
+// order.
 __global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)

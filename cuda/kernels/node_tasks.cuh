@@ -61,8 +61,8 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// One function per NodeEffect. Calls through a table keep the functions' registers out of the kernels. `With`: effects
-/// of nodes.
+/// One function per NodeEffect, called through a table to keep their registers out of the kernels. `With`: effects of
+/// nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
@@ -85,8 +85,7 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Applies a task after the update of its node has been written. Not inlined, so that it takes no registers from the
-/// sweep through a strip.
+/// Applies a task after its node's update was written. Not inlined, which saves registers in the sweep through a strip.
 template <Effects With>
 static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
                                              int step)
@@ -129,8 +128,7 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // load without a branch on the node's flags, so that no instruction waits for them; nodes of other strips are read
-  // too
+  // load without a branch, so that no instruction waits for the node's flags; nodes of other strips are read too
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }

@@ -147,7 +147,7 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
   }
 }
 
-/// Bits of the bound of the squared highest frequency at a node; `voxels` as in sum_forces().
+/// Bits of the bound of the squared highest frequency at a node.
 __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
                                                       std::uint32_t node, float inverse_mass)
 {
@@ -160,8 +160,7 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Updates a node. `own`: its number in the block. `last`: this is the launch's last step, so everything is written to
-/// global memory.
+/// Updates a node. `own`: its number in the block. `last`: in the last step, which writes all to global memory.
 template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,

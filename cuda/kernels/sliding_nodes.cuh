@@ -26,8 +26,7 @@ struct NodeStep
   int step;
 };
 
-/// Data of a sliding node, read before the step. Its samples are read later, when they are needed, because they would
-/// take too many registers.
+/// Data of a sliding node, read before the step. Its samples would take too many registers and are read when needed.
 struct SlidingFetch
 {
   float4 at, plane;
@@ -121,8 +120,7 @@ __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t in
   return true;
 }
 
-/// The plane on which a node at displacement `u` slides in this step; that of the latest step if no samples are stored
-/// there.
+/// The plane on which a node at displacement `u` slides in this step; without samples there, that of the latest step.
 __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArguments& g, std::int32_t index,
                                                                const SlidingFetch& fetch, const physics::Vec3<float>& u)
 {

@@ -9,8 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-// One warp per strip. Look: whether stiffness bounds are computed; kernels without them are separate, because they take
-// registers. Set is an int, because nvcc cannot name a combination of enumerators.
+// One warp per strip. Look: whether stiffness bounds are computed, which takes registers and so has kernels of its own.
+// Set is an int, because nvcc cannot name a combination of enumerators.
 template <int Rows, bool Look, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)

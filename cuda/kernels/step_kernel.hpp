@@ -16,11 +16,11 @@ namespace frontalis
 /// Effects on nodes other than the forces of their voxels, in the order in which they are applied.
 enum NodeEffect : std::uint8_t
 {
-  node_load,        ///< into StepArguments::load_begin
-  node_sliding,     ///< on a still surface; into StepArguments::sliding
-  node_gliding,     ///< on a surface that moves with a bone; into StepArguments::gliding
-  node_prescribed,  ///< into StepArguments::prescribed
-  node_rigid,       ///< into StepArguments::rigid
+  node_load,        ///< index into StepArguments::load_begin
+  node_sliding,     ///< on a still surface; index into StepArguments::sliding
+  node_gliding,     ///< on a surface that moves with a bone; index into StepArguments::gliding
+  node_prescribed,  ///< index into StepArguments::prescribed
+  node_rigid,       ///< index into StepArguments::rigid
   node_effects      ///< number of effects
 };
 
@@ -42,7 +42,7 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
 /// The contribution of a surface vertex's force to a node.
 struct LoadPart
 {
-  std::int32_t vertex;  ///< into StepArguments::vertex_force
+  std::int32_t vertex;  ///< index into StepArguments::vertex_force
   std::int32_t load;    ///< load whose ramp it follows
   float weight;
 };
@@ -63,7 +63,7 @@ struct RigidMotion
 /// Data that a sliding node needs when it enters another cell of its field.
 struct SlidingNodeField
 {
-  std::int32_t surface;  ///< into StepArguments::fields
+  std::int32_t surface;  ///< index into StepArguments::fields
   std::int32_t cell[3];  ///< cell of its rest position
   float level;           ///< value of the field that it keeps [m]
 };
@@ -83,7 +83,7 @@ struct GlidingNode
 {
   double rest[3];  ///< [m]
   std::int32_t bone;
-  std::int32_t sliding;  ///< into StepArguments::sliding
+  std::int32_t sliding;  ///< index into StepArguments::sliding
 };
 
 /// A law other than neo-Hookean that a voxel's tissue contains.
@@ -188,7 +188,7 @@ constexpr std::uint32_t most_patch_threads = 512;
 /// Most patches that a block processes in turn.
 constexpr int most_turns = 8;
 
-/// Most muscles that a model may have on the GPU, because their activations lie in shared memory.
+/// Most muscles that a model may have on the GPU, because their activations are stored in shared memory.
 constexpr int most_muscles = 512;
 
 /// Entries of patch_tasks. 0 or more: the node slides on a still surface, as its only effect, and this is its index
@@ -220,7 +220,6 @@ template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
-/// Effects of nodes.
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
 /// The effects of a set that a voxel without fibres and viscosity may have, with those of nodes.
 template <Effects Set>

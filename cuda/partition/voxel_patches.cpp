@@ -125,8 +125,7 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// Divides the model into parts of about equal cost. It iterates a few times, because the voxels that parts share, and
-// so the cost, depend on the cut.
+// Divides the model into parts of about equal cost. Iterates, because shared voxels, and the cost, depend on the cut.
 std::vector<std::uint32_t> partition(const Model& model, int parts)
 {
   std::vector<float> weight(model.nodes.size(), node_cost);

@@ -23,10 +23,10 @@ struct Patch
   std::uint32_t first_node;   ///< device node; own nodes are contiguous
   std::uint32_t nodes;        ///< number of own nodes
   std::uint32_t border;       ///< number of leading own nodes that lie in halos of other patches
-  std::uint32_t voxel_begin;  ///< into VoxelPatches::voxel
+  std::uint32_t voxel_begin;  ///< first index into VoxelPatches::voxel
   std::uint32_t voxels;
   std::uint32_t special;     ///< number of leading voxels that have fibres or viscosity
-  std::uint32_t halo_begin;  ///< into VoxelPatches::halo
+  std::uint32_t halo_begin;  ///< first index into VoxelPatches::halo
   std::uint32_t halo;
 };
 

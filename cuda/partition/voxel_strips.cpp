@@ -53,8 +53,7 @@ private:
   std::vector<std::uint32_t> begin_;
 };
 
-// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), at most as many as a warp has
-// lanes.
+// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), at most 32 of them.
 struct Piece
 {
   std::int32_t i, lanes;              // columns, including the halo

@@ -54,7 +54,7 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   return scene;
 }
 
-// the profile called standard; the scene's present one if it was chosen by name or there is no standard
+// the profile called standard; the scene's selected one if it was chosen by name or there is no standard
 AccuracyProfile standard_profile(const Scene& scene, bool chosen)
 {
   if (!chosen)

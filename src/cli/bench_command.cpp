@@ -197,9 +197,9 @@ void bench(const BenchOptions& options)
   const int threads = options.solver.threads > 0 ? options.solver.threads : cores;
   const double bandwidth = copy_bandwidth(threads);
   const double loop = bare_loop(64, threads, options.quick ? 1.5 : 5.0);
-  fmt::print("yardsticks   {} threads: copy {:.1f} GB/s, bare loop of 64^3 voxels {:.1f} million updates per second\n",
+  fmt::print("this machine {} threads: copy {:.1f} GB/s, bare loop of 64^3 voxels {:.1f} million updates per second\n",
              threads, 1e-9 * bandwidth, 1e-6 * loop);
-  fmt::print(row_format, "scene", "voxels", "us/step", "million/s", "of bar", "B/vox", "spread", "look", "guard",
+  fmt::print(row_format, "scene", "voxels", "us/step", "million/s", "/ loop", "B/vox", "spread", "bound", "guard",
              "backend");
   for (const std::int32_t edge :
        options.quick ? std::vector<std::int32_t>{ 64 } : std::vector<std::int32_t>{ 32, 64, 128 })
@@ -215,13 +215,13 @@ void add_bench_command(CLI::App& app)
 {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
-      "bench", "time the solver beside two yardsticks of the machine: copying memory and a bare loop");
+      "bench", "time the solver and, for comparison, copying memory and a bare element loop on this machine");
   command->add_option("SCENE_OR_MODEL", options->source.path, "time this model too, every muscle at activation 0.75");
   add_scene_options(*command, options->source);
   add_solver_options(*command, options->solver);
   command->add_flag("--quick", options->quick, "only the block of 64^3 voxels, a few seconds");
   command->add_flag("--effects", options->effects,
-                    "time effects that a share of the voxels has; of SCENE_OR_MODEL, one active muscle against all");
+                    "time effects that a fraction of the voxels has; on SCENE_OR_MODEL, one active muscle against all");
   command->add_option("--plot", options->plot, "draw the result of --effects: FILE.png, and FILE.svg beside it");
   command->callback([options] { bench(*options); });
 }

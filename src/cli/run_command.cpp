@@ -290,7 +290,7 @@ void add_run_command(CLI::App& app)
           "to the last good check and takes shorter steps")
       ->check(CLI::Range(0, 1 << 30));
   command->add_option("--time-step", options->solver.time_step,
-                      "longest time step [s], at most the critical one (0: the safe one, by the model's share of it)");
+                      "longest time step [s], at most the critical one (0: the model's share of the critical one)");
   add_scene_options(*command, options->source);
   command->callback(
       [options, command]

@@ -29,8 +29,7 @@ struct StabilityOptions
   std::string mesh_directory;  ///< folder of the meshes of the real head
 };
 
-// Folders of the package that may exist: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/ beside
-// `bundled`), or in the sources.
+// Folders of the package that may exist: installed (bin/ or lib/frontalis/ beside share/), bundled, in the sources.
 std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
 {
   std::error_code none;

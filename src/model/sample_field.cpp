@@ -24,8 +24,8 @@ bool reaches(const Distance& distance, const Band& band, const Point& middle, do
 {
   const SurfaceDistance d = distance(middle);
   const double radius = 0.5 * std::sqrt(3.0) * edge;
-  // Within the cube, the nearest point may jump to the rim and back, and with it the sign and the way past the rim. The
-  // unsigned distance changes by at most `radius`.
+  // Within the cube, the nearest point may jump to the rim and back, and with it the sign and past_rim. The unsigned
+  // distance changes by at most `radius`.
   const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
   const bool too_far =
       std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;

@@ -29,7 +29,7 @@ struct Runner::Implementation
   bool stop = false;
   bool paused = false;
   bool reset_wanted = false;
-  bool cancel_wanted = false;  ///< of the call of step() under way
+  bool cancel_wanted = false;  ///< ends the call of step() under way
   std::uint64_t resets_done = 0;
   std::string reset_error;  ///< why the latest reset failed; empty if it did not
   struct StepRequest

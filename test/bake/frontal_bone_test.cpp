@@ -159,13 +159,12 @@ struct CoveredBone
     restrict_nodes(scene, surfaces, frame, model, monitor);
   }
 
-  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, frame, model) }; }
+  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, {}, frame, model) }; }
   const SampledField& field() const { return model.constraint_surfaces.at(0).field; }
   BakeProgress progress;
 };
 
-// A node that moves along a level set as in the solver: on a tangent plane as far as its slip allows, then on a new
-// one.
+// A node that moves along a level set as in the solver: on a tangent plane until slip is used up, then on a new one.
 struct Walker
 {
   KeptLevel level;
@@ -189,8 +188,7 @@ struct Walker
   }
 };
 
-// The nearest point may jump from the rim of the sheet to another part of it. The field must not jump there: its
-// gradient would be longer than 1.
+// Where the nearest point jumps from the rim of the sheet to another part, the field must not: its gradient is about 1.
 void check_slopes(const CoveredBone& bone)
 {
   const physics::DistanceField field = view(bone.field());

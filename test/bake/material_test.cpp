@@ -43,7 +43,7 @@ SceneMaterial of_law(const std::string& law, const std::map<std::string, double>
   return material;
 }
 
-// bulk modulus of a shear modulus at a Poisson ratio of 0.45
+// bulk modulus that belongs to a shear modulus at a Poisson ratio of 0.45
 double bulk(double shear) { return shear * 2 * 1.45 / (3 * 0.1); }
 
 }  // namespace

@@ -71,8 +71,7 @@ TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)
   std::set<double> heights;
   for (const RigidNode& node : model.rigid)
     heights.insert(std::round(1e6 * transformed(model.to_scene, node_position(model, node.node))[2]));
-  // the bone ends at 2.5 mm: of the voxel from 2 to 3 mm, half is tissue; its lower nodes are rigid, its upper ones
-  // free
+  // the bone ends at 2.5 mm, in the middle of voxels, whose lower nodes are rigid and whose upper ones are free
   EXPECT_EQ(heights.size(), 1u);
   EXPECT_EQ(model.rigid.size(), 21u * 13u);
 }

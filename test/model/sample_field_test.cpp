@@ -69,7 +69,7 @@ TEST(SampleField, CoversWhereNodesMayComeAndNoMore)
     for (double y = -10e-3; y <= 10e-3; y += 0.9e-3)
       for (const double z : { 0.6e-3, 1.4e-3, 1.6e-3, 2.4e-3 })
       {
-        // bricks are near the level of each node
+        // samples cover the level of each node, z, within the travel of 10 mm
         const bool covered = z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3;
         if (covered)
         {

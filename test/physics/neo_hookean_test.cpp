@@ -53,8 +53,7 @@ TEST(NeoHookean, StressIsTheGradientOfTheEnergyAlsoWhereCrushedAndInverted)
   }
 }
 
-// At a strain of 1e-5, the rounding error of a float near 1 is 1 % of the strain, and the bulk modulus magnifies it 50
-// times.
+// A float near 1 has a rounding error of 1 % of a strain of 1e-5, and the bulk modulus magnifies it 50 times.
 TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 {
   const double gradient[3][3] = { { 1.1e-5, 0.4e-5, -0.3e-5 },

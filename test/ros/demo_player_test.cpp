@@ -9,8 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// A demo of three phases: raise for 1 s with a ramp of 0.4 s, relax for 0.5 s with a ramp longer than that, knit for 1
-/// s without a ramp.
+/// A demo: raise for 1 s with a ramp of 0.4 s, relax for 0.5 s with a longer ramp, knit for 1 s without a ramp.
 Model with_demo()
 {
   Model model = small_model();

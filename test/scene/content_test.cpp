@@ -54,8 +54,7 @@ TEST(Content, depends_on_what_decides_the_bake_alone)
   EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
 }
 
-// Changing any number of the file changes the hash, except in profiles that are not chosen. Otherwise a cache of models
-// could return the wrong model.
+// Every number of the file changes the hash, except in profiles that are not chosen; else caches return wrong models.
 TEST(Content, depends_on_every_number)
 {
   const std::string text = text_of(source + "/test/scene/every_key.yaml");

@@ -43,8 +43,7 @@ inline std::vector<unsigned> every_combination()
 /// Height above the plane z = 0 [m].
 inline double height(const std::array<double, 3>& p) { return p[2]; }
 
-/// A model with the effects of the bits, each in its own part. Rows of several lengths give full, half full and empty
-/// tiles.
+/// A model with these effects, each in its own part. Rows of several lengths give full, half full and empty tiles.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {

@@ -207,8 +207,7 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   }
 }
 
-// Moving nodes back to a surface must not add energy: on a plane, and on a curved surface, where the tangent plane has
-// an error until it is replaced.
+// Moving nodes back to a surface must not add energy, even if it is curved and its tangent plane has an error.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
@@ -244,8 +243,7 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 }
 
 // A shell that spins on a ball. Its nodes change planes, and turning their velocities is part of the reaction. `parts`:
-// the nodes are on three equal balls, a rough one, a smooth one, and a rough one that is a bone; otherwise all are on
-// one rough ball.
+// the nodes are on three equal balls (rough, smooth, a rough bone); otherwise all are on one rough ball.
 class SpinningShell : public Gliding
 {
 protected:

@@ -221,8 +221,7 @@ TEST_P(Guarded, bad_input_changes_nothing)
     EXPECT_THROW(Guard(*solver, model, bad), Error);
 }
 
-/// A solver whose monitor and ledger report altered values from a given time on, until the guard has gone back `times`
-/// times.
+/// A solver that reports altered values from a given time on, until the guard has gone back `times` times.
 struct ShownOtherwise : test::WrappedSolver
 {
   using WrappedSolver::WrappedSolver;

@@ -230,8 +230,7 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
-// Switching an effect off before a solver is made leaves the memory of a model without that effect, whatever other
-// effects there are.
+// A solver made without an effect has the memory of a model without it, whatever other effects there are.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)
 {
   const std::map<Effect, unsigned> bit{ { Effect::viscosity, viscosity },

@@ -20,9 +20,8 @@ using test::Vectors;
 namespace
 {
 
-// A model of fat with random single voxels of stiffer and heavier materials, some with two materials; with holes; a
-// muscle through some voxels; nodes that are rigid, prescribed, or prescribed along one axis; unequal edges; all forms
-// of the element.
+// A model of fat with random single voxels of stiffer and heavier materials, some with two; with holes; a muscle
+// through some voxels; nodes that are rigid, prescribed, or prescribed along one axis; unequal edges; all elements.
 Model random_mixture(std::mt19937& random)
 {
   std::uniform_real_distribution<double> share(0, 1);

@@ -99,8 +99,7 @@ TEST_P(Viscosity, energy_that_a_swinging_block_loses_is_accounted_for)
   EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.largest);
 }
 
-// The work of relaxation must use the strain at the middle of its step; that at the end would leave an error of dt / (2
-// time constant).
+// Relaxation must count at the middle of its step: at the end, the error of its work would be dt / (2 time constant).
 TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps)
 {
   test::BlockSettings settings;

@@ -30,8 +30,7 @@ bool is_active(const TimedSolver& timed)
   return !activation.empty() && std::all_of(activation.begin(), activation.end(), [](float a) { return a == 0.75f; });
 }
 
-// Returns the prescribed costs as times, with a disturbance common to all solvers of a round, and records the
-// comparisons.
+// Returns prescribed costs as times, with a disturbance common to all solvers of a round, and records the comparisons.
 struct SetTimes
 {
   struct Comparison

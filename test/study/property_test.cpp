@@ -167,8 +167,8 @@ void expect_sound(const SmallScene& scene)
 
 }  // namespace
 
-// The bone's jerks excite vibrations near the critical time step. If the step grows and shrinks with every swing, 13 %
-// of the energy is unexplained here.
+// The bone's jerks excite vibrations near the critical time step. If the step follows every swing, 13 % of the energy
+// is unexplained here.
 TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
 {
   SmallScene scene{};

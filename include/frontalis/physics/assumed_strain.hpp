@@ -35,8 +35,7 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
   return { bending, nu * bending, mu * tissue_volume, twice * (N::of(1) + nu) * N::of(1.0 / 3) };
 }
 
-/// Index of the hourglass mode yz, xz, xy or xyz among the transformed displacements. Of the first three, mode i does
-/// not vary along axis i.
+/// Index of the hourglass mode yz, xz, xy or xyz (pair 0 to 3) among the transformed displacements.
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
 /// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it,

@@ -26,11 +26,11 @@ struct DistanceField
   double origin[3] = { 0, 0, 0 };        ///< of sample (0,0,0), or centre of the sphere [m]
   double spacing = 1;                    ///< of samples [m]
   double radius = 0;                     ///< of the sphere [m]; 0: sampled
-  std::int32_t bricks[3] = { 0, 0, 0 };  ///< of the table along x, y, z
+  std::int32_t bricks[3] = { 0, 0, 0 };  ///< number of bricks in the table along x, y, z
   const std::int32_t* table = nullptr;   ///< index of each brick's samples, x fastest; negative: there are none
   const float* samples = nullptr;        ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
 
-  /// The first of the 3 x 3 x 3 samples around a cell; null where none are stored.
+  /// The first of the 3 x 3 x 3 samples around a cell; null if none are stored.
   FRONTALIS_LAW const float* around(const std::int32_t (&cell)[3]) const
   {
     std::int32_t brick = 0, first = 0;

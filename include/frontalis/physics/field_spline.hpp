@@ -17,8 +17,7 @@ struct FieldValue
   T reach;           ///< distance over which `curvature` describes the field well enough for a tangent plane [m]
 };
 
-/// Largest error [m] of a tangent plane that replaces a level set. It is small because each change of plane excites
-/// vibrations.
+/// Largest error [m] of a tangent plane that replaces a level set: small, because changes of plane excite vibrations.
 constexpr double plane_error = 0.5e-6;
 
 /// The samples of a cell, x fastest [m].

@@ -37,10 +37,9 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   return true;
 }
 
-/// A sliding node off its plane moves back by half of the error per step. If the error is above twice this value, it is
-/// instead reduced to this value at once [m]. The error arises suddenly when the tangent plane of a node is replaced.
-/// Removing it within one step would add half the stiffness of the tissue times the squared error to the energy and
-/// excite vibrations.
+/// A sliding node off its plane moves back by half of the error per step. An error above twice this value is reduced to
+/// this value at once [m]. It arises suddenly when the tangent plane of a node is replaced. Removing it within one step
+/// would add half the stiffness of the tissue times its square to the energy and excite vibrations.
 constexpr double error_left = 4.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.

@@ -78,9 +78,8 @@ FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
 }
 
 /// Change of H : E, at constant strain, when the relaxed stress H changes from `before` to `after` at the end of a
-/// step. (The rest of the change of H : E is the work of the body against H, the sum of H : dE.) The strain used is the
-/// mean of those at the start and end of the step, because a stress works along the mean of the motions before and
-/// after it.
+/// step; the rest of the change of H : E is the work against H, the sum of H : dE. A stress works along the mean of the
+/// motions before and after it, so the strain is the mean of those at the start and end of the step.
 template <class T>
 FRONTALIS_LAW T relaxation_work(const Kinematics<T>& begin, const Kinematics<T>& end, const Symmetric3<T>& before,
                                 const Symmetric3<T>& after)

@@ -27,7 +27,7 @@ struct Frame
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   GuardCounts guard;              ///< since the runner started
-  bool failed = false;            ///< true: the guard stopped the motion as unstable; the skin is the last good one
+  bool failed = false;            ///< true: the motion was stopped; the skin is the last good one
   std::string failure;            ///< the reason, in one sentence
 };
 

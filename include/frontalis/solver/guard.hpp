@@ -61,8 +61,7 @@ struct InstabilityReport
   std::string text() const;           ///< the whole report in two or three sentences
 };
 
-/// Thrown when the motion was stopped. The solver is at the latest good state, or at the previous one if the latest
-/// failed too.
+/// The motion was stopped. The solver is at the latest good state, or at the previous one if the latest failed too.
 class Unstable : public Error
 {
 public:
@@ -96,8 +95,7 @@ public:
   void advance(double seconds, const Controls& target);
   /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
-  /// Like Solver::settle, with checks as in advance() except that of the ledger, which starts anew afterwards. Throws
-  /// as both do.
+  /// Like Solver::settle, with checks as in advance() except that of the ledger, which starts anew. Throws as both do.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
   /// Accepts the present state as good without a check. Call it after reset(), or after displacements were set.

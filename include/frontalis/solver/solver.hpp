@@ -25,7 +25,7 @@ using Backend = std::string;
 
 /// The values of SolverSettings::backend in this build, "auto" first.
 std::vector<Backend> backend_names();
-/// Returns the name; throws Error if it is not in backend_names().
+/// Checks and returns the name. Throws Error if it is not in backend_names().
 Backend backend_from_name(const std::string& name);
 /// The backends that can run on this machine, in the order of preference of "auto".
 std::vector<Backend> available_backends();
@@ -98,8 +98,7 @@ public:
   /// settings. unpack() throws Error on anything else, and leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Number of steps between two checks of the guard: together they take about a hundred times as long as monitor() and
-  /// save().
+  /// Steps between two checks of the guard: they take about a hundred times as long as monitor() and save() together.
   virtual int steps_per_check() const = 0;
   /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;
@@ -134,7 +133,7 @@ public:
   virtual void displacements(std::vector<std::array<double, 3>>& out) const = 0;
   /// Sets the displacements and zeroes the velocities; for tests and studies.
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Nodal velocities [m/s]; for tests and studies.
+  /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
   /// Internal forces [N] at the present displacements (elastic, hourglass, fibres), before constraints.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;

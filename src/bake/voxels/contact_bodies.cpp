@@ -61,39 +61,6 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
                      { parallel_for(monitor, count, 1, body); });
 }
 
-// Index in the model of the bone of this name, added if it is new; -1: none.
-std::int32_t bone_of(const std::string& name, Model& model)
-{
-  if (name.empty())
-    return -1;
-  const auto known = std::find(model.bones.begin(), model.bones.end(), name);
-  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
-  if (known == model.bones.end())
-    model.bones.push_back(name);
-  return bone;
-}
-
-// Refuses tissue that lies in a body at rest, which would throw it out.
-void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
-                   const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
-{
-  const double allowed = overlap_share * *std::min_element(model.spacing.begin(), model.spacing.end());
-  const Distance distance = distance_from(bodies, frame);
-  double deepest = 0;
-  Vector3d where{ 0, 0, 0 };
-  for (const auto& p : contact.points)
-    if (const double level = distance(p).value; level < -deepest)
-    {
-      deepest = -level;
-      where = frame.to_scene(to_vector(p));
-    }
-  if (deepest > allowed)
-    throw Error(fmt::format(
-        "{}: at rest its surface lies {} inside of the body, for example at {}; at most {}, half of a "
-        "voxel, are allowed: move the body away, or crop the part that it must not touch",
-        place, length_text(deepest, scene.unit), place_text(where, scene.unit), length_text(allowed, scene.unit)));
-}
-
 }  // namespace
 
 TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
@@ -133,6 +100,44 @@ TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest
   join_vertices(mesh);
   return mesh;
 }
+
+namespace
+{
+
+// Index in the model of the bone of this name, added if it is new; -1: none.
+std::int32_t bone_of(const std::string& name, Model& model)
+{
+  if (name.empty())
+    return -1;
+  const auto known = std::find(model.bones.begin(), model.bones.end(), name);
+  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
+  if (known == model.bones.end())
+    model.bones.push_back(name);
+  return bone;
+}
+
+// Throws Error if tissue is in a body at rest, because contact would throw the tissue out.
+void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
+                   const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
+{
+  const double allowed = overlap_share * *std::min_element(model.spacing.begin(), model.spacing.end());
+  const Distance distance = distance_from(bodies, frame);
+  double deepest = 0;
+  Vector3d where{ 0, 0, 0 };
+  for (const auto& p : contact.points)
+    if (const double level = distance(p).value; level < -deepest)
+    {
+      deepest = -level;
+      where = frame.to_scene(to_vector(p));
+    }
+  if (deepest > allowed)
+    throw Error(fmt::format(
+        "{}: at rest its surface lies {} inside of the body, for example at {}; at most {}, half of a "
+        "voxel, are allowed: move the body away, or crop the part that it must not touch",
+        place, length_text(deepest, scene.unit), place_text(where, scene.unit), length_text(allowed, scene.unit)));
+}
+
+}  // namespace
 
 void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip` lanes
-/// that are not contiguous in memory.
+/// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip`
+/// lanes; strips need not be contiguous in memory.
 template <class Architecture, class Real, int Strip>
 struct SimdLanes
 {

@@ -5,8 +5,7 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes, with the planes normal . u = offset of those that slide and zero normals for the
-/// others.
+/// Up to `width` neighbouring nodes, with the planes normal . u = offset of those that slide; zero normals for others.
 template <class Real>
 struct SlidingBlock
 {

@@ -19,7 +19,7 @@ struct PlaneMonitor
     return { 0, look.internal, look.hourglass, look.jacobian, look.jacobian <= 0 ? 1 : 0, voxel };
   }
 
-  /// Adds a part. Add parts in the order of their voxels; of values, one that is not finite counts as the worst.
+  /// Adds a part. Add parts in the order of their voxels; values that are not finite count as the worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
   {
     kinetic += part.kinetic;

@@ -25,7 +25,7 @@ constexpr double step_share_allowed = 1.1;
 // imbalance is below 0.1 of it (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
 // A voxel with a J below `crushed` is reported as the origin of the instability. So is the stiffest voxel if the
-// critical step falls below this fraction of the last good state's.
+// critical step falls below the fraction `stiffened` of the last good state's.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 

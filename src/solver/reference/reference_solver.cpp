@@ -89,7 +89,7 @@ Work ReferenceSolver::work(bool open)
 {
   if (open)
     account_->open();
-  // records the work of fibres in the latest step
+  // makes forces() record the work of fibres in the latest step
   accounting_ = true;
   forces(u_, conditions_.activation);
   if (open)

@@ -9,15 +9,15 @@
 namespace frontalis
 {
 
-/// Stiffness that an effect adds to that of voxels. The bound of the highest frequency includes it.
+/// Stiffness that an effect adds to that of voxels, for the bound of the highest frequency.
 class AddedStiffness
 {
 public:
   virtual ~AddedStiffness() = default;
 
-  /// Its part of the bound of a voxel's stiffness [N/m].
+  /// What it adds to the bound of a voxel's stiffness [N/m].
   virtual double in_voxel(std::size_t voxel) const = 0;
-  /// Adds its internal forces [N] at displacements [m], where it is largest.
+  /// Adds the internal forces [N] of this stiffness at its largest, at displacements [m].
   virtual void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                           std::vector<std::array<double, 3>>& forces) const = 0;
 

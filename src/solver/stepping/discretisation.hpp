@@ -53,7 +53,7 @@ public:
   /// Includes the running fibre effects in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
   void list_arrays(ArrayList& list) const;
-  /// The added stiffness of this class; null if the model has none.
+  /// The added stiffness of type `Stiffness`; null if the model has none.
   template <class Stiffness>
   const Stiffness* find_added() const
   {
@@ -75,7 +75,7 @@ public:
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
-  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< in the bounds, whether it acts now or not
+  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
   double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

@@ -30,8 +30,8 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
   return eigenvalue;
 }
 
-/// A random start mode; and the step for largest_eigenvalue() [m]: large enough for single precision, small against the
-/// curvature of the laws.
+/// A random start mode; and the step for largest_eigenvalue() [m], resolved in single precision and small against the
+/// laws' curvature.
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 

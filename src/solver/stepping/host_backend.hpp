@@ -15,7 +15,7 @@ class RelaxedStresses : public EffectPart
 public:
   std::vector<T> values;
 
-  bool relax() const { return runs_ && !values.empty(); }  ///< whether a stress is to be relaxed
+  bool relax() const { return runs_ && !values.empty(); }  ///< whether there are stresses to relax
   void list_arrays(ArrayList& list) override { list.add_state(Effect::viscosity, "relaxed stresses", values); }
   void run(EffectSet running) override
   {
@@ -60,7 +60,7 @@ protected:
   /// Inverse of interleave(); components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
 
-  /// The parts that have something to do.
+  /// The parts that are not idle.
   std::vector<NodePart<Real>*> active_parts() const;
 
   Components u_, v_;

@@ -89,7 +89,7 @@ void TimeStepper::unpack(const std::string& bytes)
       throw Error("they are of " + whose + "; allowed is one of " + owner());
     static_cast<MotionSnapshot&>(*snapshot).archive(archive);
     if (!archive.ended())
-      throw Error("more than a motion");
+      throw Error("they do not end with the motion");
   }
   catch (const Error& error)
   {

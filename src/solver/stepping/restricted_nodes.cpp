@@ -48,8 +48,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
   sort_by_node(sliding);
-  // A plane that was kept for several steps jolts the tissue when it is replaced. Where any surface is rough, no node
-  // keeps planes: friction follows the jolts even of nodes that have none, and would take several percent too much.
+  // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
+  // plane: friction also follows the jolts of nodes without friction, and would dissipate several percent too much.
   const auto& surfaces = model.constraint_surfaces;
   const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
   const auto plain =

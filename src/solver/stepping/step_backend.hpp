@@ -62,8 +62,7 @@ public:
   /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
   /// are not finite. If the plan allows it, this may be the bound of the previous plan.
   virtual double run(const StepPlan& plan) = 0;
-  /// Called after Conditions::running and the discretisation's bounds have changed. An effect that is switched on again
-  /// has no history.
+  /// Called when Conditions::running and bounds have changed. Effects that are switched on again have no history.
   virtual void effects_switched() = 0;
 
   virtual void get(NodalField field, NodalVectors& out) const = 0;

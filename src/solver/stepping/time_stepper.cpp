@@ -329,7 +329,7 @@ void TimeStepper::open_ledger()
 EnergyLedger TimeStepper::ledger()
 {
   if (!ledger_)
-    throw Error("no energy ledger is kept: ask for it in SolverSettings");
+    throw Error("no energy ledger is kept: set SolverSettings::ledger");
   const Stopwatch stopwatch(profile_.monitor);
   return ledger_->balance(motion_.time, ledger_step());
 }

@@ -8,8 +8,7 @@ namespace frontalis
 namespace physics
 {
 
-/// The fibres of one muscle in a voxel. T: number type of a batch of voxels; S: that of values all voxels of a batch
-/// share.
+/// The fibres of one muscle in a voxel. T: number type of a batch of voxels; S: that of values that all of them share.
 template <class T, class S>
 struct Fibre
 {

@@ -38,7 +38,7 @@ FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T f
   return (kick.keep * v + kick.impulse[axis]) - gain_over_mass * force;
 }
 
-/// The step is linear in the force, so that loads [N] may be added after it.
+/// Adds the effect of a load [N] after the step, which is linear in the force.
 template <class T>
 FRONTALIS_LAW void add_load(T gain_over_mass, T dt, T force, T& u, T& v)
 {

@@ -24,9 +24,9 @@ struct MaterialList
 };
 
 /// The table of materials: every solid that a scene can use. A solid is a struct of its parameters with a `description`
-/// and the functions add_stress, energy, tangent_stiffness and shear_modulus. If the solid has fibres, the first three
-/// take a pointer to their directions after the kinematics. New solids go to the end, because model files store indices
-/// into the table.
+/// and the functions add_stress, energy, tangent_stiffness and shear_modulus; with fibres, the first three take a
+/// pointer to their directions after the kinematics. New solids go to the end: model files store indices into the
+/// table.
 using Materials = MaterialList<NeoHookean, MooneyRivlin, Ogden, FungExponential, HolzapfelGasserOgden, Guccione>;
 
 /// The solid with a material's numbers; description.hpp defines their order.
@@ -89,6 +89,6 @@ constexpr Law find_law(MaterialList<Solids...>)
 /// The law of a solid: law_of<physics::Guccione>.
 template <template <class> class Solid>
 constexpr Law law_of = physics::find_law<Solid>(physics::Materials{});
-static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels treat the first law apart");
+static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels have code of their own for the first law");
 
 }  // namespace frontalis
