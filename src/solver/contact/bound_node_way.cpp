@@ -1,5 +1,7 @@
 #include "solver/contact/bound_node_way.hpp"
 
+#include "frontalis/physics/trilinear.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,21 +11,29 @@ namespace frontalis
 namespace
 {
 
-// Runs of bound nodes are joined over this many others.
+// Runs of bound nodes are merged if at most this many other nodes are between them.
 constexpr std::int32_t largest_gap = 8;
 
-// More than rounding errors take from a way that is found in single precision.
+// Factor on distances found in single precision that outweighs their rounding errors.
 constexpr double rounding = 1.00001;
 
 }  // namespace
 
-BoundNodeWay::BoundNodeWay(const Model& model, const std::vector<std::int32_t>& voxels)
-    : plane_runs_(voxels.empty() ? 0 : static_cast<std::size_t>(model.size[2]) + 2, 0)
+BoundNodeWay::BoundNodeWay(const Model& model, const Binding& points)
+    : plane_runs_(points.voxel.empty() ? 0 : static_cast<std::size_t>(model.size[2]) + 2, 0)
 {
   std::vector<bool> bound(model.nodes.size(), false);
-  for (const auto voxel : voxels)
-    for (const auto node : model.voxel_nodes[voxel])
+  for (std::size_t p = 0; p < points.voxel.size(); ++p)
+  {
+    const auto& at = points.coordinates[p];
+    float weight[8], sum = 0;
+    physics::trilinear_weights(at[0], at[1], at[2], weight);
+    for (const float w : weight)
+      sum += std::abs(w);
+    spread_ = std::max(spread_, double(sum));
+    for (const auto node : model.voxel_nodes[points.voxel[p]])
       bound[node] = true;
+  }
   for (std::size_t n = 0; n < bound.size(); ++n)
   {
     const auto node = static_cast<std::int32_t>(n);
@@ -45,7 +55,7 @@ BoundNodeWay::BoundNodeWay(const Model& model, const std::vector<std::int32_t>& 
 template <class Real>
 double BoundNodeWay::in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const
 {
-  // squares, in lanes that the compiler makes vectors of
+  // squared lengths, in lanes that the compiler can vectorise
   constexpr std::int32_t width = 8;
   Real longest[width] = {};
   const auto compare = [&](std::int32_t lane, std::int32_t n)

@@ -13,22 +13,25 @@ namespace frontalis
 class BoundNodeWay
 {
 public:
-  /// `voxels`: those of the points.
-  BoundNodeWay(const Model& model, const std::vector<std::int32_t>& voxels);
+  BoundNodeWay() = default;
+  BoundNodeWay(const Model& model, const Binding& points);
 
   /// Longest way [m] of a bound node in a plane of nodes, from displacements before and after the step.
   template <class Real>
   double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
+  /// Largest ratio of a point's way to that of the nodes of its voxel.
+  double spread() const { return spread_; }
   void list_arrays(ArrayList& list, Effect effect) const;
 
 private:
-  // nodes [first, last), among which bound ones are not far apart
+  // nodes [first, last), of which nearly all are bound
   struct Run
   {
     std::int32_t first, last;
   };
-  std::vector<Run> runs_;                 // ascending
-  std::vector<std::int32_t> plane_runs_;  // first of them in each plane of nodes, and their number
+  double spread_ = 1;
+  std::vector<Run> runs_;                 // runs that contain all bound nodes, ascending
+  std::vector<std::int32_t> plane_runs_;  // first run in each plane of nodes, then twice the number of runs
 };
 
 }  // namespace frontalis

@@ -42,27 +42,21 @@ double ramp(double x) { return std::clamp(x, 0.0, 1.0); }
 
 template <class Real>
 TissueContact<Real>::TissueContact(const Model& model, const Discretisation& discretisation)
-    : model_(model), surface_(model), reach_(reach_share * surface_.edge), nodes_(model, surface_.voxels())
+    : model_(model), surface_(model), reach_(reach_share * surface_.edge), nodes_(model, surface_.binding())
 {
   if (surface_.vertices.empty())
     return;
   const auto& stiffness = *discretisation.find_added<ContactStiffness>();
   plane_points_.assign(static_cast<std::size_t>(model.size[2]) + 2, 0);
-  std::vector<double> areas;
-  std::size_t contact = model.self_contacts.size();
+  std::vector<std::vector<double>> areas;
+  for (const SelfContact& contact : model.self_contacts)
+    areas.push_back(vertex_areas(contact.surface));
   for (const auto& vertex : surface_.vertices)
   {
     ++plane_points_[model.voxels[vertex.voxel][2] + 1];
-    if (contact != static_cast<std::size_t>(vertex.contact))
-      areas = vertex_areas(model.self_contacts[contact = vertex.contact].surface);
-    const double whole = stiffness.of_self(contact, vertex.source_in_contact);
-    per_area_.push_back(static_cast<float>(whole / std::max(areas[vertex.source_in_contact], 1e-30)));
+    const double whole = stiffness.of_self(vertex.contact, vertex.source_in_contact);
+    per_area_.push_back(static_cast<float>(whole / std::max(areas[vertex.contact][vertex.source_in_contact], 1e-30)));
     stiffness_.push_back(static_cast<float>(0.5 * whole * double(vertex.area_share)));
-    float weight[8], sum = 0;
-    physics::trilinear_weights(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
-    for (const float w : weight)
-      sum += std::abs(w);
-    spread_ = std::max(spread_, double(sum));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
   reset();
@@ -129,7 +123,7 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
 template <class Real>
 double TissueContact<Real>::way_now() const
 {
-  return clock_[0].way + 2 * spread_ * *std::max_element(node_way_.begin(), node_way_.end());
+  return clock_[0].way + 2 * nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
 }
 
 template <class Real>

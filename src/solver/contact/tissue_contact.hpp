@@ -135,7 +135,6 @@ private:
   TouchingSurface surface_;
   bool runs_ = true;
   double reach_;                            // how far from a triangle a vertex finds it [m]
-  double spread_ = 1;                       // by which factor a vertex may move more than the nodes of its voxel
   std::vector<float> stiffness_;            // of each vertex [N/m]
   std::vector<float> per_area_;             // the same over its area [N/m3]
   std::vector<float> overlap_;              // of each vertex at rest, from which its depth counts; not positive [m]

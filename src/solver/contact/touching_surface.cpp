@@ -233,11 +233,14 @@ void TouchingSurface::sort_vertices()
       v = rank[v];
 }
 
-std::vector<std::int32_t> TouchingSurface::voxels() const
+Binding TouchingSurface::binding() const
 {
-  std::vector<std::int32_t> all;
+  Binding all;
   for (const Vertex& vertex : vertices)
-    all.push_back(vertex.voxel);
+  {
+    all.voxel.push_back(vertex.voxel);
+    all.coordinates.push_back(vertex.coordinates);
+  }
   return all;
 }
 

@@ -20,7 +20,7 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source_in_contact;    // the vertex of the contact's surface that it is
+    std::int32_t source_in_contact;     // the vertex of the contact's surface that it is
     std::int32_t source;               // the same, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
     float area_share;                  // of its source's area
@@ -62,7 +62,7 @@ public:
   /// are two sides of one sheet of tissue.
   bool inseparable(std::size_t v, std::int32_t t) const;
 
-  std::vector<std::int32_t> voxels() const;  ///< of the vertices
+  Binding binding() const;  ///< of the vertices
   void list_arrays(ArrayList& list, Effect effect) const;
 
   std::vector<Vertex> vertices;
