@@ -41,43 +41,41 @@ template <class T>
 FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, const Vec3<T>& x)
 {
   using N = Number<T>;
-  const Vec3<T>*const a = triangle.corner, *const n = triangle.normal;
+  const Vec3<T>* const a = triangle.corner;
+  const Vec3<T>* const n = triangle.normal;
   const Vec3<T> ab = a[1] - a[0], ac = a[2] - a[0], area = cross(ab, ac), ax = x - a[0];
-  const T squared = N::max(dot(area, area), N::of(1e-60));
+  const T squared = N::max(dot(area, area), N::of(1e-60)), inverse = T(1) / squared, above = dot(ax, area);
   SurfaceFoot<T> foot;
-  foot.slope[1] = (T(1) / squared) * cross(ac, area);
-  foot.slope[2] = (T(1) / squared) * cross(area, ab);
+  foot.slope[1] = inverse * cross(ac, area);
+  foot.slope[2] = inverse * cross(area, ab);
   foot.slope[0] = T(-1) * (foot.slope[1] + foot.slope[2]);
-  foot.facet_normal = (T(1) / N::sqrt(squared)) * area;
-  foot.height = dot(ax, foot.facet_normal);
+  const T length = N::sqrt(squared);
+  foot.facet_normal = (length * inverse) * area;
+  foot.height = above * length * inverse;
   foot.below[1] = dot(ax, foot.slope[1]);
   foot.below[2] = dot(ax, foot.slope[2]);
   foot.below[0] = T(1) - foot.below[1] - foot.below[2];
+  Vec3<T> direction{};
   T way = N::of(0), inside[3];
   for (int i = 0; i < 3; ++i)
     foot.weight[i] = foot.below[i];
-  // each repetition reduces the error by height over radius of curvature
+  // Each repetition reduces the error by the height over the radius of curvature. Lengths of the direction do not
+  // matter.
   for (int repetition = 0; repetition < 3; ++repetition)
   {
-    T sum = N::of(0);
     for (int i = 0; i < 3; ++i)
-    {
       inside[i] = N::max(foot.weight[i], N::of(0));
-      sum = sum + inside[i];
-    }
-    for (int i = 0; i < 3; ++i)
-      inside[i] = inside[i] / sum;
-    const Vec3<T> direction = inside[0] * n[0] + inside[1] * n[1] + inside[2] * n[2];
-    foot.normal = (T(1) / N::max(norm(direction), N::of(1e-6))) * direction;
+    direction = inside[0] * n[0] + inside[1] * n[1] + inside[2] * n[2];
     // less where normals and triangle disagree by more than 78 degrees
-    way = foot.height / N::max(dot(foot.normal, foot.facet_normal), N::of(0.2));
+    way = above / N::max(dot(direction, area), N::of(0.2) * length);
     for (int i = 0; i < 3; ++i)
-      foot.weight[i] = foot.below[i] - way * dot(foot.slope[i], foot.normal);
+      foot.weight[i] = foot.below[i] - way * dot(foot.slope[i], direction);
   }
-  const T bulge =
-      N::of(0.5) * (inside[0] * inside[1] * dot(n[1] - n[0], ab) + inside[0] * inside[2] * dot(n[2] - n[0], ac) +
-                    inside[1] * inside[2] * dot(n[2] - n[1], a[2] - a[1]));
-  foot.gap = way - bulge;
+  const T stretch = N::sqrt(N::max(dot(direction, direction), N::of(1e-12))), sum = inside[0] + inside[1] + inside[2];
+  foot.normal = (T(1) / stretch) * direction;
+  const T bulge = inside[0] * inside[1] * dot(n[1] - n[0], ab) + inside[0] * inside[2] * dot(n[2] - n[0], ac) +
+                  inside[1] * inside[2] * dot(n[2] - n[1], a[2] - a[1]);
+  foot.gap = way * stretch - N::of(0.5) * bulge / (sum * sum);
   return foot;
 }
 

@@ -19,6 +19,9 @@ constexpr double deepest_found = 0.5;
 // In barycentric coordinates, more than the error of a foot, so that none falls between two triangles.
 constexpr double foot_error = 0.02;
 
+// Cosine between the normals of a vertex and of a triangle's corner from which on they surely do not face each other.
+constexpr double same_way = 0.5;
+
 // Way of a vertex over the surface between two steps, in triangles.
 constexpr int most_hops = 16;
 
@@ -85,7 +88,8 @@ bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, double& gap) cons
   const auto& triangle = surface_.triangles[t];
   const Placed &point = placed_[p], &a = placed_[triangle.vertex[0]];
   const Vector way = point.place - a.place;
-  if (dot(way, way) > 4 * grid_.reach() * grid_.reach() || dot(point.normal, a.normal) > 0.9 ||
+  const double farthest = 2 * grid_.reach() - margin * reach_;
+  if (dot(way, way) > farthest * farthest || dot(point.normal, a.normal) > same_way ||
       surface_.vertices[p].contact != surface_.vertices[triangle.vertex[0]].contact)
     return false;
   const Foot foot = physics::surface_foot(surface_.triangle(t, placed_), point.place);
