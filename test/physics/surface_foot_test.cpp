@@ -114,9 +114,10 @@ TEST(SurfaceFoot, ForcesAreOppositeInSumAndInMoment)
     Vector sum = force, moment = cross(x, force);
     for (int c = 0; c < 3; ++c)
     {
-      const Vector part = corner_force(foot, c, pressed, across);
+      const Vector part = corner_force(triangle, foot, c, pressed, across);
       sum = sum + part;
-      moment = moment + cross(triangle.corner[c], part);
+      moment =
+          moment + cross(triangle.corner[c], part) + cross(triangle.normal[c], corner_turn(triangle, foot, c, pressed));
     }
     EXPECT_LT(norm(sum), 1e-13);
     EXPECT_LT(norm(moment), 1e-12);
@@ -136,10 +137,45 @@ TEST(SurfaceFoot, ATriangleCarriesAPointAlong)
   {
     const Vector moved = cross(turn, triangle.corner[c]);
     way = way + carried(foot, c, moved);
-    work += dot(corner_force(foot, c, 0.0, along), moved);
+    work += dot(corner_force(triangle, foot, c, 0.0, along), moved);
   }
   EXPECT_LT(norm(way - cross(turn, x)), 1e-13);
   EXPECT_NEAR(work, -dot(along, way), 1e-13);
+}
+
+// Forces are the gradient of the energy, by finite differences, up to what the foot's place on the triangle neglects.
+TEST(SurfaceFoot, ForcesAreTheGradientOfTheEnergy)
+{
+  const Mesh mesh = sphere(8);
+  for (int t = 60; t < 70; ++t)
+  {
+    auto triangle = mesh.triangle(t);
+    Vector x = 0.3 * triangle.corner[0] + 0.25 * triangle.corner[1] + 0.45 * triangle.corner[2];
+    x = (1 - 0.014 / 8) * (8 / norm(x)) * x;
+    const auto foot = surface_foot(triangle, x);
+    const double step = 1e-6;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Vector force = corner_force(triangle, foot, c, 1.0, { 0, 0, 0 }),
+                   turn = corner_turn(triangle, foot, c, 1.0);
+      for (const Vector& way : { Vector{ 1, 0, 0 }, Vector{ 0, 1, 0 }, Vector{ 0, 0, 1 } })
+      {
+        const auto change = [&](Vector& what, const Vector& by)
+        {
+          const Vector before = what;
+          what = before + by;
+          const double above = surface_foot(triangle, x).gap;
+          what = before - by;
+          const double below = surface_foot(triangle, x).gap;
+          what = before;
+          return (above - below) / (2 * step);
+        };
+        EXPECT_NEAR(change(triangle.corner[c], step * way), dot(force, way), 3e-3) << c;
+        const Vector turned = way - dot(way, triangle.normal[c]) * triangle.normal[c];
+        EXPECT_NEAR(change(triangle.normal[c], step * turned), dot(turn, turned), 3e-3) << c;
+      }
+    }
+  }
 }
 
 }  // namespace

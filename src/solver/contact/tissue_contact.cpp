@@ -79,7 +79,10 @@ void TissueContact<Real>::reset()
     return;
   placed_.clear();
   for (const auto& vertex : surface_.vertices)
-    placed_.push_back({ vertex.rest, vertex.normal, vertex.rest });
+    placed_.push_back({ vertex.rest,
+                        vertex.normal,
+                        vertex.rest,
+                        { { cross(vertex.tangent[1], vertex.normal), cross(vertex.normal, vertex.tangent[0]) } } });
   overlap_.resize(count, 0);
   live_.assign(count, 1);
   tracks_.assign(count * most_tracks, {});
@@ -130,9 +133,10 @@ template <class Real>
 void TissueContact<Real>::prepare_step(const NodeShare& share, const Real* const u[3])
 {
   if (share.thread == 0 && forces_.size() < static_cast<std::size_t>(share.threads))
-    forces_.resize(
-        share.threads,
-        { std::vector<Vector>(placed_.size(), { 0, 0, 0 }), std::vector<std::uint8_t>(placed_.size(), 0), {} });
+  {
+    const std::vector<Vector> none(placed_.size(), { 0, 0, 0 });
+    forces_.resize(share.threads, { none, none, std::vector<std::uint8_t>(placed_.size(), 0), {} });
+  }
   if (rests())
     return;
   const bool all = clock_[0].stage != Stage::hold;
@@ -243,8 +247,12 @@ typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p
   const double pressed = -stiff * gap;
   const Vector along = held.force - pressed * foot.normal;
   pair.point = held.force;
+  const physics::SurfaceTriangle<double> triangle = surface_.triangle(track.triangle, placed);
   for (int i = 0; i < 3; ++i)
-    pair.corner[i] = physics::corner_force(foot, i, pressed, along);
+  {
+    pair.corner[i] = physics::corner_force(triangle, foot, i, pressed, along);
+    pair.turn[i] = physics::corner_turn(triangle, foot, i, pressed);
+  }
   pair.stored = held.stored;
   pair.lost = held.lost;
   track = { track.triangle,   Touching::yes,   stiff,
@@ -280,11 +288,12 @@ template <class Real>
 void TissueContact<Real>::add_vertex_forces(VertexForces& sum, const NodeShare& share, std::int32_t begin,
                                             std::int32_t end)
 {
-  const auto add = [&](std::int32_t v, const Vector& force)
+  const auto add = [&](std::int32_t v, const Vector& force, const Vector& turn)
   {
     if (v < begin || v >= end)
       return;
     sum.force[v] = sum.force[v] + force;
+    sum.turn[v] = sum.turn[v] + turn;
     if (sum.touches[v] == 0)
       sum.touching.push_back(v);
     sum.touches[v] = 1;
@@ -301,9 +310,9 @@ void TissueContact<Real>::add_vertex_forces(VertexForces& sum, const NodeShare& 
         lost_[plane] += pairs_[k].lost;
       if (track.touches == Touching::let_go)
         continue;
-      add(p, pairs_[k].point);
+      add(p, pairs_[k].point, { 0, 0, 0 });
       for (std::size_t i = 0; i < 3; ++i)
-        add(surface_.triangles[track.triangle].vertex[i], pairs_[k].corner[i]);
+        add(surface_.triangles[track.triangle].vertex[i], pairs_[k].corner[i], pairs_[k].turn[i]);
     }
 }
 
@@ -315,11 +324,11 @@ void TissueContact<Real>::add_forces(const NodeShare& share, const ForceSink<Rea
   add_vertex_forces(sum, share, first, end);
   for (const auto v : sum.touching)
   {
-    push(v, sum.force[v], share,
+    push(v, sum.force[v], sum.turn[v], placed_[v], share,
          [&](std::int32_t node, const Vector& part) {
            sink(node, { { part.x, part.y, part.z } });
          });
-    sum.force[v] = { 0, 0, 0 };
+    sum.force[v] = sum.turn[v] = { 0, 0, 0 };
     sum.touches[v] = 0;
   }
   sum.touching.clear();
@@ -352,8 +361,11 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   for (std::size_t v = 0; v < placed.size(); ++v)
     surface_.place(v, u, placed[v]);
   const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
-  const auto add = [&](std::size_t v, const Vector& force)
-  { push(v, force, all, [&](std::int32_t node, const Vector& part) { add_vector(forces[node], part); }); };
+  const auto add = [&](std::size_t v, const Vector& force, const Vector& turn)
+  {
+    push(v, force, turn, placed[v], all,
+         [&](std::int32_t node, const Vector& part) { add_vector(forces[node], part); });
+  };
   for (std::size_t k = 0; k < tracks_.size(); ++k)
   {
     Track track = tracks_[k];
@@ -365,9 +377,9 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
     lost += pair.lost;
     if (track.touches != Touching::yes || forces.empty())
       continue;
-    add(k / most_tracks, pair.point);
+    add(k / most_tracks, pair.point, { 0, 0, 0 });
     for (std::size_t i = 0; i < 3; ++i)
-      add(surface_.triangles[track.triangle].vertex[i], pair.corner[i]);
+      add(surface_.triangles[track.triangle].vertex[i], pair.corner[i], pair.turn[i]);
   }
   if (open)
     opened_[0] = lost;

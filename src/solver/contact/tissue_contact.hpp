@@ -70,6 +70,7 @@ private:
   {
     Vector point{ 0, 0, 0 };         // [N]
     std::array<Vector, 3> corner{};  // [N]
+    std::array<Vector, 3> turn{};    // of the corners' normals [N m]
     double stored = 0, lost = 0;     // [J]
   };
   struct Chunk
@@ -95,7 +96,7 @@ private:
 
   struct VertexForces
   {
-    std::vector<Vector> force;  // [N], of vertices that touch
+    std::vector<Vector> force, turn;  // of vertices that touch [N], [N m]
     std::vector<std::uint8_t> touches;
     std::vector<std::int32_t> touching;
   };
@@ -117,18 +118,22 @@ private:
   void mark_live();
   void find_overlap_at_rest();
   void add_vertex_forces(VertexForces& sum, const NodeShare& share, std::int32_t begin, std::int32_t end);
-  /// Calls push(node, force) for a vertex's force on nodes in a share.
+  /// Calls push(node, force) for the forces on nodes in a share that belong to a vertex's force and to the turn of its
+  /// normal.
   template <class Push>
-  void push(std::size_t p, const Vector& force, const NodeShare& share, const Push& push) const
+  void push(std::size_t p, const Vector& force, const Vector& turn, const Placed& placed, const NodeShare& share,
+            const Push& push) const
   {
     const auto& vertex = surface_.vertices[p];
     const auto& nodes = model_.voxel_nodes[vertex.voxel];
     double weight[8];
     physics::trilinear_weights<double>(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
+    const double first = dot(turn, placed.dual[0]), second = dot(turn, placed.dual[1]);
     const std::int32_t plane = model_.voxels[vertex.voxel][2];
     for (int b = 0; b < 8; ++b)
       if (plane + (b >> 2) >= share.first_plane && plane + (b >> 2) < share.end_plane)
-        push(nodes[b], weight[b] * force);
+        push(nodes[b], weight[b] * force -
+                           (first * double(vertex.along[0][b]) + second * double(vertex.along[1][b])) * placed.normal);
   }
 
   const Model& model_;

@@ -288,7 +288,9 @@ void TouchingSurface::place(std::size_t v, const Real* const u[3], Placed& at) c
   const Vector area = cross(first, second);
   at.before = at.place;
   at.place = place;
-  at.normal = (1 / std::max(norm(area), 1e-12)) * area;
+  const double scale = 1 / std::max(norm(area), 1e-12);
+  at.normal = scale * area;
+  at.dual = { { scale * cross(second, at.normal), scale * cross(at.normal, first) } };
 }
 
 template void TouchingSurface::place(std::size_t, const float* const[3], Placed&) const;

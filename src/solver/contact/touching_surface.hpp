@@ -20,7 +20,7 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source_in_contact;     // the vertex of the contact's surface that it is
+    std::int32_t source_in_contact;    // the vertex of the contact's surface that it is
     std::int32_t source;               // the same, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
     float area_share;                  // of its source's area
@@ -41,6 +41,8 @@ public:
   {
     Vector place, normal;
     Vector before;  // its place in the step before
+    std::array<Vector, 2>
+        dual;  // to the tangents: the normal turns by minus their sum, each times normal . tangent's change
   };
 
   explicit TouchingSurface(const Model& model);
