@@ -43,6 +43,8 @@ public:
   std::optional<double> highest_frequency_squared(int most_iterations) override;
   Monitor monitor() override;
   Work work(bool open) override;
+  void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
   void skin(SkinState& out) override;
 
 private:
@@ -52,9 +54,11 @@ private:
   void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
-  void do_steps(StepArguments& g, int begin, int end);
+  void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
+  bool pushes_before_steps() const;
   void rest();
-  void queue_forces(float4* at, const float* activation, float4* out);
+  /// `springs`: with those of points of contact.
+  void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cuda/backend/device_memory.hpp"
+#include "cuda/backend/device_fields.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "frontalis/model/model.hpp"
 #include "solver/stepping/array_list.hpp"
@@ -28,13 +28,10 @@ public:
   void reset() override;
 
 private:
-  void add_fields(const Model& model);
-
   bool rubs_ = true;
   std::vector<std::int32_t> node_;     // model node of each sliding node
   std::vector<std::int32_t> gliding_;  // index into glides_ of each sliding node; -1: its surface is still
-  std::vector<DeviceArray<std::int32_t>> tables_;
-  std::vector<DeviceArray<float>> field_samples_;
+  DeviceFields surfaces_;
   DeviceArray<physics::DistanceField> fields_;
   DeviceArray<SlidingNodeField> sliding_;
   DeviceArray<float4> at_, samples_, planes_;

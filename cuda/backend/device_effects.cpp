@@ -118,7 +118,30 @@ void DeviceModel::choose_effects(EffectSet running)
   effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
   if (running.has(Effect::sliding) && running.has(Effect::friction))
     effects_ = effects_ | (most_effects_ & Effects::friction);
+  choose_kernel();
+}
+
+StepLaunch DeviceModel::launch_with_contact() const
+{
+  StepLaunch launch = launch_;
+  if (touching_ && launch.patches)
+    launch.effects = effects_ | of_nodes | Effects::contact;
+  return launch;
+}
+
+void DeviceModel::choose_kernel()
+{
   launch_.effects = effects_;
+  if (touching_ && !touching_->idle())
+    launch_ = launch_with_contact();
+}
+
+std::vector<EffectPart*> DeviceModel::parts()
+{
+  std::vector<EffectPart*> all{ &loads_, &viscosity_, &contacts_ };
+  if (touching_)
+    all.push_back(touching_.get());
+  return all;
 }
 
 void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/backend/device_contacts.hpp"
+#include "cuda/backend/device_part.hpp"
 #include "cuda/backend/device_surface.hpp"
 #include "cuda/backend/device_viscosity.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -62,6 +63,8 @@ public:
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
+  /// The same with the points of contact, also where contact is switched off.
+  StepLaunch launch_with_contact() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
   double filled() const { return filled_; }                      ///< VoxelStrips::filled()
@@ -70,6 +73,7 @@ public:
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   const DeviceContacts& contacts() const { return contacts_; }
+  DevicePart* touching() const { return touching_.get(); }  ///< contact; null if the model has none
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -86,8 +90,9 @@ private:
   void run_tasks(EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
+  void choose_kernel();
 
-  std::array<EffectPart*, 3> parts() { return { { &loads_, &viscosity_, &contacts_ } }; }
+  std::vector<EffectPart*> parts();
 
   /// Copies of the arrays with all effects switched on, made at the first switch.
   struct Whole
@@ -126,6 +131,7 @@ private:
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;
+  std::unique_ptr<DevicePart> touching_;
 };
 
 }  // namespace cuda

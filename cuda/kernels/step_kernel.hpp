@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
+#include "cuda/kernels/contact_arguments.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
 
@@ -175,6 +176,7 @@ struct StepArguments : physics::Kick<float>
   float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
   double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
   std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
+  ContactArguments contact;                  ///< with bodies
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -210,7 +212,8 @@ enum class Effects : std::uint8_t
   general_element = 4,  ///< other laws, hourglass controls and integrations
   sliding = 8,          ///< on surfaces
   tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
-  friction = 32         ///< of sliding nodes
+  friction = 32,        ///< of sliding nodes
+  contact = 64          ///< with bodies, in patches; always set with all effects of nodes
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -223,7 +226,7 @@ inline constexpr Effects part = Set& Of;
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
 /// The effects of a set that a voxel without fibres and viscosity may have, with those of nodes.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes);
+inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact);
 /// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
@@ -238,6 +241,7 @@ struct StepLaunch
   int blocks, threads;
   std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
   std::size_t shared_bytes;                          ///< per block
+  std::uint32_t most_points;                         ///< points of contact per patch
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
@@ -250,10 +254,11 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
-/// corners of voxels and their stiffness bounds.
-constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
+/// corners of voxels and their stiffness bounds, points of contact.
+constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
+                                  std::size_t most_points = 0)
 {
-  return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
+  return sizeof(float4) * (most_halo + most_nodes + 2 * most_points) + 3 * sizeof(float) * most_nodes +
          25 * sizeof(float) * (most_voxels + 1);
 }
 

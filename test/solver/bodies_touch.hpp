@@ -17,13 +17,6 @@ using Vectors = std::vector<std::array<double, 3>>;
 
 constexpr double degree = 3.14159265358979 / 180;
 
-inline std::vector<Backend> host_backends()
-{
-  auto backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
 class BodiesTouch : public EveryBackend
 {
 protected:
@@ -99,7 +92,3 @@ inline void press_and_stroke(Solver& solver, double seconds)
 
 }  // namespace test
 }  // namespace frontalis
-
-#define FRONTALIS_HOST_BACKENDS(suite)                                                           \
-  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::ValuesIn(frontalis::test::host_backends()), \
-                           frontalis::test::backend_name)

@@ -116,7 +116,7 @@ TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
   }
 }
 
-FRONTALIS_HOST_BACKENDS(BodiesTouch);
+FRONTALIS_EVERY_BACKEND(BodiesTouch);
 
 }  // namespace
 }  // namespace frontalis

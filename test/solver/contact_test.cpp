@@ -92,7 +92,7 @@ TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
   EXPECT_LT(solver->monitor().internal, 1e-4 * pressed.internal);
 }
 
-FRONTALIS_HOST_BACKENDS(BodiesTouch);
+FRONTALIS_EVERY_BACKEND(BodiesTouch);
 
 }  // namespace
 }  // namespace frontalis

@@ -3,6 +3,8 @@
 #include "frontalis/physics/field_spline.hpp"
 #include "frontalis/physics/sliding.hpp"
 
+#include <cstdint>
+
 namespace frontalis
 {
 namespace physics
@@ -18,6 +20,20 @@ constexpr double contact_stiffness = 3.5;
 
 /// Stiffness along the surface of a point that sticks, over that along the normal.
 constexpr double sticking_stiffness = 0.5;
+
+/// A field is at most this much steeper than the distance: each component of a spline's gradient is a mean of slopes.
+constexpr double steepest_field = 1.7320508;
+
+/// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+constexpr double forgotten_depth = 1e-9;
+
+/// Whether a point touches a body.
+enum class Touching : std::uint8_t
+{
+  no,
+  yes,
+  let_go  ///< in this step
+};
 
 /// State of friction at a point, kept from step to step.
 template <class T>

@@ -99,21 +99,43 @@ FRONTALIS_LAW Vec3<T> enter_cell(const T& inverse_spacing, const Vec3<T>& offset
 }
 
 /// Finds the field at a point. Returns false, and leaves `value` unchanged, if no samples are stored there.
+/// inverse_spacing: 1 / field.spacing.
 template <class T>
-FRONTALIS_LAW bool sample(const DistanceField& field, FieldPoint<T> point, FieldValue<T>& value)
+FRONTALIS_LAW bool sample(const DistanceField& field, const T& inverse_spacing, FieldPoint<T> point,
+                          FieldValue<T>& value)
 {
   if (field.radius > 0)
   {
     value = sphere_value(static_cast<T>(field.radius), point.offset);
     return true;
   }
-  const T inverse_spacing = static_cast<T>(1 / field.spacing);
   const Vec3<T> place = enter_cell(inverse_spacing, point.offset, point.cell);
   const float* const first = field.around(point.cell);
   if (first == nullptr)
     return false;
   value = spline(gather(first), inverse_spacing, place);
   return true;
+}
+template <class T>
+FRONTALIS_LAW bool sample(const DistanceField& field, const FieldPoint<T>& point, FieldValue<T>& value)
+{
+  return sample(field, static_cast<T>(1 / field.spacing), point, value);
+}
+
+/// At most the distance of a point that has no samples around it from the surface, in whose frame p is [m]. reach: of
+/// the samples from the surface [m].
+FRONTALIS_LAW double distance_without_samples(const DistanceField& field, double reach, const Vec3<double>& p)
+{
+  const double at[3] = { p.x, p.y, p.z };
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double begin = field.origin[axis] - 0.5 * field.spacing;
+    const double end = begin + field.bricks[axis] * DistanceField::brick_edge * field.spacing;
+    const double outside = at[axis] < begin ? begin - at[axis] : at[axis] > end ? at[axis] - end : 0;
+    squared += outside * outside;
+  }
+  return Number<double>::max(0.5 * reach, Number<double>::sqrt(squared));
 }
 
 }  // namespace physics

@@ -15,9 +15,6 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// A point outside its body keeps its delayed normal force, for friction, until it is that of this depth [m].
-constexpr double forgotten_depth = 1e-9;
-
 }  // namespace
 
 template <class Real>
@@ -134,23 +131,6 @@ std::vector<typename BodyContact<Real>::BodyState> BodyContact<Real>::next(const
   return now;
 }
 
-// Lower bound of the distance [m] from a body of a point without samples around it.
-template <class Real>
-double BodyContact<Real>::slack(const Contact& contact, const Vector& x) const
-{
-  const SampledField& field = contact.field;
-  const double p[3] = { x.x, x.y, x.z };
-  double squared = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    const double begin = field.origin[axis] - 0.5 * field.spacing;
-    const double end = begin + field.bricks[axis] * physics::DistanceField::brick_edge * field.spacing;
-    const double outside = std::max({ begin - p[axis], p[axis] - end, 0.0 });
-    squared += outside * outside;
-  }
-  return std::max(0.5 * contact.reach, std::sqrt(squared));
-}
-
 template <class Real>
 void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
 {
@@ -174,12 +154,13 @@ void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const Bod
   }
   forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
   touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
-  if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
+  if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
-  // the distance is at least this, because the spline's gradient is at most sqrt(3) long
+  // the distance is at least this
   if (touches_[p] == Touching::no)
-    due_[p] = body.way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+    due_[p] = body.way + (sampled ? value.value / physics::steepest_field
+                                  : physics::distance_without_samples(field, contact.reach, x));
 }
 
 template <class Real>
@@ -204,11 +185,31 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }
   }
-  if (share.thread != 0)
-    return;
+  if (share.thread == 0)
+    go_on_to(now);
+}
+
+template <class Real>
+void BodyContact<Real>::go_on_to(const std::vector<BodyState>& now)
+{
   for (std::size_t b = 0; b < now.size(); ++b)
     motion_[b] = bodies_[b].dt > 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
   next_ = now;
+}
+
+template <class Real>
+void BodyContact<Real>::follow(const std::vector<Found>& found, const ConstraintStep& step)
+{
+  for (std::size_t p = 0; p < points_.size(); ++p)
+  {
+    forces_[p] = found[p].force;
+    grips_[p] = found[p].grip;
+    touches_[p] = found[p].touching;
+  }
+  for (Chunk& chunk : chunks_)
+    chunk.touches = 1;
+  go_on_to(next(step));
+  add_up(0, 0, model_.size[2]);
 }
 
 template <class Real>

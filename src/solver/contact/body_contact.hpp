@@ -39,27 +39,35 @@ public:
                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
 
-private:
-  using Vector = physics::Vec3<double>;
+  // For a backend that has the points in a memory of its own, finds their forces there, and leaves the account here.
 
+  using Vector = physics::Vec3<double>;
   struct Point
   {
     std::int32_t voxel, body;
     std::array<float, 3> coordinates;
-    float stiffness;  // [N/m]
+    float stiffness;  ///< [N/m]
     Vector rest;
   };
   struct PointForce
   {
-    Vector force, arm;  // force on the point [N]; arm from the origin of the body's frame [m]
-    double lost;        // dissipated by friction in this step [J]
+    Vector force, arm;  ///< force on the point [N]; arm from the origin of the body's frame [m]
+    double lost;        ///< dissipated by friction in this step [J]
   };
-  enum class Touching : std::uint8_t
+  /// What a step has found for a point.
+  struct Found
   {
-    no,
-    yes,
-    let_go  // the point has left the body in this step
+    PointForce force;
+    physics::Grip<double> grip;
+    physics::Touching touching;
   };
+  /// Sorted by voxel.
+  const std::vector<Point>& points() const { return points_; }
+  /// Takes over what a step has found, one entry per point, and adds up the reactions and energies.
+  void follow(const std::vector<Found>& found, const ConstraintStep& step);
+
+private:
+  using Touching = physics::Touching;
   struct BodyState
   {
     RigidTransform pose;  // at the start of the latest step
@@ -120,7 +128,7 @@ private:
     const auto& grip = grips_[p];
     return touches_[p] == Touching::yes ? grip : physics::Grip<double>{ x, grip.normal, 0 };
   }
-  double slack(const Contact& contact, const Vector& x) const;
+  void go_on_to(const std::vector<BodyState>& now);
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;

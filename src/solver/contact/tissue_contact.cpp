@@ -33,9 +33,6 @@ constexpr double opposed = 0.25;
 constexpr double least_upright = 0.2, upright = 0.4;
 constexpr double rim_begin = 0.1, rim_end = 0.3;
 
-// Friction forgets the normal force on a vertex that has left a surface when it is that of this depth [m].
-constexpr double forgotten_depth = 1e-9;
-
 double ramp(double x) { return std::clamp(x, 0.0, 1.0); }
 
 }  // namespace
@@ -229,7 +226,7 @@ typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p
       pair.lost = physics::let_go<double>(grip, track.stiffness, response);
     else
       grip.normal -= response * grip.normal;
-    if (friction == 0 || grip.normal <= double(stiffness_[p]) * forgotten_depth)
+    if (friction == 0 || grip.normal <= double(stiffness_[p]) * physics::forgotten_depth)
       grip.normal = 0;
     const Touching now = track.touches == Touching::yes ? Touching::let_go : Touching::no;
     track = { track.triangle, now, 0, grip.normal, 0, { 0, 0, 0 } };
