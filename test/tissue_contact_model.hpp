@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 
@@ -86,6 +87,65 @@ inline Model two_blocks(BlockSettings settings, double friction = 0, double beyo
   add_side(model, contact, height + 1, false, beyond);
   model.self_contacts.push_back(contact);
   return model;
+}
+
+/// Adds a sphere whose vertices are bound to the nearest voxels: an octahedron, its triangles divided by four four
+/// times.
+inline void add_sphere(const Model& model, SelfContact& contact, const std::array<double, 3>& centre, double radius)
+{
+  using Point = std::array<double, 3>;
+  const auto middle = [](const Point& a, const Point& b)
+  {
+    const Point sum{ { a[0] + b[0], a[1] + b[1], a[2] + b[2] } };
+    const double length = std::hypot(sum[0], sum[1], sum[2]);
+    return Point{ { sum[0] / length, sum[1] / length, sum[2] / length } };
+  };
+  std::vector<std::array<Point, 3>> triangles;
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    const double x = octant & 1 ? 1 : -1, y = octant & 2 ? 1 : -1, z = octant & 4 ? 1 : -1;
+    const Point a{ { x, 0, 0 } }, b{ { 0, y, 0 } }, c{ { 0, 0, z } };
+    triangles.push_back(x * y * z > 0 ? std::array<Point, 3>{ { a, b, c } } : std::array<Point, 3>{ { a, c, b } });
+  }
+  for (int division = 0; division < 4; ++division)
+  {
+    std::vector<std::array<Point, 3>> finer;
+    for (const auto& [a, b, c] : triangles)
+    {
+      const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), { { { a, ab, ca } }, { { ab, b, bc } }, { { ca, bc, c } }, { { ab, bc, ca } } });
+    }
+    triangles = std::move(finer);
+  }
+  std::map<Point, std::int32_t> known;
+  for (const auto& corners : triangles)
+  {
+    auto& triangle = contact.surface.triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const auto [found, fresh] = known.emplace(corners[i], static_cast<std::int32_t>(contact.surface.vertices.size()));
+      triangle[i] = found->second;
+      if (!fresh)
+        continue;
+      Point p{};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        p[axis] = centre[axis] + radius * corners[i][axis];
+      const auto way = [&](const std::array<std::int32_t, 3>& voxel)
+      {
+        double squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          squared += std::pow(p[axis] / model.spacing[axis] - voxel[axis] - 0.5, 2);
+        return squared;
+      };
+      const auto nearest = std::min_element(model.voxels.begin(), model.voxels.end(),
+                                            [&](const auto& a, const auto& b) { return way(a) < way(b); });
+      contact.surface.vertices.push_back(p);
+      contact.binding.voxel.push_back(static_cast<std::int32_t>(nearest - model.voxels.begin()));
+      auto& coordinates = contact.binding.coordinates.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        coordinates[axis] = static_cast<float>(p[axis] / model.spacing[axis] - (*nearest)[axis]);
+    }
+  }
 }
 
 /// Makes one surface of pieces that join: vertices at the same place become one.

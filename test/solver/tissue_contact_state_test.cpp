@@ -104,7 +104,7 @@ TEST_P(TissuesTouch, self_contact_is_switched_while_running)
   Model without = model;
   switch_off(without, EffectSet().with(Effect::self_contact));
   // the bound of the step keeps the part of contact
-  const double dt = 5e-6;
+  const double dt = 1e-5;
   const auto solver = make(model, 2, true, dt), other = make(without, 2, true, dt);
   solver->switch_effect(Effect::self_contact, false);
   for (Solver* const one : { solver.get(), other.get() })

@@ -131,6 +131,47 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
   }
 }
 
+// Balls of voxels, whose smooth surfaces lie outside of the steps, collide out of centre, without damping.
+TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
+{
+  const double radius = 5.2, middle = 6.5;
+  BlockSettings settings;
+  settings.voxels = { { 26, 13, 13 } };
+  settings.poisson = 0.45;
+  settings.keep = [&](std::int32_t i, std::int32_t j, std::int32_t k)
+  { return std::hypot((i < 13 ? i : i - 13) + 0.5 - middle, j + 0.5 - middle, k + 0.5 - middle) < radius; };
+  for (const double friction : { 0.0, 0.3 })
+  {
+    Model model = block_model(settings);
+    SelfContact contact;
+    contact.friction = friction;
+    for (const double x : { middle, middle + 13 })
+      add_sphere(model, contact, { { 1e-3 * x, 1e-3 * middle, 1e-3 * middle } }, 1e-3 * radius);
+    model.self_contacts.push_back(contact);
+    const auto solver = make(model, 2, true);
+    Vectors u(model.nodes.size()), v(model.nodes.size());
+    for (std::size_t n = 0; n < u.size(); ++n)
+      if (model.nodes[n][0] > 13)
+      {
+        u[n] = { { -2.4e-3, 2.3e-3, 0.7e-3 } };
+        v[n] = { { -0.3, 0.06, 0.03 } };
+      }
+    solver->set_displacements(u);
+    solver->set_velocities(v);
+    const double initial = solver->ledger().initial;
+    double stored = 0;
+    for (int slice = 0; slice < 24; ++slice)
+    {
+      solver->advance(0.5e-3, solver->controls());
+      const EnergyLedger ledger = solver->ledger();
+      stored = std::max(stored, ledger["contact_stored"]);
+      EXPECT_NEAR(mechanical(ledger) + ledger["friction"], initial, 0.01 * initial) << slice;
+    }
+    EXPECT_GT(stored, 0.03 * initial);
+    EXPECT_EQ(solver->ledger()["contact_stored"], 0);
+  }
+}
+
 // A small block lies on a long one under gravity that is turned, so strong that its pressure is 5 % of Young's modulus.
 // It slides slowly: friction follows the pressure on vertices that come under it with a delay of 1 ms.
 TEST_P(TissuesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_it)
