@@ -11,6 +11,12 @@ namespace frontalis
 namespace checks
 {
 
+void check_mesh(const std::string& array, const TriangleMesh& mesh)
+{
+  check_each(array + ".vertices", check_finite, mesh.vertices);
+  check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
+}
+
 void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
 {
   check_length(array + ".voxel", binding.voxel.size(), points, "point");
@@ -55,12 +61,6 @@ void check_ranges(const std::string& array, const std::vector<std::int32_t>& beg
     fail(array, "decreases after entry {}", decrease - begin.begin() - 1);
   if (static_cast<std::size_t>(begin.back()) != entries)
     fail(array, "ends at {}; there are {} entries", begin.back(), entries);
-}
-
-void check_mesh(const std::string& array, const TriangleMesh& mesh)
-{
-  check_each(array + ".vertices", check_finite, mesh.vertices);
-  check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
 }
 
 void check_grid(const Model& model)

@@ -88,11 +88,9 @@ EffectDescription contact_description()
            add_bodies };
 }
 
-void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding)
+std::vector<double> vertex_areas(const TriangleMesh& surface)
 {
-  contact.points = surface.vertices;
-  contact.binding = binding;
-  contact.area.assign(surface.vertices.size(), 0);
+  std::vector<double> area(surface.vertices.size(), 0);
   const auto corner = [&](std::int32_t v)
   {
     const auto& p = surface.vertices[v];
@@ -103,8 +101,16 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
     const auto a = corner(t[0]);
     const double third = norm(cross(corner(t[1]) - a, corner(t[2]) - a)) / 6;
     for (const auto v : t)
-      contact.area[v] += third;
+      area[v] += third;
   }
+  return area;
+}
+
+void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding)
+{
+  contact.points = surface.vertices;
+  contact.binding = binding;
+  contact.area = vertex_areas(surface);
 }
 
 }  // namespace frontalis

@@ -64,6 +64,12 @@ constexpr ConstraintKind constraint_kinds[] = {
       read_place(mapping, constraint);
       read_friction(mapping, constraint);
     } },
+  { SceneConstraint::Kind::self_contact, "self_contact",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      constraint.crop = read_region(mapping.optional("crop"));
+      read_friction(mapping, constraint);
+    } },
 };
 
 }  // namespace

@@ -243,7 +243,7 @@ TEST(EveryKey, muscles_and_expressions)
 TEST(EveryKey, constraints_and_loads)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.constraints.size(), 3U);
+  ASSERT_EQ(scene.constraints.size(), 4U);
   EXPECT_EQ(scene.constraints[0].kind, SceneConstraint::Kind::rigid);
   EXPECT_EQ(scene.constraints[0].surfaces, std::vector<std::string>{ "torus" });
   EXPECT_NEAR(scene.constraints[0].within, 1.5e-3, 1e-15);
@@ -258,6 +258,9 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[2].on, "box");
   EXPECT_EQ(scene.constraints[2].bone, "finger");
   EXPECT_EQ(scene.constraints[2].friction, 0.3);
+  EXPECT_EQ(scene.constraints[3].kind, SceneConstraint::Kind::self_contact);
+  EXPECT_EQ(scene.constraints[3].surfaces, (std::vector<std::string>{ "box", "sphere" }));
+  EXPECT_EQ(scene.constraints[3].friction, 0.4);
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);

@@ -25,6 +25,9 @@ struct Contact
   Binding binding;                            ///< one entry per point
 };
 
+/// Area of each vertex [m2]: a third of each of its triangles.
+std::vector<double> vertex_areas(const TriangleMesh& surface);
+
 /// Sets the points of a contact: the vertices of a bound surface, with their areas.
 void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding);
 

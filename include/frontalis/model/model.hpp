@@ -2,6 +2,7 @@
 
 #include "frontalis/model/contact.hpp"
 #include "frontalis/model/restriction.hpp"
+#include "frontalis/model/self_contact.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
 
@@ -54,6 +55,7 @@ struct Model
   std::vector<RigidNode> rigid;
   std::vector<SlidingNode> sliding;
   std::vector<Contact> contacts;
+  std::vector<SelfContact> self_contacts;
 
   // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]

@@ -15,7 +15,8 @@ struct SceneConstraint
   {
     rigid,
     sliding,
-    contact
+    contact,
+    self_contact
   };
   std::string name;
   Kind kind = Kind::rigid;
@@ -23,7 +24,7 @@ struct SceneConstraint
   double within = -1;  ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
   Region crop;
   std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
-  double friction = 0;  ///< sliding and contact: Coulomb friction coefficient
+  double friction = 0;  ///< sliding, contact and self_contact: Coulomb friction coefficient
   std::string on;       ///< contact: surface of the tissue that touches; empty: the skin
   int line = 0;
 };

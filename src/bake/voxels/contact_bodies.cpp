@@ -61,8 +61,8 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
                      { parallel_for(monitor, count, 1, body); });
 }
 
-// The part of a surface in a box, with its triangles halved until no edge is longer than `longest` [m], because contact
-// is found at vertices only. New vertices may be on edges of other triangles, which changes neither area nor shape.
+}  // namespace
+
 TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
 {
   TriangleMesh mesh;
@@ -100,6 +100,9 @@ TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest
   join_vertices(mesh);
   return mesh;
 }
+
+namespace
+{
 
 // Index in the model of the bone of this name, added if it is new; -1: none.
 std::int32_t bone_of(const std::string& name, Model& model)

@@ -5,6 +5,7 @@
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
+#include "solver/contact/bound_node_way.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <algorithm>
@@ -92,11 +93,6 @@ private:
     double due = 0;            // BodyState::way at which the first of its points is due
     std::int64_t touches = 0;  // not 0: one of its points touches
   };
-  // nodes [first, last), of which nearly all are bound
-  struct Run
-  {
-    std::int32_t first, last;
-  };
   /// Calls visit(p) for the points in [first, last) that touch.
   template <class Visit>
   void each_touching(std::int32_t first, std::int32_t last, const Visit& visit) const
@@ -137,11 +133,9 @@ private:
 
   const Model& model_;
   bool runs_ = true;
-  double spread_ = 1;                       // largest ratio of a point's motion to that of the nodes of its voxel
   std::vector<Point> points_;               // sorted by voxel
   std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
-  std::vector<Run> runs_of_nodes_;          // runs that contain all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;    // first run in each plane of nodes, then twice the number of runs
+  BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
   // values of the present step
   std::vector<PointForce> forces_;  // one per point

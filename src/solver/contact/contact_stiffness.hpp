@@ -15,8 +15,10 @@ public:
   /// From the mixtures of the points' voxels, with bounds of their stiffness that do not include contact.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
-  /// Of a point [N/m].
-  double of(std::size_t contact, std::size_t point) const { return points_[contact][point]; }
+  /// Of a point [N/m], of Model::contacts.
+  double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
+  /// Of a vertex [N/m], of Model::self_contacts.
+  double of_self(std::size_t contact, std::size_t vertex) const { return of(bodies_ + contact, vertex); }
   /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue of Poisson's ratio 0.49 it is at most 7 % of
   /// the voxel's own.
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
@@ -26,10 +28,19 @@ public:
                   std::vector<std::array<double, 3>>& forces) const override;
 
 private:
-  std::vector<double> rows(const Model& model) const;
+  struct Surface
+  {
+    const Binding* binding;
+    std::vector<float> points;  // [N/m]
+    double moves;               // 2 where the other side moves too: two masses joined by a spring feel it twice
+  };
+  void add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area, double moves);
+  /// `alone`: as if the other side stood still.
+  std::vector<double> rows(const Model& model, bool alone) const;
 
-  std::vector<std::vector<float>> points_;  // [N/m] of each contact's points
-  std::vector<float> voxels_;               // [N/m]
+  std::vector<Surface> surfaces_;  // first those of bodies
+  std::size_t bodies_;
+  std::vector<float> voxels_;  // [N/m]
 };
 
 }  // namespace frontalis
