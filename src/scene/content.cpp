@@ -1,6 +1,7 @@
 #include "scene/quantity.hpp"
 
 #include "frontalis/scene/content_hash.hpp"
+#include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/read_scene.hpp"
 
 #include <fmt/format.h>
@@ -85,11 +86,16 @@ void add_surface(const Surface& surface, Content& content)
     // the extension of the file name determines the mesh format
     content.add("file", std::filesystem::path(surface.file).extension().string(), surface.unit,
                 hash_of_file(surface.file));
+    if (surface.subdivide > 0 || surface.mirror >= 0)
+      content.add("subdivide", surface.subdivide, surface.mirror);
     return;
   }
   const Shape& shape = *surface.shape;
   content.add("shape", shape.kind, shape.centre, shape.size, shape.axis, shape.radius, shape.minor_radius, shape.length,
               shape.edge, shape.part, shape.dimensions);
+  if (shape.head)
+    for (const std::string& file : shape.head->files)
+      content.add(hash_of_file(file));
 }
 
 void add_muscle(const SceneMuscle& muscle, Content& content)
