@@ -130,6 +130,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("skin");
   bind_surfaces(scene, surfaces, frame, model, monitor);
   bind_contacts(scene, surfaces, frame, model, monitor);
+  copy_poses(scene, model);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

@@ -8,6 +8,8 @@
 namespace frontalis
 {
 
+template <class Archive, class Mesh>
+void exchange_mesh(Archive& archive, const std::string& path, Mesh& mesh);
 template <class Archive, class Field>
 void exchange_field(Archive& archive, const std::string& path, Field& field);
 template <class Archive, class Bound>
@@ -20,11 +22,15 @@ void exchange_contacts(Archive& archive, const std::string& path, Contacts& cont
   if (!archive.group_if(!contacts.empty(), path))
     return;
   archive.table(path, contacts, Column{ "name", &Contact::name }, Column{ "bone", &Contact::bone },
-                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach });
+                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach },
+                Column{ "centre", &Contact::centre }, Column{ "mass", &Contact::mass },
+                Column{ "force", &Contact::force }, Column{ "spring", &Contact::spring },
+                Column{ "damping", &Contact::damping });
   for (std::size_t c = 0; c < contacts.size(); ++c)
   {
     const std::string own = path + "/" + std::to_string(c);
     exchange_field(archive, own, contacts[c].field);
+    exchange_mesh(archive, own, contacts[c].shape);
     archive(own + "/points", contacts[c].points);
     archive(own + "/area", contacts[c].area);
     exchange_binding(archive, own, contacts[c].binding);

@@ -19,9 +19,22 @@ void read_displacement(const Node& node, SceneLoad& load)
     node.fault("found null for all three; at least one must be a length");
 }
 
+std::optional<ScenePush> read_push(const Node& node)
+{
+  if (!node.given())
+    return {};
+  ScenePush push;
+  Mapping mapping(node);
+  push.mass = mapping.required("mass", "the mass of the body").number(Dimension::mass, positive, push.mass);
+  push.force = mapping.optional("force").vector(Dimension::force, any_number, push.force);
+  push.spring = mapping.optional("spring").number(Dimension::spring, not_negative, push.spring);
+  push.damping = mapping.optional("damping").number(Dimension::drag, not_negative, push.damping);
+  return push;
+}
+
 }  // namespace
 
-void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
+void read_constraints(const Node& node, Scene& scene, SceneNames& names)
 {
   const auto read = [&](const Node& entry, Mapping& mapping, SceneConstraint& constraint)
   {
@@ -32,15 +45,20 @@ void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
     constraint.kind = kind == "rigid" ? Kind::rigid : kind == "sliding" ? Kind::sliding : Kind::contact;
     constraint.surfaces = mapping.optional(kind).references(names.surfaces);
     if (constraint.kind == Kind::contact)
+    {
       constraint.on = mapping.optional("on").reference(names.surfaces);
+      constraint.pushed = read_push(mapping.optional("pushed"));
+    }
     else
       constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
     constraint.crop = read_region(mapping.optional("crop"));
-    constraint.bone = mapping.optional("bone").name();
+    if (const Node bone = mapping.optional("bone"); bone.given())
+      names.bones.names.push_back(constraint.bone = bone.name());
     if (constraint.kind != Kind::rigid)
       constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
   };
   read_list(node, scene.constraints, read);
+  names.bones.complete = !node.faulty();
 }
 
 void read_loads(const Node& node, Scene& scene, const SceneNames& names)

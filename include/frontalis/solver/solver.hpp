@@ -127,6 +127,8 @@ public:
   virtual EnergyLedger ledger() = 0;
   /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Present poses of these bodies, in the local frame.
+  virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

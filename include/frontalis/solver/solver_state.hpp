@@ -36,6 +36,7 @@ struct Monitor
   double step_share = 0;             ///< latest time step over the present critical step, by the model's estimate
   std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
   std::int32_t lost_node = -1;       ///< one that is more than 2 mm past it
+  std::int64_t lost_points = 0;      ///< of contact, deeper in a body than its field reaches: nothing pushes them out
   bool finite = true;
 };
 

@@ -4,7 +4,7 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/body_motion.hpp"
+#include "solver/contact/pushed_body.hpp"
 #include "solver/stepping/array_list.hpp"
 #include "solver/stepping/constraint_step.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -61,6 +61,12 @@ public:
   /// Sum of the points' forces in the latest step, one per contact of the model.
   std::vector<Reaction> reactions() const;
 
+  /// Points that are deeper in a body than its field has samples: they are not pushed out, and the guard must know.
+  std::int64_t lost() const { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
+
+  /// Present poses of the bodies, from those of the bones.
+  std::vector<RigidTransform> poses(const std::vector<RigidTransform>& bones) const;
+
   /// Energies since the account was opened, up to the present displacements. `open`: opens it now. Adds the present
   /// forces on nodes [N] to `forces`, if it is not empty. `bones`: present poses.
   template <class Real>
@@ -86,13 +92,8 @@ private:
   {
     no,
     yes,
-    let_go  // in this step
-  };
-  struct BodyState
-  {
-    RigidTransform pose;  // at the start of the latest step
-    double way;           // by which a point and any body can have come closer to each other [m]
-    double dt;            // length of the latest step [s]; 0: there was none
+    let_go,  // in this step
+    lost     // deeper in the body than its field has samples
   };
   // of a body in a plane of voxels
   struct PlaneSum
@@ -137,7 +138,6 @@ private:
   }
   template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
-  RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
   template <class Real>
   void look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response);
@@ -150,7 +150,7 @@ private:
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;
-  bool runs_ = true;
+  bool runs_ = true, any_pushed_ = false;
   double spread_ = 1;                       // by which factor a point may move more than the nodes of its voxel
   std::vector<Point> points_;               // sorted by voxel
   std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, twice more their number
@@ -167,7 +167,7 @@ private:
   std::vector<double> due_;                   // BodyState::way at which a point is looked at again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
-  std::vector<BodyState> bodies_;
+  std::vector<BodyState> bodies_;      // at the start of the latest step
   std::vector<double> node_way_;       // longest way of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;         // one per plane of voxels and body
   std::vector<ContactEnergy> opened_;  // what they came to when the account was opened; one entry

@@ -3,15 +3,23 @@
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
+#include "solver/contact/pushed_body.hpp"
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace frontalis
 {
 namespace
 {
+
+// Where other nodes bound the frequency, contact is stiffer than its law asks for, up to this factor: thin tissue on
+// bone resists a finger several times as much as its Young's modulus says. Bounds stay below this share of the largest.
+constexpr double stiffest_factor = 10;
+constexpr double share_of_largest = 0.95;
 
 // Limit of the stiffness of contact at a node, over that on a flat side of whole voxels with as much tissue. Points
 // that lie far outside of their voxel have large weights, and many points may be bound to a voxel with little tissue.
@@ -63,7 +71,12 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
         if (asked[node] > stiffest_node * of_flat_side[node])
           points_[c][p] = std::min(
               points_[c][p], static_cast<float>(points_[c][p] * stiffest_node * of_flat_side[node] / asked[node]));
-  // What contact adds to a node is shared by its voxels in proportion to their own bounds.
+  share_out(model, of_voxels);
+}
+
+// What contact adds to a node is shared by its voxels in proportion to their own bounds, which voxels_ holds before.
+void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
+{
   const std::vector<double> added = rows(model);
   for (std::size_t e = 0; e < voxels_.size(); ++e)
   {
@@ -72,6 +85,54 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
       share = std::max(share, added[node] / of_voxels[node]);
     voxels_[e] *= static_cast<float>(share);
   }
+  for (std::size_t c = 0; c < points_.size(); ++c)
+    if (model.contacts[c].mass > 0)
+      longest_step_ =
+          std::min(longest_step_,
+                   longest_pushed_step(model.contacts[c], std::accumulate(points_[c].begin(), points_[c].end(), 0.0)));
+}
+
+void ContactStiffness::stiffen(const Model& model, const Discretisation& discretisation)
+{
+  if (points_.empty())
+    return;
+  // bounds of nodes with and without contact; held ones count for nothing
+  std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
+  VoxelProperties properties;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, properties);
+    const double own = properties.stiffness - in_voxel(e);
+    for (const auto node : model.voxel_nodes[e])
+    {
+      of_voxels[node] += own;
+      squared[node] += properties.stiffness / discretisation.node_mass[node];
+    }
+    voxels_[e] = static_cast<float>(own);
+  }
+  for (const auto node : discretisation.held)
+    squared[node] = 0;
+  // If no voxel's bound grows by more than its nodes and those of its neighbours allow, no node's does.
+  const double limit = share_of_largest * discretisation.frequency_squared_max;
+  std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
+  for (const auto& nodes : model.voxel_nodes)
+  {
+    double largest = 0;
+    for (const auto node : nodes)
+      largest = std::max(largest, squared[node]);
+    for (const auto node : nodes)
+      growth[node] = std::min(growth[node], std::max(1.0, limit / largest));
+  }
+  const std::vector<double> added = rows(model);
+  for (std::size_t c = 0; c < points_.size(); ++c)
+    for (std::size_t p = 0; p < points_[c].size(); ++p)
+    {
+      double factor = stiffest_factor;
+      for (const auto node : model.voxel_nodes[model.contacts[c].binding.voxel[p]])
+        factor = std::min(factor, 1 + (growth[node] - 1) * of_voxels[node] / added[node]);
+      points_[c][p] *= static_cast<float>(factor);
+    }
+  share_out(model, of_voxels);
 }
 
 // The stiffness of a point on the nodes of its voxel is k w w^T, w its weights. The rows of these matrices, added over
@@ -89,7 +150,8 @@ std::vector<double> ContactStiffness::rows(const Model& model) const
       for (const double w : weight)
         sum += std::abs(w);
       for (std::size_t b = 0; b < 8; ++b)
-        rows[model.voxel_nodes[binding.voxel[p]][b]] += double(points_[c][p]) * std::abs(weight[b]) * sum;
+        rows[model.voxel_nodes[binding.voxel[p]][b]] +=
+            counted(model.contacts[c]) * double(points_[c][p]) * std::abs(weight[b]) * sum;
     }
   return rows;
 }
@@ -111,7 +173,7 @@ void ContactStiffness::add_forces(const Model& model, const std::vector<std::arr
         for (std::size_t b = 0; b < 8; ++b)
           moved += weight[b] * displacements[nodes[b]][axis];
         for (std::size_t b = 0; b < 8; ++b)
-          forces[nodes[b]][axis] += double(points_[c][p]) * weight[b] * moved;
+          forces[nodes[b]][axis] += counted(model.contacts[c]) * double(points_[c][p]) * weight[b] * moved;
       }
     }
 }

@@ -47,6 +47,8 @@ public:
     return contact_.energy(pointers(u_).data(), conditions_.bone, open, forces);
   }
   std::vector<Reaction> reactions() const override { return contact_.reactions(); }
+  std::int64_t lost_points() const override { return contact_.lost(); }
+  std::vector<RigidTransform> bodies() const override { return contact_.poses(conditions_.bone); }
   void skin(SkinState& out) override;
 
 protected:

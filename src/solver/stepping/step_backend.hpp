@@ -85,6 +85,16 @@ public:
   /// Energies of contact since its account was opened, as BodyContact::energy() has them.
   virtual ContactEnergy contact_energy(bool /*open*/, NodalVectors& /*forces*/) { return {}; }
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Monitor::lost_points.
+  virtual std::int64_t lost_points() const { return 0; }
+  /// Present poses of bodies that tissue touches. One that is pushed has a pose of its own.
+  virtual std::vector<RigidTransform> bodies() const
+  {
+    std::vector<RigidTransform> poses;
+    for (const Contact& contact : model_->contacts)
+      poses.push_back(held_pose(contact, conditions_.bone));
+    return poses;
+  }
   virtual void skin(SkinState& out) = 0;
 
 protected:
