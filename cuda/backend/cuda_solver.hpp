@@ -12,7 +12,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// The input of one plan on its way to the device, and the frequency bound that its last step reports.
+/// The input of one plan in page-locked memory, and the frequency bound that its last step reports.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -56,7 +56,7 @@ private:
   void rest();
   void queue_forces(float4* at, const float* activation, float4* out);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
-  /// An empty `in` stands for zeros.
+  /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 

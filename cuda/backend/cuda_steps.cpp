@@ -38,7 +38,7 @@ StepArguments CudaSolver::arguments(double dt) const
 }
 
 // Copies the cleared frequency bound, the activations, the poses and the relaxation times of viscous stresses to the
-// device in one transfer from page-locked memory. `relaxation` is empty if stresses do not relax within launches.
+// device in one transfer from page-locked memory. `relaxation` is empty if launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -89,7 +89,7 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-// Launches all steps at once if nothing has to be done between them, else one launch per step.
+// Launches all steps at once if the host has nothing to do between them, else one launch per step.
 void CudaSolver::do_steps(StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
@@ -163,8 +163,7 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // The host waits for the previous plan, so that the device always has work; for the present one if motion changes
-  // fast.
+  // The host waits for the previous plan, so that the device always has work, or for this one if motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);

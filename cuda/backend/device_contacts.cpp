@@ -15,7 +15,7 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
   add_fields(model);
   const auto surface_of = [&model](const SlidingNode& node) -> const ConstraintSurface&
   { return model.constraint_surfaces[node.surface]; };
-  // nodes with friction come first, then the order in which warps process them
+  // order: nodes with friction first; within these groups, the order in which warps process them
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
             [&](const SlidingNode& a, const SlidingNode& b)

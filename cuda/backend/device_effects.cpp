@@ -7,7 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off keeps all arrays. Entries then mark strips without fibres, nodes without tasks and so on.
+// Switching an effect off keeps its arrays: entries then say that strips have no fibres, nodes have no tasks, and so
+// on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -89,7 +90,7 @@ void DeviceModel::run_tasks(EffectSet running)
   patch_tasks_.upload(words.data(), words.size());
 }
 
-// The part of Effects that follows from the tasks of nodes.
+// The flags of `Effects` that follow from the tasks of nodes.
 Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 {
   Effects part = Effects::none;
@@ -104,7 +105,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the smallest kernel that computes the running effects and handles strips of the given number of rows.
+// Chooses the kernel with the fewest effects that computes the running ones, for the strips' number of rows.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -23,10 +23,10 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node);
 /// The effects that a model's kernels must compute because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Patches if they fit the shared memory, else strips.
+/// Choice between patches, if they fit the shared memory, and strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };  ///< first number of turns to try; 0 turns: use strips
+  PatchSettings patches{ 0, 0 };  ///< first number of turns (patches per block) to try; 0 turns: use strips
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
 };
@@ -40,11 +40,11 @@ struct VoxelCut
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
-  /// For each place in the partition, 1 + the number of its model voxel, or 0 if it is empty.
+  /// For each entry of the partition, 1 + the number of its model voxel, or 0 if it is empty.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
-/// A model in device memory, apart from the motion of its nodes.
+/// A model in device memory, without the motion of its nodes.
 class DeviceModel
 {
 public:
@@ -53,7 +53,7 @@ public:
 
   /// Returns step arguments with all constant data filled in.
   StepArguments arguments() const;
-  /// Switches to these effects. No array changes its address or size.
+  /// Computes only these effects from now on. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_arrays(Effect of_fibres, ArrayList& list);
   /// Brings all effects to their state at rest.
@@ -89,7 +89,7 @@ private:
 
   std::array<EffectPart*, 3> parts() { return { { &loads_, &viscosity_, &contacts_ } }; }
 
-  /// The arrays with all effects switched on, kept from the first switch onwards.
+  /// Copies of the arrays with all effects switched on, made at the first switch.
   struct Whole
   {
     std::vector<Strip> strips;

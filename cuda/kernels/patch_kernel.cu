@@ -26,7 +26,7 @@ int resident_blocks(const StepLaunch& launch)
   const void* const kernel = cuda::kernel(launch.effects);
   const auto bytes = static_cast<int>(launch.shared_bytes);
   cudaFuncAttributes known{};
-  // the limit belongs to the kernel, and another solver may need a larger one
+  // only raise the limit: it belongs to the kernel, and another solver may need a larger one
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
       cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||

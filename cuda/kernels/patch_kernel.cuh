@@ -132,7 +132,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: the sum over its voxels, in the order of the corner index that the node has in them.
+/// Force on a node: the sum over its voxels, in the order of their corner 0 .. 7 that the node is.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];
@@ -147,7 +147,7 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
   }
 }
 
-/// Bits of the bound of the squared highest frequency at a node; `voxels` as in sum_forces().
+/// Bits of the bound of the squared highest frequency at a node.
 __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
                                                       std::uint32_t node, float inverse_mass)
 {
@@ -160,8 +160,7 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Updates a node. `own`: its number in the block. `last`: the launch ends with this step, so everything is written to
-/// global memory.
+/// Updates a node. `own`: its number in the block. `last`: in the last step, which writes all to global memory.
 template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -306,8 +305,8 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// These are separate translation units, because nvcc gives every kernel that calls through a table the registers of
-/// the largest function in all tables of the unit.
+/// Kernels are in separate translation units, because nvcc gives every kernel that calls through a table the registers
+/// of the largest function in all tables of the unit.
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 

@@ -1,5 +1,6 @@
 #include "cli/reactions.hpp"
 
+#include "frontalis/model/effects.hpp"
 #include "frontalis/study/plot.hpp"
 
 #include <fmt/core.h>
@@ -11,23 +12,25 @@ namespace frontalis
 
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies)
 {
+  const std::vector<TouchedBody> touched = touched_bodies(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
     const auto& [force, moment] = bodies[c].reaction;
     fmt::print(
         "reaction           {}: {:+.4g} N forward, {:+.4g} N left, {:+.4g} N up; moment {:+.4g}, {:+.4g}, {:+.4g} "
         "N m\n",
-        model.contacts[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
+        touched[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
 }
 
 std::string reaction_rows(const Model& model, int frame, double time, const std::vector<BodyFrame>& bodies)
 {
   std::string rows;
+  const std::vector<TouchedBody> touched = touched_bodies(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
     const auto& [force, moment] = bodies[c].reaction;
-    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, model.contacts[c].name,
+    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, touched[c].name,
                         force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
   return rows;
@@ -46,9 +49,10 @@ void ReactionPlot::write() const
   plot.x_label = "simulated time [s]";
   plot.y_label = "force [N]";
   plot.key = "below";
-  for (std::size_t c = 0; c < model_.contacts.size(); ++c)
+  const std::vector<TouchedBody> touched = touched_bodies(model_);
+  for (std::size_t c = 0; c < touched.size(); ++c)
   {
-    const std::string& name = model_.contacts[c].name;
+    const std::string& name = touched[c].name;
     Plot::Curve curves[] = { { name + ": magnitude", {}, {}, Plot::Style::strong },
                              { "forward", {}, {}, Plot::Style::line },
                              { "left", {}, {}, Plot::Style::line },

@@ -8,10 +8,10 @@
 namespace frontalis
 {
 
-/// Forces and moments as BodyFrame has them: moments are about the point about which `--bone` turns.
+/// Forces and moments as BodyFrame has them: moments are about the centre of rotations given with `--bone`.
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies);
 
-/// Of a table (CSV) with one row per frame and body.
+/// Header of a table (CSV) with one row per frame and body.
 inline const std::string reaction_heading =
     "frame,time_s,body,force_x_N,force_y_N,force_z_N,moment_x_Nm,moment_y_Nm,"
     "moment_z_Nm\n";

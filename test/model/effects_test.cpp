@@ -1,4 +1,4 @@
-// The effects that a model has, and what remains of one that is switched off.
+// Which effects a model has, and what remains of an effect that is switched off.
 
 #include "../solver/effect_scene.hpp"
 

@@ -48,7 +48,10 @@ inline double mean(const Vectors& vectors, std::size_t axis)
   return sum / static_cast<double>(vectors.size());
 }
 
-inline double mechanical(const EnergyLedger& l) { return l.kinetic + l.internal + l.hourglass + l.contact_stored; }
+inline double mechanical(const EnergyLedger& l)
+{
+  return l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"];
+}
 
 // A block with a fingertip above it, which is a bone; its lower side is held.
 inline Model block_and_finger(double friction, bool sampled = false)
@@ -84,7 +87,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   return model;
 }
 
-// Presses the finger in by 0.8 mm and draws it along x by 2 mm while it turns.
+// Presses the finger in by 0.8 mm and moves it along x by 2 mm while it turns.
 inline void press_and_stroke(Solver& solver, double seconds)
 {
   Controls controls = solver.controls();

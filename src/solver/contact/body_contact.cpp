@@ -1,6 +1,7 @@
 #include "solver/contact/body_contact.hpp"
 
 #include "frontalis/model/sample_field.hpp"
+#include "solver/contact/contact_stiffness.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <cmath>
@@ -25,8 +26,10 @@ constexpr double rounding = 1.00001;
 
 }  // namespace
 
-BodyContact::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
+template <class Real>
+BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
 {
+  const auto* const stiffness = discretisation.find_added<ContactStiffness>();
   for (std::size_t c = 0; c < model.contacts.size(); ++c)
   {
     const Contact& contact = model.contacts[c];
@@ -35,7 +38,7 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       if (contact.area[p] > 0)
         points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
-                            static_cast<float>(discretisation.contact.of(c, p)), vector(contact.points[p]) });
+                            static_cast<float>(stiffness->of(c, p)), vector(contact.points[p]) });
   }
   if (points_.empty())
     return;
@@ -72,14 +75,16 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
   reset();
 }
 
-void BodyContact::run(EffectSet running)
+template <class Real>
+void BodyContact<Real>::run(EffectSet running)
 {
   runs_ = running.has(Effect::contact);
   if (!runs_)
     reset();
 }
 
-void BodyContact::reset()
+template <class Real>
+void BodyContact<Real>::reset()
 {
   if (points_.empty())
     return;
@@ -97,7 +102,8 @@ void BodyContact::reset()
   opened_.assign(1, {});
 }
 
-void BodyContact::list_arrays(ArrayList& list)
+template <class Real>
+void BodyContact<Real>::list_arrays(ArrayList& list)
 {
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
@@ -119,7 +125,7 @@ void BodyContact::list_arrays(ArrayList& list)
 }
 
 template <class Real>
-Vector BodyContact::place(const Point& point, const Real* const u[3]) const
+Vector BodyContact<Real>::place(const Point& point, const Real* const u[3]) const
 {
   const auto& c = point.coordinates;
   const auto& nodes = model_.voxel_nodes[point.voxel];
@@ -131,7 +137,8 @@ Vector BodyContact::place(const Point& point, const Real* const u[3]) const
   return p;
 }
 
-std::vector<RigidTransform> BodyContact::poses(const std::vector<RigidTransform>& bones) const
+template <class Real>
+std::vector<RigidTransform> BodyContact<Real>::bodies(const std::vector<RigidTransform>& bones) const
 {
   const std::vector<Reaction> latest = reactions();
   std::vector<RigidTransform> poses;
@@ -141,7 +148,8 @@ std::vector<RigidTransform> BodyContact::poses(const std::vector<RigidTransform>
   return poses;
 }
 
-std::vector<BodyState> BodyContact::next(const ConstraintStep& step) const
+template <class Real>
+std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 {
   std::vector<BodyState> now;
   double way = 0;
@@ -160,7 +168,8 @@ std::vector<BodyState> BodyContact::next(const ConstraintStep& step) const
 }
 
 // Distance from a body of a point that has no samples around it, or less.
-double BodyContact::slack(const Contact& contact, const Vector& x) const
+template <class Real>
+double BodyContact<Real>::slack(const Contact& contact, const Vector& x) const
 {
   const SampledField& field = contact.field;
   const double p[3] = { x.x, x.y, x.z };
@@ -176,7 +185,7 @@ double BodyContact::slack(const Contact& contact, const Vector& x) const
 }
 
 template <class Real>
-void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
@@ -208,11 +217,12 @@ void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState
 }
 
 template <class Real>
-void BodyContact::look(int thread, int threads, const Real* const u[3], const ConstraintStep& step)
+void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step)
 {
   const std::vector<BodyState> now = next(step);
   const double response = physics::friction_response(step.dt);
-  const std::size_t begin = chunks_.size() * thread / threads, end = chunks_.size() * (thread + 1) / threads;
+  const std::size_t begin = chunks_.size() * share.thread / share.threads;
+  const std::size_t end = chunks_.size() * (share.thread + 1) / share.threads;
   for (std::size_t c = begin; c < end; ++c)
   {
     Chunk& chunk = chunks_[c];
@@ -228,14 +238,30 @@ void BodyContact::look(int thread, int threads, const Real* const u[3], const Co
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }
   }
-  if (thread != 0)
+  if (share.thread != 0)
     return;
   for (std::size_t b = 0; b < now.size(); ++b)
     motion_[b] = bodies_[b].dt > 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
   next_ = now;
 }
 
-void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
+template <class Real>
+void BodyContact<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
+{
+  const auto first = share.first_plane, last = share.end_plane;
+  each_touching(plane_points_[std::max(first - 1, 0)], plane_points_[last],
+                [&](std::int32_t p)
+                {
+                  push_point(points_[p], forces_[p].force, first, last,
+                             [&](std::int32_t node, const Vector& part) {
+                               sink(node, { part.x, part.y, part.z });
+                             });
+                });
+  add_up(share.thread, first, last);
+}
+
+template <class Real>
+void BodyContact<Real>::add_up(int thread, std::int32_t first, std::int32_t last)
 {
   if (thread == 0)
     bodies_ = next_;
@@ -260,9 +286,9 @@ void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
 }
 
 template <class Real>
-void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3])
+void BodyContact<Real>::after_step(const NodeShare& share, const Real* const before[3], const Real* const after[3])
 {
-  for (auto k = first; k < last; ++k)
+  for (auto k = share.first_plane; k < share.end_plane; ++k)
   {
     // squares, in lanes that the compiler makes vectors of
     constexpr std::int32_t width = 8;
@@ -287,7 +313,8 @@ void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const
   }
 }
 
-std::vector<Reaction> BodyContact::reactions() const
+template <class Real>
+std::vector<Reaction> BodyContact<Real>::reactions() const
 {
   std::vector<Reaction> total(model_.contacts.size());
   for (std::size_t s = 0; s < sums_.size(); ++s)
@@ -301,19 +328,18 @@ std::vector<Reaction> BodyContact::reactions() const
 }
 
 template <class Real>
-ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
-                                  std::vector<std::array<double, 3>>& forces)
+typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* const u[3],
+                                                                 const std::vector<RigidTransform>& bones,
+                                                                 std::vector<std::array<double, 3>>& forces) const
 {
-  ContactEnergy energy;
-  if (idle())
-    return energy;
+  Energy energy;
   for (const PlaneSum& sum : sums_)
   {
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
   // The sums end at the start of the latest step. The rest is what the next step will add.
-  const std::vector<RigidTransform> present = poses(bones);
+  const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
@@ -343,19 +369,22 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   for (std::size_t b = 0; b < now.size(); ++b)
     if (bodies_[b].dt > 0)
       energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, present[b]));
-  if (open)
-    opened_[0] = energy;
-  energy.work -= opened_[0].work;
-  energy.lost -= opened_[0].lost;
   return energy;
 }
 
-#define FRONTALIS_BODY_CONTACT(Real)                                                                         \
-  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                    \
-  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);  \
-  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool, \
-                                             std::vector<std::array<double, 3>>&);
-FRONTALIS_BODY_CONTACT(float)
-FRONTALIS_BODY_CONTACT(double)
+template <class Real>
+void BodyContact<Real>::add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger)
+{
+  const Energy now = energy_now(u, bones, forces);
+  if (open)
+    opened_[0] = now;
+  ledger["contact"] += now.work - opened_[0].work;
+  ledger["contact_stored"] += now.stored;
+  ledger["friction"] += now.lost - opened_[0].lost;
+}
+
+template class BodyContact<float>;
+template class BodyContact<double>;
 
 }  // namespace frontalis

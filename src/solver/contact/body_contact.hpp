@@ -5,9 +5,7 @@
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/pushed_body.hpp"
-#include "solver/stepping/array_list.hpp"
-#include "solver/stepping/constraint_step.hpp"
-#include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/node_part.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,21 +14,14 @@
 namespace frontalis
 {
 
-/// Energies of contact [J].
-struct ContactEnergy
-{
-  double stored = 0;  ///< now
-  double work = 0;    ///< done by the motion of bodies
-  double lost = 0;    ///< to friction
-};
-
-/// Contact of bound surfaces with rigid bodies. In each step threads first share the points: look() finds their forces.
-/// After a barrier each thread adds those on nodes of its planes: add(). At the end of the step, moved() notes how far
-/// the nodes have come. Points are sorted by voxel, so that each node's forces are added in the same order for any
-/// number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step threads first share the points: before_step() finds their
+/// forces. After a barrier each thread adds those on nodes of its planes: add_forces(), which also adds up the
+/// reactions of points in voxels of these planes. At the end of the step, after_step() notes how far the nodes have
+/// come. Points are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
 /// A point that is `d` from a body is not looked at again before nodes and body together have moved by that much.
-class BodyContact : public EffectPart
+template <class Real>
+class BodyContact : public NodePart<Real>
 {
 public:
   BodyContact(const Model& model, const Discretisation& discretisation);
@@ -38,40 +29,16 @@ public:
   void run(EffectSet running) override;
   void reset() override;
   void list_arrays(ArrayList& list) override;
-  bool idle() const { return !runs_ || points_.empty(); }
-
-  /// Finds the forces at part `thread` of `threads` of the points, from displacements at the start of the step.
-  template <class Real>
-  void look(int thread, int threads, const Real* const u[3], const ConstraintStep& step);
-
-  /// Calls push(node, force [N]) for the points' forces on nodes in planes [first, last), and adds up the reactions of
-  /// points in voxels of these planes.
-  template <class Push>
-  void add(int thread, std::int32_t first, std::int32_t last, const Push& push)
-  {
-    each_touching(plane_points_[std::max(first - 1, 0)], plane_points_[last],
-                  [&](std::int32_t p) { push_point(points_[p], forces_[p].force, first, last, push); });
-    add_up(thread, first, last);
-  }
-
-  /// After the step: u before and after it.
-  template <class Real>
-  void moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3]);
-
-  /// Sum of the points' forces in the latest step, one per contact of the model.
-  std::vector<Reaction> reactions() const;
-
-  /// Points that are deeper in a body than its field has samples: they are not pushed out, and the guard must know.
-  std::int64_t lost() const { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
-
-  /// Present poses of the bodies, from those of the bones.
-  std::vector<RigidTransform> poses(const std::vector<RigidTransform>& bones) const;
-
-  /// Energies since the account was opened, up to the present displacements. `open`: opens it now. Adds the present
-  /// forces on nodes [N] to `forces`, if it is not empty. `bones`: present poses.
-  template <class Real>
-  ContactEnergy energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
-                       std::vector<std::array<double, 3>>& forces);
+  bool idle() const override { return !runs_ || points_.empty(); }
+  bool pushes() const override { return true; }
+  void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override;
+  void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
+  void after_step(const NodeShare& share, const Real* const before[3], const Real* const after[3]) override;
+  void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                    std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
+  std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
+  std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
 private:
   using Vector = physics::Vec3<double>;
@@ -94,6 +61,12 @@ private:
     yes,
     let_go,  // in this step
     lost     // deeper in the body than its field has samples
+  };
+  struct Energy
+  {
+    double stored = 0;  // now [J]
+    double work = 0;    // done by the motion of bodies [J]
+    double lost = 0;    // to friction [J]
   };
   // of a body in a plane of voxels
   struct PlaneSum
@@ -136,10 +109,11 @@ private:
       if (plane + (b >> 2) >= first && plane + (b >> 2) < last)
         push(nodes[b], weight[b] * force);
   }
-  template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
+  /// Energies up to the present displacements.
+  Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
+                    std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
-  template <class Real>
   void look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
@@ -167,10 +141,10 @@ private:
   std::vector<double> due_;                   // BodyState::way at which a point is looked at again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
-  std::vector<BodyState> bodies_;      // at the start of the latest step
-  std::vector<double> node_way_;       // longest way of a bound node in the latest step, one per plane of nodes [m]
-  std::vector<PlaneSum> sums_;         // one per plane of voxels and body
-  std::vector<ContactEnergy> opened_;  // what they came to when the account was opened; one entry
+  std::vector<BodyState> bodies_;  // at the start of the latest step
+  std::vector<double> node_way_;   // longest way of a bound node in the latest step, one per plane of nodes [m]
+  std::vector<PlaneSum> sums_;     // one per plane of voxels and body
+  std::vector<Energy> opened_;     // what they came to when the account was opened; one entry
 };
 
 }  // namespace frontalis

@@ -20,9 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision, in the
-/// frame of the bone. Their planes are found anew in each step, because friction follows the reaction of the surface,
-/// which jumps where a plane that was kept for several steps is replaced.
+/// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
+/// precision, in the frame of the bone. Their planes are found anew in each step, because friction follows the reaction
+/// of the surface, which jumps where a plane that was kept for several steps is replaced.
 template <class Real>
 class GlidingNodes
 {
@@ -53,7 +53,7 @@ public:
   /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
-  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::apply.
+  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::constrain.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step,
              States& states) const;
   /// See RestrictedNodes::friction_loss.
