@@ -220,7 +220,6 @@ template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
-/// Effects of nodes.
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
 /// The effects of a set that a voxel without fibres and viscosity may have, with those of nodes.
 template <Effects Set>

@@ -52,7 +52,6 @@ inline constexpr std::array<EffectTraits, 12> effect_traits{ {
     { "output_fields", "strain and stress of the skin", "", "it is computed only where somebody asks for it" },
 } };
 
-/// A set of effects.
 class EffectSet
 {
 public:

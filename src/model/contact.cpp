@@ -69,7 +69,7 @@ void exchange_contacts(Archive& archive, Contacts& contacts)
   }
 }
 
-// the bone of the last name where bodies share nodes
+// if bodies share nodes, the nodes get the highest bone index
 void set_bones(const Model& model, std::vector<std::int32_t>& bone)
 {
   for (const Contact& contact : model.contacts)

@@ -11,18 +11,18 @@ namespace frontalis
 class ModelReader;
 class ModelWriter;
 
-/// What the model files, checks and lists of effects know of an effect. Each effect has one row in the table of
-/// effects.cpp. Null: there is nothing to do.
+/// The functions of an effect that model files, checks and lists of effects call. Each effect has one row in the table
+/// of effects.cpp. A null function does nothing.
 struct EffectDescription
 {
   Effect effect;
-  /// What the model has of the effect, if it is not switched off.
+  /// Presence of the effect, if it is not switched off.
   EffectPresence (*found)(const Model&);
-  /// Takes it out of the model. `off`: all effects that are taken out.
+  /// Removes the effect from the model. `off`: all effects that are being removed.
   void (*remove)(Model&, EffectSet off) = nullptr;
-  /// Throws Error as check_model().
+  /// Checks the effect's part of a model; throws Error as check_model() does.
   void (*check)(const Model&) = nullptr;
-  /// Its own arrays in the model file.
+  /// Writes the effect's own arrays to a model file.
   void (*write)(ModelWriter&, const Model&) = nullptr;
   void (*read)(ModelReader&, Model&) = nullptr;
   /// See moving_bones() and touched_bodies().
@@ -30,10 +30,10 @@ struct EffectDescription
   void (*add_bodies)(const Model&, std::vector<TouchedBody>& bodies) = nullptr;
 };
 
-/// The effects that have a file of their own.
+/// Descriptions of the effects that have a file of their own.
 EffectDescription contact_description();
 
-/// Calls the `write`, `read` or `check` of all effects.
+/// These call the `write`, `read` or `check` of all effects.
 void exchange_effects(ModelWriter& archive, const Model& model);
 void exchange_effects(ModelReader& archive, Model& model);
 void check_effects(const Model& model);

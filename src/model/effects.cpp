@@ -324,7 +324,7 @@ std::vector<TouchedBody> touched_bodies(const Model& model)
 std::vector<std::int32_t> moving_bones(const Model& model)
 {
   std::vector<std::int32_t> bone(model.nodes.size(), -1);
-  // what touches a node yields to what restricts it
+  // in reverse order: effects that restrict a node override those that only touch it
   for (auto effect = descriptions.rbegin(); effect != descriptions.rend(); ++effect)
     if (effect->set_bones != nullptr)
       effect->set_bones(model, bone);

@@ -48,7 +48,7 @@ void read_friction(Mapping& mapping, SceneConstraint& constraint)
   constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
 }
 
-// A kind of constraint: the key that holds its surfaces, and what reads its other keys.
+// A kind of constraint: the key for its surfaces, and the function that reads its other keys.
 struct ConstraintKind
 {
   SceneConstraint::Kind kind;

@@ -165,7 +165,7 @@ TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
     const auto other = solver_of(variant);
     other->unpack(bytes);
     EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == here) << variant.name;
-    // damaged bytes and bytes of another solver are refused, and nothing changes
+    // damaged bytes are refused, and nothing changes
     const Seen before = play(*other, variant, 0.2f, 3e-4);
     other->unpack(bytes);
     play(*other, variant, 0.2f, 3e-4);

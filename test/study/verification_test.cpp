@@ -40,7 +40,7 @@ TEST(Cases, HaveNamesOfTheirOwnAndATextInTheManual)
   }
 }
 
-// on every backend of this machine
+// runs a case on every backend of this machine
 class ContactCase : public testing::TestWithParam<const char*>
 {
 };

@@ -27,16 +27,16 @@ EffectSet effects_of(const Model& model);
 /// Whether one of the voxel's materials is viscous.
 bool is_viscous(const Model& model, std::size_t voxel);
 
-/// A rigid body on which tissue has a reaction.
+/// A rigid body that tissue may touch, and so exert a force on.
 struct TouchedBody
 {
   std::string name;
-  std::int32_t bone = -1;  ///< index into Model::bones of the one that is the body; -1: it stands still
+  std::int32_t bone = -1;  ///< index into Model::bones of the body; -1: it stands still
 };
-/// In the order of Solver::reactions().
+/// All bodies that the model's tissue may touch, in the order of Solver::reactions().
 std::vector<TouchedBody> touched_bodies(const Model& model);
 
-/// Of each node, the bone that may move it; -1: none.
+/// For each node, the index of a bone that may move it; -1: none.
 std::vector<std::int32_t> moving_bones(const Model& model);
 
 /// Removes effects from a model, so that nothing is stored for them, and adds their names to Model::switched_off.

@@ -41,14 +41,14 @@ struct Monitor
   bool finite = true;
 };
 
-/// An energy [J] of a motion.
+/// One term of the energy ledger [J].
 struct EnergyTerm
 {
   enum class Kind : std::uint8_t
   {
-    stored,  ///< now
-    lost,    ///< since the ledger was opened
-    work     ///< done on the tissue since then
+    stored,  ///< present value
+    lost,    ///< dissipated since the ledger was opened
+    work     ///< done on the tissue since the ledger was opened
   };
   std::string name;
   Kind kind = Kind::stored;
@@ -58,8 +58,8 @@ struct EnergyTerm
 /// Present energies and their sources [J], since reset or since displacements or velocities were set.
 struct EnergyLedger
 {
-  double initial = 0;             ///< what was stored at the start
-  std::vector<EnergyTerm> terms;  ///< of empty_ledger(), which says what they are
+  double initial = 0;             ///< stored energy when the ledger was opened
+  std::vector<EnergyTerm> terms;  ///< those of empty_ledger(), where they are documented
   double largest = 0;             ///< largest magnitude of the terms and of `initial` so far
 
   /// Value of a term. Throws Error if there is none of this name.

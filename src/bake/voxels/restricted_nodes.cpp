@@ -57,7 +57,7 @@ public:
 
   double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
 
-  /// The part of a surface that nodes may slide on, beside others that restrict nodes.
+  /// The part of a surface that nodes may slide on. `others`: surfaces that restrict nodes too; see tissue_sheet().
   const PreparedSurface& sheet_of(const PreparedSurface& surface, std::vector<const PreparedSurface*> others)
   {
     auto& sheet = sheet_[&surface];
@@ -146,7 +146,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     double distance = 0;  // from the surface of a sliding node [m]
   };
   std::vector<Restriction> restrictions(nodes);
-  std::vector<const PreparedSurface*> bones;  // the surfaces that restrict nodes
+  std::vector<const PreparedSurface*> bones;  // surfaces that restrict nodes
   for (const SceneConstraint& constraint : scene.constraints)
     if (constraint.kind != SceneConstraint::Kind::contact)
       for (const std::string& name : constraint.surfaces)
@@ -206,8 +206,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                   });
   }
 
-  // Surfaces of each of the model's fields: those that move alike, have tissue on the same side, and are no spheres
-  // share one, so that nodes can slide from one to the next.
+  // For each field of the model, its surfaces. Surfaces that move alike and have tissue on the same side share a field,
+  // so that nodes can slide from one to the next; a sphere has a field of its own.
   std::vector<std::vector<SlidingSurface>> sheets;
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
@@ -215,7 +215,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    // index of the field that a sheet is part of, among the model's surfaces
+    // finds or adds the field for a sheet; returns its index among the model's surfaces
     const auto index_of = [&](const PreparedSurface& sheet)
     {
       auto& list = model.constraint_surfaces;

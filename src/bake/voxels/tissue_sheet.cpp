@@ -23,7 +23,7 @@ constexpr double travel = 20e-3;
 
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
 
-/// Whether `ask` is true at a point of a triangle, of points at most `spacing` apart.
+/// Whether `ask` is true at any point of a triangle; tries points at most `spacing` [m] apart.
 template <class Ask>
 bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
 {
@@ -39,9 +39,9 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
   return false;
 }
 
-/// Extends a selection of triangles over their edges up to `travel` farther, where the surface does not turn away by
-/// more than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it. May
-/// enter triangles for which enters(triangle) is true.
+/// Extends a selection of triangles across their edges by up to `travel`, as long as the surface does not turn by more
+/// than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it. Enters only
+/// triangles for which enters(triangle) is true.
 template <class Enters>
 void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& enters)
 {
@@ -142,7 +142,7 @@ std::vector<std::array<bool, 7>> rim_features(const TriangleMesh& mesh)
   return features;
 }
 
-/// Whether a triangle and one of the surfaces face each other within `gap`, or would if they did not overlap.
+/// Whether a triangle faces one of the other surfaces within `gap` [m], or overlaps it by less than that.
 bool faces(const std::vector<const PreparedSurface*>& others, const std::array<Vector3d, 3>& triangle, double gap)
 {
   const Vector3d middle = (triangle[0] + triangle[1] + triangle[2]) / 3, normal = normal_of(triangle);
@@ -154,13 +154,14 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
-/// Distance from one sheet of a field.
+/// Distance of points from one sheet of a field.
 class SheetDistance
 {
 public:
   explicit SheetDistance(const SlidingSurface& of) : of_(of), on_rim_(rim_features(of.sheet->mesh())) {}
 
-  /// The closest point of the sheet within `bound` [m]. `hint` is its triangle for a neighbouring point, or -1.
+  /// The closest point of the sheet within `bound` [m]. `hint`: triangle found for a neighbouring point, or -1;
+  /// replaced by the one found here.
   ClosestPoint closest(const Vector3d& p, double bound, std::int32_t& hint) const
   {
     const auto triangles = static_cast<std::int32_t>(of_.sheet->mesh().triangles.size());
@@ -176,7 +177,7 @@ public:
     const Vector3d away = p - closest.point;
     const double height = away.dot(normal(closest));
     const bool at_rim = on_rim_[closest.triangle][closest.feature];
-    // Nothing in a closed surface lies above its sheet, though the sheet alone may seem to say so.
+    // a point inside a closed surface is not above its sheet, even if the sheet alone suggests it
     if (height > 0 && of_.whole->closed() &&
         of_.whole->signed_distance(p, of_.whole->tree().closest(p, closest.distance + 1e-9)) < 0)
       return -closest.distance;
@@ -190,13 +191,13 @@ private:
   std::vector<std::array<bool, 7>> on_rim_;
 };
 
-/// Distance from several sheets: from the nearest, and where others are hardly farther, a mean in which these count the
-/// more the nearer they are and the less they are turned away. So a node passes from one bone to the next although
-/// their sheets do not quite meet, and sheets that face each other stay apart.
+/// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have
+/// more weight the nearer they are and the more they are parallel to the nearest. So a node can pass from one bone to
+/// the next across a gap between their sheets, and sheets that face each other stay separate.
 SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Vector3d& p)
 {
   constexpr double hardly_farther = 1e-3;  // [m]
-  // neighbouring samples are asked for one after the other
+  // start each search at the triangles found last, because successive samples are neighbours
   thread_local std::vector<std::int32_t> hint;
   hint.resize(sheets.size(), -1);
   std::vector<ClosestPoint> closest;
@@ -220,7 +221,7 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Ve
     sum.value += share * share * sheets[s].at(p, closest[s]).value;
     weights += share * share;
   }
-  // between two sheets is not past their rims
+  // a point between two sheets is not past their rims
   return { sum.value / weights, weights > 1 ? 0 : sum.past_rim };
 }
 

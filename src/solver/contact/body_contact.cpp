@@ -15,13 +15,13 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+// A point outside its body keeps its delayed normal force, for friction, until it is that of this depth [m].
 constexpr double forgotten_depth = 1e-9;
 
-// Runs of bound nodes are joined over this many others.
+// Runs of bound nodes are merged if at most this many other nodes are between them.
 constexpr std::int32_t largest_gap = 8;
 
-// More than rounding errors take from a way that is found in single precision.
+// Factor on distances found in single precision that outweighs their rounding errors.
 constexpr double rounding = 1.00001;
 
 }  // namespace
@@ -167,7 +167,7 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
   return now;
 }
 
-// Distance from a body of a point that has no samples around it, or less.
+// Lower bound of the distance [m] from a body of a point without samples around it.
 template <class Real>
 double BodyContact<Real>::slack(const Contact& contact, const Vector& x) const
 {
@@ -211,7 +211,7 @@ void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const Bod
   if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
     return;
   grip.normal = 0;
-  // the gradient of a spline of distances is not longer than sqrt(3)
+  // the distance is at least this, because the spline's gradient is at most sqrt(3) long
   if (touches_[p] == Touching::no)
     due_[p] = body.way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
 }
@@ -290,7 +290,7 @@ void BodyContact<Real>::after_step(const NodeShare& share, const Real* const bef
 {
   for (auto k = share.first_plane; k < share.end_plane; ++k)
   {
-    // squares, in lanes that the compiler makes vectors of
+    // squared lengths, in lanes that the compiler can vectorise
     constexpr std::int32_t width = 8;
     Real longest[width] = {};
     const auto compare = [&](std::int32_t lane, std::int32_t n)
@@ -338,7 +338,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums end at the start of the latest step. The rest is what the next step will add.
+  // The sums end at the start of the latest step: add what the next step will add.
   const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)

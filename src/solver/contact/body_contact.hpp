@@ -14,12 +14,12 @@
 namespace frontalis
 {
 
-/// Contact of bound surfaces with rigid bodies. In each step threads first share the points: before_step() finds their
-/// forces. After a barrier each thread adds those on nodes of its planes: add_forces(), which also adds up the
-/// reactions of points in voxels of these planes. At the end of the step, after_step() notes how far the nodes have
-/// come. Points are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on points, which are
+/// divided among all threads. After a barrier, add_forces() adds those on the nodes of the thread's planes, and sums
+/// the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points are
+/// sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
-/// A point that is `d` from a body is not looked at again before nodes and body together have moved by that much.
+/// A point at a distance from all bodies is not evaluated again before nodes and body together have moved that far.
 template <class Real>
 class BodyContact : public NodePart<Real>
 {
@@ -52,36 +52,36 @@ private:
   };
   struct PointForce
   {
-    Vector force, arm;  // on the point [N]; from the origin of the body's frame [m]
-    double lost;        // to friction in this step [J]
+    Vector force, arm;  // force on the point [N]; arm from the origin of the body's frame [m]
+    double lost;        // dissipated by friction in this step [J]
   };
   enum class Touching : std::uint8_t
   {
     no,
     yes,
-    let_go,  // in this step
+    let_go,  // the point has left the body in this step
     lost     // deeper in the body than its field has samples
   };
   struct Energy
   {
-    double stored = 0;  // now [J]
+    double stored = 0;  // present [J]
     double work = 0;    // done by the motion of bodies [J]
-    double lost = 0;    // to friction [J]
+    double lost = 0;    // dissipated by friction [J]
   };
-  // of a body in a plane of voxels
+  // sums for one body in one plane of voxels
   struct PlaneSum
   {
     Reaction reaction;
     double work, lost;
   };
-  // Points are looked at in chunks of this many.
+  // number of points that are skipped together
   static constexpr std::int32_t chunk_size = 64;
   struct Chunk
   {
-    double due = 0;            // the earliest of its points
-    std::int64_t touches = 0;  // whether one does
+    double due = 0;            // BodyState::way at which the first of its points is due
+    std::int64_t touches = 0;  // not 0: one of its points touches
   };
-  // nodes [first, last), among which bound ones are not far apart
+  // nodes [first, last), of which nearly all are bound
   struct Run
   {
     std::int32_t first, last;
@@ -125,26 +125,26 @@ private:
 
   const Model& model_;
   bool runs_ = true, any_pushed_ = false;
-  double spread_ = 1;                       // by which factor a point may move more than the nodes of its voxel
+  double spread_ = 1;                       // largest ratio of a point's motion to that of the nodes of its voxel
   std::vector<Point> points_;               // sorted by voxel
-  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, twice more their number
-  std::vector<Run> runs_of_nodes_;          // that hold all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;    // first of them in each plane of nodes, and their number
+  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
+  std::vector<Run> runs_of_nodes_;          // runs that contain all bound nodes, ascending
+  std::vector<std::int32_t> plane_runs_;    // first run in each plane of nodes, then twice the number of runs
   std::vector<physics::DistanceField> fields_;
-  // of the step under way
-  std::vector<PointForce> forces_;  // of points that touch
+  // values of the present step
+  std::vector<PointForce> forces_;  // one per point
   std::vector<BodyState> next_;
-  std::vector<BodyMotion> motion_;  // since the step before
+  std::vector<BodyMotion> motion_;  // motion of each body since the previous step
 
   // state
-  std::vector<physics::Grip<double>> grips_;  // of points that touch or did lately
-  std::vector<double> due_;                   // BodyState::way at which a point is looked at again
+  std::vector<physics::Grip<double>> grips_;  // one per point
+  std::vector<double> due_;                   // BodyState::way at which a point must be evaluated again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
   std::vector<BodyState> bodies_;  // at the start of the latest step
-  std::vector<double> node_way_;   // longest way of a bound node in the latest step, one per plane of nodes [m]
-  std::vector<PlaneSum> sums_;     // one per plane of voxels and body
-  std::vector<Energy> opened_;     // what they came to when the account was opened; one entry
+  std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
+  std::vector<PlaneSum> sums_;    // one per plane of voxels and body
+  std::vector<Energy> opened_;    // energies when the account was opened; one entry
 };
 
 }  // namespace frontalis

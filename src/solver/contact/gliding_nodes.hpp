@@ -31,23 +31,23 @@ public:
   struct Node
   {
     std::int32_t node;
-    std::int32_t bone;  // -1: the surface is fixed
+    std::int32_t bone;  // -1: the surface stands still
     double friction;
     Point rest;
     KeptLevel level;
   };
   struct State
   {
-    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: there is none yet
+    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: no plane yet
     double height = 0;
-    double pressing = 0;  // reaction per mass, delayed as friction needs it [m/s2]
+    double pressing = 0;  // reaction per mass with the delay of friction [m/s2]
     // values of the latest step
     Point outward{ 0, 0, 0 };           // the normal in the scene's frame
     Point surface_velocity{ 0, 0, 0 };  // [m/s]
   };
   using States = std::vector<State>;
 
-  /// Nodes must be added in their order.
+  /// Adds a node. Add nodes in ascending order.
   void add(const Node& node) { nodes_.push_back(node); }
   std::size_t size() const { return nodes_.size(); }
   /// Switches friction on or off.

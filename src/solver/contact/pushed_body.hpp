@@ -12,7 +12,7 @@ namespace frontalis
 struct BodyState
 {
   RigidTransform pose;
-  double way;   ///< by which a point and any body can have come closer to each other [m]
+  double way;   ///< bound of how far any point and body have approached each other so far [m]
   double dt;    ///< length of the step [s]; 0: there was none
   double kick;  ///< for how long forces change velocities in it [s]
   // of a body that is pushed

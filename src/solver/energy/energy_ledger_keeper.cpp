@@ -72,7 +72,7 @@ void EnergyLedgerKeeper::open(double time, double dt)
   const EnergyLedger now = balance(time, dt);
   for (const EnergyTerm& term : now.terms)
     ledger_.initial += term.kind == EnergyTerm::Kind::stored ? term.value : 0;
-  // work of the latest half step, which is counted from the displacements on
+  // the ledger starts at the displacements, half a step after the velocities: subtract the work in between
   ledger_.initial = ledger_.initial - now["gravity"] - now["load"] - now["constraint"];
 }
 
@@ -115,9 +115,8 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends at the time of the velocities, half a step before the displacements. The work of the remaining half
-// step is that of the present forces. Nodes that do not follow the forces keep their velocity: constraints do the work
-// for that.
+// The account ends at the time of the velocities, half a step before the displacements. The work of that half step is
+// that of the present forces. Nodes that do not follow the forces keep their velocity, at the expense of constraints.
 void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
 {
   NodalVectors u, v, internal;

@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// A ledger with all of its terms, at 0.
+/// An open ledger that has all its terms, with values 0.
 EnergyLedger empty_ledger();
 
 /// Keeps the energy ledger of a backend's motion: present stored energies, and the work that the backend recorded.

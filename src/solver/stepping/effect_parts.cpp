@@ -33,8 +33,7 @@ std::vector<EnergyTerm> energy_terms_of_effects()
   };
 }
 
-std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model,
-                                                                   const Discretisation& discretisation)
+std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation)
 {
   std::vector<std::shared_ptr<AddedStiffness>> added;
   if (!model.contacts.empty())

@@ -14,11 +14,10 @@ template <class Real>
 std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, const Discretisation& discretisation,
                                                         SlideKernel<Real> slide);
 
-/// Terms of the energy ledger that only some effect has.
+/// Terms of the energy ledger that exist because of an effect.
 std::vector<EnergyTerm> energy_terms_of_effects();
 
-/// What the effects of a model add to the stiffness of its voxels, whose bounds do not include it yet.
-std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model,
-                                                                   const Discretisation& discretisation);
+/// Stiffness that effects of a model add to its voxels. The voxels' bounds must not include it yet.
+std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation);
 
 }  // namespace frontalis

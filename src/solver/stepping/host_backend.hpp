@@ -62,7 +62,7 @@ protected:
   /// Inverse of interleave(); components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
 
-  /// The parts that have something to do.
+  /// The parts that are not idle.
   std::vector<NodePart<Real>*> active_parts() const;
 
   Components u_, v_;

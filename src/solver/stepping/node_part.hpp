@@ -13,7 +13,7 @@
 namespace frontalis
 {
 
-/// Whole planes of nodes that a thread works on.
+/// The planes of nodes that one thread processes.
 struct NodeShare
 {
   int thread, threads;
@@ -21,14 +21,15 @@ struct NodeShare
   std::int32_t first_node, end_node;
 };
 
-/// Adds external forces to nodes: to the internal forces, or after the update, which is linear in the force.
+/// Applies external forces to nodes: either subtracts them from internal forces, or corrects the nodes after their
+/// update, which is linear in the force.
 template <class Real>
 class ForceSink
 {
 public:
-  /// Subtracts them from internal forces [N].
+  /// For subtracting forces from internal forces [N].
   explicit ForceSink(Real* const internal[3]) : u_{ internal[0], internal[1], internal[2] } {}
-  /// Adds what they do in a step to displacements and velocities. `gain`: of a physics::Kick.
+  /// For correcting displacements [m] and velocities [m/s]. `gain`: of a physics::Kick.
   ForceSink(Real gain, Real dt, const float* inverse_mass, Real* const u[3], Real* const v[3])
       : gain_(gain), dt_(dt), inverse_mass_(inverse_mass), u_{ u[0], u[1], u[2] }, v_{ v[0], v[1], v[2] }
   {
@@ -50,17 +51,17 @@ private:
   Real* v_[3] = {};
 };
 
-/// The part of a host backend that serves an effect on nodes. Its functions are called in this order in each step, by
-/// each thread for its share; what one does not override does nothing. Real is the backend's number type.
+/// The part of a host backend that serves an effect on nodes. In each step, each thread calls its functions in the
+/// order of this list, for its own nodes. By default they do nothing. Real is the backend's number type.
 template <class Real>
 class NodePart : public EffectPart
 {
 public:
-  /// Whether there is nothing to do: then none of the functions is called.
+  /// If true, none of the other functions is called.
   virtual bool idle() const = 0;
-  /// Whether it has forces. Threads wait for each other between before_step() and add_forces().
+  /// Whether add_forces() adds any. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// From displacements at the start of the step.
+  /// Called with the displacements at the start of the step.
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
   /// Overwrites displacements and velocities after the update. `before`: displacements before it.
@@ -68,7 +69,7 @@ public:
                          const Real* const /*before*/[3], const ConstraintStep& /*step*/)
   {
   }
-  /// Displacements before and after the step.
+  /// Called with the displacements before and after the step.
   virtual void after_step(const NodeShare& /*share*/, const Real* const /*before*/[3], const Real* const /*after*/[3])
   {
   }
@@ -78,13 +79,13 @@ public:
   {
   }
 
-  /// Adds its present energies to terms of the ledger, and the present forces on nodes [N] to `forces` if that is not
-  /// empty. `open`: works and losses count from now on. `bones`: present poses.
+  /// Adds its present energies to terms of the ledger, and its present forces [N] to `forces` if that is not empty.
+  /// `open`: works and losses count from now on. `bones`: present poses.
   virtual void add_energies(const Real* const /*u*/[3], const std::vector<RigidTransform>& /*bones*/, bool /*open*/,
                             std::vector<std::array<double, 3>>& /*forces*/, EnergyLedger& /*ledger*/)
   {
   }
-  /// One per entry of touched_bodies(model) that is the effect's, in the latest step.
+  /// Reactions of the latest step, one per entry of touched_bodies(model) that belongs to this effect.
   virtual std::vector<Reaction> reactions() const { return {}; }
   /// Present poses of these bodies, from those of the bones.
   virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }

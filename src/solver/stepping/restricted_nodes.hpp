@@ -20,7 +20,7 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    typename GlidingNodes<Real>::States gliding;  ///< of nodes whose surface moves with a bone or has friction
+    typename GlidingNodes<Real>::States gliding;  ///< of nodes on moving surfaces; of all nodes if any has friction
     std::vector<Block> blocks;                    ///< of the other nodes
   };
 

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// Adds a body, which is a bone of that name, that touches the lower or upper side of a box of whole voxels.
+// Adds a body, moved by a new bone of that name, that may touch the lower or upper side of a box of whole voxels.
 void touch(Model& model, const std::string& bone, bool upper, const SampledField& body, double friction)
 {
   Contact contact = touching_side(model, upper, body);
@@ -32,7 +32,7 @@ SampledField wedge(const Model& model, double x, double z)
     const double beside = std::abs(p[0] - x), above = p[2] - z;
     return above < -beside ? std::hypot(beside, above) : (beside - above) * std::sqrt(0.5);
   };
-  constexpr double depth = 6e-3;  // of tissue in it
+  constexpr double depth = 6e-3;  // how deep tissue may get into the wedge
   return sample_band({ { x - depth, -1e-3, z } }, { { x + depth, 1e-3 * (model.size[1] + 1), z + depth } }, distance,
                      0.5e-3, depth);
 }
@@ -53,7 +53,7 @@ Point millimetres(const CaseRun& run, const std::string& key)
 
 Point plus(const Point& a, const Point& b) { return { { a[0] + b[0], a[1] + b[1], a[2] + b[2] } }; }
 
-// Largest depth [m] of points in their bodies.
+// Largest depth [m] of a point of the tissue in the body that it touches.
 double deepest(GuardedTrial& motion)
 {
   const Model& model = motion.model();
@@ -82,7 +82,7 @@ double deepest(GuardedTrial& motion)
   return deepest;
 }
 
-// The last part of each case: the body has left, the tissue comes to rest where it was.
+// The last part of each case: after the body has left, the tissue must come to rest at its first position.
 void let_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, const std::string& picture,
               const std::string& title)
 {

@@ -31,7 +31,7 @@ Model falling_block(double gap, double friction)
   return model;
 }
 
-// Calls `verify` for each backend of this machine. Those that do not compute contact are named as skipped.
+// Calls `verify` for each backend of this machine. Backends that do not compute contact are listed as skipped.
 void on_every_backend(Finding& finding, const std::function<void(const Backend&)>& verify)
 {
   for (const Backend& backend : available_backends())
@@ -67,7 +67,7 @@ double mean(const Vectors& vectors, std::size_t axis)
 
 double relative(double found, double expected) { return 100 * std::abs(found / expected - 1); }
 
-// of the nodes [kg]
+// mass of each node [kg]
 std::vector<double> lumped_masses(const Model& model)
 {
   std::vector<double> mass(model.nodes.size(), 0);
@@ -77,7 +77,7 @@ std::vector<double> lumped_masses(const Model& model)
   return mass;
 }
 
-// Force and moment on a plate, or the same of the tissue's rate of change of momentum.
+// Force [N] and moment [N m] on a plate, or rate of change of the tissue's momentum and angular momentum.
 using Wrench = std::array<double, 6>;
 
 void add_momentum(Wrench& sum, const Point& place, const Point& momentum)
@@ -149,13 +149,13 @@ void verify_contact_impact(const Backend&, Finding& finding)
     {
       solver->advance(0.1e-3, solver->controls());
       const EnergyLedger l = solver->ledger();
-      const double all = l.kinetic + l.internal + l.hourglass + l.contact_stored, ms = 1e3 * solver->time();
-      stored = std::max(stored, l.contact_stored);
+      const double all = l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"], ms = 1e3 * solver->time();
+      stored = std::max(stored, l["contact_stored"]);
       worst = std::max(worst, relative(all, initial));
       unexplained = std::max(unexplained, 100 * std::abs(l.imbalance()) / initial);
-      plot.curves[0].add(ms, l.kinetic / initial);
-      plot.curves[1].add(ms, (l.internal + l.hourglass) / initial);
-      plot.curves[2].add(ms, l.contact_stored / initial);
+      plot.curves[0].add(ms, l["kinetic"] / initial);
+      plot.curves[1].add(ms, (l["internal"] + l["hourglass"]) / initial);
+      plot.curves[2].add(ms, l["contact_stored"] / initial);
       plot.curves[3].add(ms, all / initial);
     }
     finding.checks.absolute("change of mechanical energy, " + backend, "%", 0, worst, 2);
@@ -179,7 +179,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
     const std::vector<double> mass = lumped_masses(model);
     constexpr double dt = 2e-6;
     const auto solver = make(model, backend, false, dt);
-    // arrives obliquely and turning, so that no component is zero
+    // the block arrives obliquely and turning, so that no component is zero
     Vectors velocity;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
     {
@@ -225,7 +225,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
 
 void verify_contact_incline(const Backend&, Finding& finding)
 {
-  // the angle of friction is 26.6 degrees; gravity begins at once, and the block bounces until it has settled
+  // the angle of friction is 26.6 degrees; gravity starts suddenly, and the block bounces until it has settled
   constexpr double friction = 0.5, damping = 50, settling = 0.15, time = 0.05, degree = 3.14159265358979 / 180;
   const auto on_incline = [&](double degrees, const Backend& backend)
   {
@@ -248,7 +248,8 @@ void verify_contact_incline(const Backend&, Finding& finding)
     finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1);
     for (const double degrees : { 35.0, 60.0 })
     {
-      // with damping c and acceleration a, a way w in a time t is followed by q w + a t (1 - q) / c, q = exp(-c t)
+      // with damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
+      // next, q = exp(-c t)
       const auto solver = on_incline(degrees, backend);
       const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
       finding.checks.relative("acceleration at " + readable(degrees) + "°, " + backend, "m/s2",

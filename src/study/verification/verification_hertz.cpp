@@ -33,7 +33,7 @@ constexpr std::int32_t contact_radius = 8, thickness = 24, half_width = 40;
 constexpr double edge = 0.5e-3, young = 34e3, poisson = 0.3, density = 1000;
 constexpr double radius = contact_radius * edge / 0.1, depth = 0.1 * contact_radius * edge;
 
-// How the layer lies in the grid: turned about y [degrees], and shifted along x and z [voxels].
+// Position of the layer in the grid: rotated about y [degrees], and shifted along x and z [voxels].
 struct Placement
 {
   std::string name;
@@ -43,15 +43,16 @@ struct Placement
 struct Pressed
 {
   double force;      // on the sphere, along its motion [N]
-  double shortfall;  // depth of the sphere less that of the tissue in its middle [m]
+  double shortfall;  // depth of the sphere minus that of the tissue below its middle [m]
 };
 
-// Half of a layer, cut at y = 0, whose voxels are filled in proportion to what of them is in it.
+// Presses the sphere into half of a layer, cut at y = 0. Voxels are filled by the fraction of them that is in the
+// layer.
 Pressed press(const Placement& placement, const Backend& backend)
 {
   const double c = std::cos(placement.turn * pi / 180), s = std::sin(placement.turn * pi / 180);
   const double shift = placement.shift * edge, length = 2 * half_width * edge, top = thickness * edge;
-  // from the layer, whose ground is z = 0 and whose middle is x = 0, to the grid
+  // maps the layer's coordinates (ground at z = 0, middle at x = 0) to the grid
   const auto in_grid = [&](const Point& p) -> Point
   {
     const double x = p[0] + 0.5 * length;
@@ -81,7 +82,7 @@ Pressed press(const Placement& placement, const Backend& backend)
   contact.name = "sphere";
   contact.bone = 0;
   contact.field = sphere_field(in_grid({ { 0, 0, top + radius } }), radius);
-  // what of the surface may touch the sphere
+  // the part of the surface that may touch the sphere
   constexpr int rows = 4 * contact_radius;
   const double reach = 2 * contact_radius * edge;
   const TriangleMesh surface = grid_mesh(2 * rows, rows,
@@ -125,7 +126,7 @@ void verify_hertz(const Backend& backend, Finding& finding)
   {
     const Pressed pressed = press(placement, backend);
     finding.checks.relative("force, " + placement.name, "N", expected, pressed.force, 0.05);
-    // but for what contact gives way
+    // the difference is the penetration that contact allows
     finding.checks.absolute("sphere deeper than tissue, " + placement.name, "voxels", 0, pressed.shortfall / edge,
                             0.05);
   }
