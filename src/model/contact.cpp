@@ -1,5 +1,6 @@
 #include "frontalis/model/contact.hpp"
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/physics/number.hpp"
 #include "model/effect_description.hpp"
 #include "model/model_checks.hpp"
@@ -115,6 +116,14 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
     for (const auto v : t)
       contact.area[v] += third;
   }
+}
+
+std::vector<BodyShape> body_shapes(const Model& model)
+{
+  std::vector<BodyShape> shapes;
+  for (const Contact& contact : model.contacts)
+    shapes.push_back({ contact.name, contact.centre, &contact.shape });
+  return shapes;
 }
 
 }  // namespace frontalis

@@ -121,18 +121,18 @@ void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out)
   }
 }
 
-std::string body_frame(const std::string& face_frame, const Contact& contact)
+std::string body_frame(const std::string& face_frame, const BodyShape& shape)
 {
-  return face_frame + "/body/" + contact.name;
+  return face_frame + "/body/" + shape.name;
 }
 
-geometry_msgs::Transform to_transform(const Model& model, const Contact& contact, const RigidTransform& pose)
+geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
 {
   const auto& r = pose.rotation;
   tf2::Quaternion rotation;
   tf2::Matrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]).getRotation(rotation);
   geometry_msgs::Transform out;
-  set(out.translation, pose(model.to_face(contact.centre)));
+  set(out.translation, pose(model.to_face(shape.centre)));
   out.rotation.x = rotation.x();
   out.rotation.y = rotation.y();
   out.rotation.z = rotation.z();
@@ -140,11 +140,11 @@ geometry_msgs::Transform to_transform(const Model& model, const Contact& contact
   return out;
 }
 
-geometry_msgs::Wrench to_wrench(const Model& model, const Contact& contact, const BodyFrame& body)
+geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body)
 {
   const RigidTransform back = inverse(body.pose);
   const auto force = back.turned(body.reaction.force), moment = back.turned(body.reaction.moment);
-  const auto centre = model.to_face(contact.centre);
+  const auto centre = model.to_face(shape.centre);
   std::array<double, 3> about_centre{};
   for (std::size_t i = 0; i < 3; ++i)
   {
@@ -160,13 +160,13 @@ geometry_msgs::Wrench to_wrench(const Model& model, const Contact& contact, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame, const ros::Time& stamp)
 {
   visualization_msgs::MarkerArray out;
-  for (const Contact& contact : model.contacts)
+  for (const BodyShape& shape : body_shapes(model))
   {
     visualization_msgs::Marker& marker = out.markers.emplace_back();
-    marker.header.frame_id = body_frame(face_frame, contact);
+    marker.header.frame_id = body_frame(face_frame, shape);
     marker.header.stamp = stamp;
     marker.frame_locked = true;
-    marker.ns = contact.name;
+    marker.ns = shape.name;
     marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
     marker.action = visualization_msgs::Marker::ADD;
     marker.pose.orientation.w = 1;
@@ -175,11 +175,11 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.color.g = 0.55f;
     marker.color.b = 0.65f;
     marker.color.a = 1;
-    const auto centre = model.to_face(contact.centre);
-    for (const auto& triangle : contact.shape.triangles)
+    const auto centre = model.to_face(shape.centre);
+    for (const auto& triangle : shape.surface->triangles)
       for (const auto vertex : triangle)
       {
-        auto p = model.to_face(contact.shape.vertices[vertex]);
+        auto p = model.to_face(shape.surface->vertices[vertex]);
         for (std::size_t axis = 0; axis < 3; ++axis)
           p[axis] -= centre[axis];
         set(marker.points.emplace_back(), p);
@@ -192,14 +192,15 @@ void to_transforms(const Model& model, const Frame& frame, const std::string& fa
                    std::vector<geometry_msgs::TransformStamped>& out)
 {
   const SkinState& skin = frame.skin;
+  const std::vector<BodyShape> shapes = body_shapes(model);
   out.resize(skin.landmarks.size() + frame.bodies.size());
   for (std::size_t body = 0; body < frame.bodies.size(); ++body)
   {
     auto& transform = out[skin.landmarks.size() + body];
     transform.header.stamp = stamp;
     transform.header.frame_id = face_frame;
-    transform.child_frame_id = body_frame(face_frame, model.contacts[body]);
-    transform.transform = to_transform(model, model.contacts[body], frame.bodies[body].pose);
+    transform.child_frame_id = body_frame(face_frame, shapes[body]);
+    transform.transform = to_transform(model, shapes[body], frame.bodies[body].pose);
   }
   for (std::size_t landmark = 0; landmark < skin.landmarks.size(); ++landmark)
   {

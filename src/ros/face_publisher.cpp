@@ -45,8 +45,9 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   rest_ = rest_in_face(*model_);
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_, ros::Time::now()));
-  for (const Contact& contact : model_->contacts)
-    wrenches_.emplace_back(handle_, "wrench/" + contact.name);
+  shapes_ = body_shapes(*model_);
+  for (const BodyShape& shape : shapes_)
+    wrenches_.emplace_back(handle_, "wrench/" + shape.name);
   if (!parent_frame.empty())
   {
     geometry_msgs::TransformStamped transform;
@@ -79,9 +80,9 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                  });
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
   {
-    const Contact& contact = model_->contacts[b];
-    wrenches_[b].publish(body_frame(face_frame_, contact), stamp,
-                         [&](auto& wrench) { wrench.wrench = to_wrench(*model_, contact, frame.bodies[b]); });
+    const BodyShape& shape = shapes_[b];
+    wrenches_[b].publish(body_frame(face_frame_, shape), stamp,
+                         [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, frame.bodies[b]); });
   }
   to_transforms(*model_, frame, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);

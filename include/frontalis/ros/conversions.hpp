@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/runner/runner.hpp"
 #include "frontalis/ros/shading.hpp"
 
@@ -46,11 +47,11 @@ void to_transforms(const Model& model, const Frame& frame, const std::string& fa
 
 /// Name of the frame of a body that tissue touches. Its origin is the body's centre, and it lies as the face frame does
 /// while the body is at rest.
-std::string body_frame(const std::string& face_frame, const Contact& contact);
+std::string body_frame(const std::string& face_frame, const BodyShape& shape);
 /// From the face frame to that of a body.
-geometry_msgs::Transform to_transform(const Model& model, const Contact& contact, const RigidTransform& pose);
+geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);
 /// What tissue does to a body, in the body's frame and about its origin.
-geometry_msgs::Wrench to_wrench(const Model& model, const Contact& contact, const BodyFrame& body);
+geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
 /// The surfaces of all bodies, each in the frame of its own, which it follows.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame, const ros::Time& stamp);
 

@@ -63,7 +63,7 @@ private:
   Topic<sensor_msgs::PointCloud2> points_, field_;
   Topic<geometry_msgs::PoseArray> landmarks_;
   Topic<SimulationState> state_;
-  std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per contact of the model
+  std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per body
   ros::Publisher topology_, bodies_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
@@ -74,6 +74,7 @@ private:
   std::string backend_;
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
+  std::vector<BodyShape> shapes_;
   std::vector<geometry_msgs::TransformStamped> frame_transforms_;
 };
 

@@ -4,7 +4,7 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/pushed_body.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/pushed_body.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>

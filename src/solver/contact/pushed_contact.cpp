@@ -1,4 +1,4 @@
-#include "solver/contact/pushed_body.hpp"
+#include "solver/contact/pushed_contact.hpp"
 
 #include <cmath>
 
