@@ -157,14 +157,13 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
   return out;
 }
 
-visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame, const ros::Time& stamp)
+visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
   for (const BodyShape& shape : body_shapes(model))
   {
     visualization_msgs::Marker& marker = out.markers.emplace_back();
     marker.header.frame_id = body_frame(face_frame, shape);
-    marker.header.stamp = stamp;
     marker.frame_locked = true;
     marker.ns = shape.name;
     marker.type = visualization_msgs::Marker::TRIANGLE_LIST;

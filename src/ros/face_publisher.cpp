@@ -44,7 +44,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(*model_));
   rest_ = rest_in_face(*model_);
   topology_.publish(to_mesh(*model_));
-  bodies_.publish(to_bodies(*model_, face_frame_, ros::Time::now()));
+  bodies_.publish(to_bodies(*model_, face_frame_));
   shapes_ = body_shapes(*model_);
   for (const BodyShape& shape : shapes_)
     wrenches_.emplace_back(handle_, "wrench/" + shape.name);

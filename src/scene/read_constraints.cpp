@@ -74,9 +74,9 @@ constexpr ConstraintKind constraint_kinds[] = {
     [](Mapping& mapping, SceneConstraint& constraint, const SceneNames& names)
     {
       constraint.on = mapping.optional("on").reference(names.surfaces);
-      constraint.pushed = read_push(mapping.optional("pushed"));
       read_place(mapping, constraint);
       read_friction(mapping, constraint);
+      constraint.pushed = read_push(mapping.optional("pushed"));
     } },
 };
 

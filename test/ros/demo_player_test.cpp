@@ -55,16 +55,17 @@ TEST(DemoPlayer, MovesBones)
 {
   Model model = with_demo();
   model.bones = { "jaw", "finger" };
-  model.demo[0].bones = { { 1, { { 0.01, 0, 0 } }, { { 0, 0, 0.5 } } } };
+  model.demo[0].bones = { { 1, { { 0.01, 0, 0 } }, {} } };
+  model.demo[1].bones = { { 1, {}, { { 0, 0, 0.5 } } } };
   model.demo[2].bones = { { 1, { { 0, 0, 0.02 } }, {} } };
   model.demo[2].expression = -2;
   const DemoPlayer demo(std::make_shared<const Model>(model));
   EXPECT_EQ(demo.bones(0.2).count("jaw"), 0u);
   EXPECT_NEAR(demo.bones(0.2).at("finger").translation[0], 0.005, 1e-12);
-  // half of the turn, about z of the face frame
-  EXPECT_NEAR(demo.bones(0.2).at("finger").rotation[3], std::sin(0.25), 1e-12);
-  // a phase without poses keeps them, one without an expression keeps that
-  EXPECT_NEAR(demo.bones(1.4).at("finger").translation[0], 0.01, 1e-12);
+  // half of the turn, about z of the face frame, and all of it
+  EXPECT_NEAR(demo.bones(1.25).at("finger").rotation[3], std::sin(0.25), 1e-12);
+  EXPECT_NEAR(demo.bones(1.5).at("finger").rotation[3], 0, 1e-12);
+  // a phase without an expression keeps that
   EXPECT_NEAR(demo.bones(1.6).at("finger").translation[2], 0.02, 1e-12);
   EXPECT_NEAR(demo.activation(1.6).at("knitter"), 0, 1e-12);
   // the next round begins there

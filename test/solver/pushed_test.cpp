@@ -69,7 +69,9 @@ TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
     const double of_body = 40e-6 * (solver->bodies()[0].translation[axis] - body[axis]) / time;
     EXPECT_NEAR(of_block + of_body, mass * velocity[axis], 1e-5 * initial) << axis;
     if (axis == 2)
+    {
       EXPECT_GT(of_body, 0.3 * initial);
+    }
   }
 }
 
