@@ -62,7 +62,7 @@ TEST(DemoPlayer, MovesBones)
   const DemoPlayer demo(std::make_shared<const Model>(model));
   EXPECT_EQ(demo.bones(0.2).count("jaw"), 0u);
   EXPECT_NEAR(demo.bones(0.2).at("finger").translation[0], 0.005, 1e-12);
-  // half of the turn, about z of the face frame, and all of it
+  // half of the turn, about z of the face frame, and none in the next phase
   EXPECT_NEAR(demo.bones(1.25).at("finger").rotation[3], std::sin(0.25), 1e-12);
   EXPECT_NEAR(demo.bones(1.5).at("finger").rotation[3], 0, 1e-12);
   // a phase without an expression keeps that
