@@ -1,5 +1,6 @@
 #include "frontalis/runner/face_frame.hpp"
 
+#include "frontalis/model/effects.hpp"
 #include "frontalis/physics/number.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
@@ -41,7 +42,11 @@ std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& m
   using Vector = physics::Vec3<double>;
   const auto vector = [](const std::array<double, 3>& a) { return Vector{ a[0], a[1], a[2] }; };
   const std::vector<Reaction> reactions = solver.reactions();
-  const std::vector<RigidTransform> poses = solver.bodies();
+  const std::vector<TouchedBody> touched = touched_bodies(model);
+  std::vector<RigidTransform> poses = solver.bodies();
+  // a backend that knows of no body that is pushed leaves them where their bones are
+  for (std::size_t c = poses.size(); c < reactions.size(); ++c)
+    poses.push_back(touched[c].bone < 0 ? RigidTransform() : solver.controls().bone[touched[c].bone]);
   const std::array<double, 3> origin = inverse(model.to_face).translation;
   std::vector<BodyFrame> bodies;
   for (std::size_t c = 0; c < reactions.size(); ++c)
