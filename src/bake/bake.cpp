@@ -131,6 +131,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("skin");
   for (const auto bind : { bind_surfaces, bind_contacts, bind_self_contacts })
     bind(scene, surfaces, frame, model, monitor);
+  copy_poses(scene, model);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

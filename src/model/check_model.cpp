@@ -203,9 +203,15 @@ void check_presets(const Model& model)
     check_each(name, index_below(model.muscles.size()), expression.activation, &Activation::first);
     check_each(name, check_proportion, expression.activation, &Activation::second);
   }
-  check_each("demo", index_below(model.expressions.size(), -1), model.demo, &Model::DemoPhase::expression);
+  check_each("demo", index_below(model.expressions.size(), -2), model.demo, &Model::DemoPhase::expression);
   check_each("demo (ramp)", check_finite, model.demo, &Model::DemoPhase::ramp);
   check_each("demo (seconds)", check_positive, model.demo, &Model::DemoPhase::seconds);
+  for (const Model::DemoPhase& phase : model.demo)
+  {
+    check_each("demo (bone)", index_below(model.bones.size()), phase.bones, &Model::BonePose::bone);
+    check_each("demo (shift)", check_finite, phase.bones, &Model::BonePose::shift);
+    check_each("demo (turn)", check_finite, phase.bones, &Model::BonePose::turn);
+  }
 }
 
 void check_settings(const Model& model)

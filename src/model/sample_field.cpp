@@ -166,7 +166,7 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
 }
 
 SampledField sample_band(const Point& lower, const Point& upper, const Distance& distance, double spacing, double reach,
-                         const Loop& loop)
+                         const Loop& loop, double inside)
 {
   const double margin = reach + 2 * spacing;
   Point from = lower, to = upper;
@@ -176,7 +176,7 @@ SampledField sample_band(const Point& lower, const Point& upper, const Distance&
     to[axis] += margin;
   }
   SampledField field = empty_field(from, to, spacing);
-  fill(field, std::vector<Band>(field.table.size(), { -margin, margin, false }), distance, loop);
+  fill(field, std::vector<Band>(field.table.size(), { -std::max(margin, inside), margin, false }), distance, loop);
   return field;
 }
 

@@ -127,6 +127,8 @@ public:
   virtual EnergyLedger ledger() = 0;
   /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Present poses of these bodies, in the local frame; none if the backend does not compute them.
+  virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

@@ -25,6 +25,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
   {
     const Contact& contact = model.contacts[c];
     fields_.push_back(view(contact.field));
+    any_pushed_ = any_pushed_ || contact.mass > 0;
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       if (contact.area[p] > 0)
         points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
@@ -109,20 +110,27 @@ Vector BodyContact<Real>::place(const Point& point, const Real* const u[3]) cons
 }
 
 template <class Real>
-RigidTransform BodyContact<Real>::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
+std::vector<RigidTransform> BodyContact<Real>::bodies(const std::vector<RigidTransform>& bones) const
 {
-  const std::int32_t bone = model_.contacts[body].bone;
-  return bone < 0 ? RigidTransform() : bones[bone];
+  const std::vector<Reaction> latest = reactions();
+  std::vector<RigidTransform> poses;
+  for (std::size_t b = 0; b < model_.contacts.size(); ++b)
+    poses.push_back(idle() ? held_pose(model_.contacts[b], bones)
+                           : moved_on(model_.contacts[b], bodies_[b], latest[b], bones).pose);
+  return poses;
 }
 
 template <class Real>
-std::vector<typename BodyContact<Real>::BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
+std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 {
   std::vector<BodyState> now;
   double way = 0;
+  const std::vector<Reaction> latest = any_pushed_ ? reactions() : std::vector<Reaction>(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b)
   {
-    now.push_back({ body_pose(b, step.bone_before), 0, step.dt });
+    now.push_back(moved_on(model_.contacts[b], bodies_[b], latest[b], step.bone_before));
+    now[b].dt = step.dt;
+    now[b].kick = bodies_[b].dt > 0 ? 0.5 * (bodies_[b].dt + step.dt) : step.dt;
     way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
   }
   way += bodies_.front().way + nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
@@ -153,7 +161,8 @@ void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const Bod
     return;
   }
   forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
-  touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
+  const bool was_inside = touches_[p] == Touching::yes || touches_[p] == Touching::lost;
+  touches_[p] = was_inside && !sampled ? Touching::lost : was_inside ? Touching::let_go : Touching::no;
   if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
@@ -285,12 +294,13 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.lost += sum.lost;
   }
   // The sums end at the start of the latest step: add what the next step will add.
+  const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
     const Point& point = points_[p];
     const physics::DistanceField& field = fields_[point.body];
-    const physics::Pose pose = pose_of(body_pose(point.body, bones));
+    const physics::Pose pose = pose_of(present[point.body]);
     const Vector x = pose.inwards(place(point, u));
     physics::FieldValue<double> value{};
     const double stiffness = double(point.stiffness), response = physics::friction_response(bodies_[point.body].dt);
@@ -313,7 +323,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
   const std::vector<Reaction> before = reactions();
   for (std::size_t b = 0; b < now.size(); ++b)
     if (bodies_[b].dt > 0)
-      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, body_pose(b, bones)));
+      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, present[b]));
   return energy;
 }
 

@@ -4,8 +4,8 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/body_motion.hpp"
 #include "solver/contact/bound_node_way.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <algorithm>
@@ -38,6 +38,8 @@ public:
   void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
+  std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
+  std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
   // For a backend that has the points in a memory of its own, finds their forces there, and leaves the account here.
 
@@ -68,11 +70,6 @@ public:
 
 private:
   using Touching = physics::Touching;
-  struct BodyState
-  {
-    RigidTransform pose;  // at the start of the latest step
-    double way;           // bound of how far any point and body have approached each other so far [m]
-    double dt;            // length of the latest step [s]; 0: there was none
   };
   struct Energy
   {
@@ -117,7 +114,6 @@ private:
         push(nodes[b], weight[b] * force);
   }
   Vector place(const Point& point, const Real* const u[3]) const;
-  RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
   /// Energies up to the present displacements.
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
@@ -132,7 +128,7 @@ private:
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;
-  bool runs_ = true;
+  bool runs_ = true, any_pushed_ = false;
   std::vector<Point> points_;               // sorted by voxel
   std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
   BoundNodeWay nodes_;
@@ -147,7 +143,7 @@ private:
   std::vector<double> due_;                   // BodyState::way at which a point must be evaluated again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
-  std::vector<BodyState> bodies_;
+  std::vector<BodyState> bodies_;  // at the start of the latest step
   std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;    // one per plane of voxels and body
   std::vector<Energy> opened_;    // energies when the account was opened; one entry

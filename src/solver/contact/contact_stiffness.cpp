@@ -3,15 +3,23 @@
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace frontalis
 {
 namespace
 {
+
+// Where other nodes bound the frequency, contact is stiffer than its law asks for, up to this factor: thin tissue on
+// bone resists a finger several times as much as its Young's modulus says. Bounds stay below this share of the largest.
+constexpr double stiffest_factor = 10;
+constexpr double share_of_largest = 0.95;
 
 // Limit of the stiffness of contact at a node, over that on a flat side of whole voxels with as much tissue. Points
 // that lie far outside of their voxel have large weights, and many points may be bound to a voxel with little tissue.
@@ -49,7 +57,7 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
     }
   }
   for (const Contact& contact : model.contacts)
-    add(contact.binding, contact.area, per_area, 1);
+    add(contact.binding, contact.area, per_area, counted(contact));
   for (const SelfContact& contact : model.self_contacts)
     add(contact.binding, vertex_areas(contact.surface), per_area, 2);
   const std::vector<double> asked = rows(model, true);
@@ -62,7 +70,12 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
           share = std::min(share, stiffest_node * of_flat_side[node] / asked[node]);
       surface.points[p] = static_cast<float>(share * double(surface.points[p]));
     }
-  // What contact adds to a node is shared by its voxels in proportion to their own bounds.
+  share_out(model, of_voxels);
+}
+
+// What contact adds to a node is shared by its voxels in proportion to their own bounds, which voxels_ holds before.
+void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
+{
   const std::vector<double> added = rows(model, false);
   for (std::size_t e = 0; e < voxels_.size(); ++e)
   {
@@ -71,6 +84,56 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
       share = std::max(share, added[node] / of_voxels[node]);
     voxels_[e] *= static_cast<float>(share);
   }
+  for (std::size_t c = 0; c < bodies_; ++c)
+    if (model.contacts[c].mass > 0)
+    {
+      const auto& points = surfaces_[c].points;
+      longest_step_ = std::min(
+          longest_step_, longest_pushed_step(model.contacts[c], std::accumulate(points.begin(), points.end(), 0.0)));
+    }
+}
+
+void ContactStiffness::stiffen(const Model& model, const Discretisation& discretisation)
+{
+  if (bodies_ == 0)
+    return;
+  // bounds of nodes with and without contact; held ones count for nothing
+  std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
+  VoxelProperties properties;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, properties);
+    const double own = properties.stiffness - in_voxel(e);
+    for (const auto node : model.voxel_nodes[e])
+    {
+      of_voxels[node] += own;
+      squared[node] += properties.stiffness / discretisation.node_mass[node];
+    }
+    voxels_[e] = static_cast<float>(own);
+  }
+  for (const auto node : discretisation.held)
+    squared[node] = 0;
+  // If no voxel's bound grows by more than its nodes and those of its neighbours allow, no node's does.
+  const double limit = share_of_largest * discretisation.frequency_squared_max;
+  std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
+  for (const auto& nodes : model.voxel_nodes)
+  {
+    double largest = 0;
+    for (const auto node : nodes)
+      largest = std::max(largest, squared[node]);
+    for (const auto node : nodes)
+      growth[node] = std::min(growth[node], std::max(1.0, limit / largest));
+  }
+  const std::vector<double> added = rows(model, false);
+  for (std::size_t c = 0; c < bodies_; ++c)
+    for (std::size_t p = 0; p < surfaces_[c].points.size(); ++p)
+    {
+      double factor = stiffest_factor;
+      for (const auto node : model.voxel_nodes[surfaces_[c].binding->voxel[p]])
+        factor = std::min(factor, 1 + (growth[node] - 1) * of_voxels[node] / added[node]);
+      surfaces_[c].points[p] *= static_cast<float>(factor);
+    }
+  share_out(model, of_voxels);
 }
 
 void ContactStiffness::add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area,

@@ -15,6 +15,9 @@ public:
   /// From the mixtures of the points' voxels, with bounds of their stiffness that do not include contact.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
+  /// Makes points up to ten times as stiff, of Model::contacts alone.
+  void stiffen(const Model& model, const Discretisation& discretisation) override;
+
   /// Of a point [N/m], of Model::contacts.
   double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
   /// Of a vertex [N/m], of Model::self_contacts.
@@ -27,20 +30,25 @@ public:
   void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                   std::vector<std::array<double, 3>>& forces) const override;
 
+  /// That of bodies that are pushed.
+  double longest_step() const override { return longest_step_; }
+
 private:
   struct Surface
   {
     const Binding* binding;
     std::vector<float> points;  // [N/m]
-    double moves;               // 2 where the other side moves too: two masses joined by a spring feel it twice
+    double moves;  // how often it counts if the other side moves: 2 where it is tissue, as two masses joined by a spring
   };
   void add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area, double moves);
+  void share_out(const Model& model, const std::vector<double>& of_voxels);
   /// `alone`: as if the other side stood still.
   std::vector<double> rows(const Model& model, bool alone) const;
 
   std::vector<Surface> surfaces_;  // first those of bodies
   std::size_t bodies_;
   std::vector<float> voxels_;  // [N/m]
+  double longest_step_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace frontalis

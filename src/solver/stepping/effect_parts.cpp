@@ -35,12 +35,11 @@ std::vector<EnergyTerm> energy_terms_of_effects()
   };
 }
 
-std::vector<std::shared_ptr<const AddedStiffness>> added_stiffness(const Model& model,
-                                                                   const Discretisation& discretisation)
+std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation)
 {
-  std::vector<std::shared_ptr<const AddedStiffness>> added;
+  std::vector<std::shared_ptr<AddedStiffness>> added;
   if (!model.contacts.empty() || !model.self_contacts.empty())
-    added.push_back(std::make_shared<const ContactStiffness>(model, discretisation));
+    added.push_back(std::make_shared<ContactStiffness>(model, discretisation));
   return added;
 }
 

@@ -90,6 +90,10 @@ public:
   }
   /// Reactions of the latest step, one per entry of touched_bodies(model) that belongs to this effect.
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Present poses of these bodies, from those of the bones.
+  virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
+  /// Monitor::lost_points.
+  virtual std::int64_t lost_points() const { return 0; }
 };
 
 }  // namespace frontalis
