@@ -70,7 +70,6 @@ public:
 
 private:
   using Touching = physics::Touching;
-  };
   struct Energy
   {
     double stored = 0;  // present [J]
