@@ -32,6 +32,7 @@ struct EffectDescription
 
 /// Descriptions of the effects that have a file of their own.
 EffectDescription contact_description();
+EffectDescription self_contact_description();
 
 /// These call the `write`, `read` or `check` of all effects.
 void exchange_effects(ModelWriter& archive, const Model& model);

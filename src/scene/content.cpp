@@ -132,10 +132,13 @@ void add_anatomy(const Scene& scene, Content& content)
 void add_restrictions(const Scene& scene, Content& content)
 {
   for (const SceneConstraint& c : scene.constraints)
-    if (c.on.empty())
-      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
-    else
-      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction, c.on);
+  {
+    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    if (!c.on.empty())
+      content.add(c.on);
+    if (c.pushed)
+      content.add("pushed", c.pushed->mass, c.pushed->force, c.pushed->spring, c.pushed->damping);
+  }
   for (const SceneLoad& load : scene.loads)
     content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp, load.crop);
   content.line("gravity", scene.gravity);
@@ -151,7 +154,11 @@ void add_output(const Scene& scene, Content& content)
   for (const auto& [name, activation] : scene.expressions)
     content.line("expression", name, activation);
   for (const DemoPhase& phase : scene.demo)
+  {
     content.line("demo", phase.expression, phase.ramp, phase.seconds);
+    for (const BonePose& pose : phase.bones)
+      content.add(pose.bone, pose.shift, pose.turn);
+  }
 }
 
 void add_numerics(const Scene& scene, Content& content)
