@@ -215,6 +215,35 @@ void check_field(const std::string& array, const SampledField& field)
   check_each(array + " (samples)", check_finite, field.samples);
 }
 
+void check_attached(const Model& model)
+{
+  const auto node = index_below(model.nodes.size());
+  check_each("attached (node)", node, model.attached, &AttachedNode::node);
+  check_each("attached (master)", node, model.attached, &AttachedNode::master);
+  check_each("attached (bone)", index_below(model.bones.size(), -1), model.attached, &AttachedNode::bone);
+  check_each("attached (surface)", index_below(model.constraint_surfaces.size(), -1), model.attached,
+             &AttachedNode::surface);
+  check_each("attached (constraint)", index_below(model.constraints.size(), -1), model.attached,
+             &AttachedNode::constraint);
+  std::vector<bool> restricted(model.nodes.size(), false);
+  for (const RigidNode& rigid : model.rigid)
+    restricted[rigid.node] = true;
+  for (const SlidingNode& sliding : model.sliding)
+    restricted[sliding.node] = true;
+  for (std::size_t n = 0; n < model.attached.size(); ++n)
+  {
+    const AttachedNode& attached = model.attached[n];
+    if (restricted[attached.node])
+      fail("attached (node)", "entry {} is node {}, which another entry restricts", n, attached.node);
+    restricted[attached.node] = true;
+    if (!(std::abs(attached.ratio) <= 1))
+      fail("attached (ratio)", "entry {} is {}; ratios run from -1 to 1", n, attached.ratio);
+  }
+  for (std::size_t n = 0; n < model.attached.size(); ++n)
+    if (restricted[model.attached[n].master])
+      fail("attached (master)", "entry {} is node {}, which is restricted itself", n, model.attached[n].master);
+}
+
 void check_constraints(const Model& model)
 {
   const auto node = index_below(model.nodes.size());
@@ -234,6 +263,7 @@ void check_constraints(const Model& model)
   check_each("sliding (surface)", index_below(model.constraint_surfaces.size()), model.sliding, &SlidingNode::surface);
   check_each("sliding (distance)", check_finite, model.sliding, &SlidingNode::distance);
   check_each("sliding (constraint)", constraint_or_none, model.sliding, &SlidingNode::constraint);
+  check_attached(model);
   check_each("prescribed (node)", node, model.prescribed, &PrescribedNode::node);
   check_each("prescribed (load)", index_below(model.loads.size()), model.prescribed, &PrescribedNode::load);
 }

@@ -56,6 +56,14 @@ std::size_t loaded_nodes(const Model& model)
   return static_cast<std::size_t>(std::count(loaded.begin(), loaded.end(), true));
 }
 
+bool slides(const AttachedNode& node) { return node.surface >= 0; }
+
+std::size_t attached_nodes(const Model& model, bool sliding)
+{
+  return static_cast<std::size_t>(std::count_if(model.attached.begin(), model.attached.end(),
+                                                [=](const AttachedNode& node) { return slides(node) == sliding; }));
+}
+
 template <class Entry>
 std::size_t distinct_nodes(const std::vector<Entry>& entries)
 {
@@ -118,10 +126,11 @@ EffectPresence found(const Model& model, Effect effect)
       return on_nodes(distinct_nodes(model.prescribed),
                       counted(model.loads.size() - count_surface_loads(model), "path"), "no node has a path");
     case Effect::rigid_nodes:
-      return on_nodes(distinct_nodes(model.rigid), "nodes at rigid surfaces", "nothing is held");
+      return on_nodes(distinct_nodes(model.rigid) + attached_nodes(model, false), "nodes at rigid surfaces",
+                      "nothing is held");
     case Effect::sliding:
-      return on_nodes(distinct_nodes(model.sliding), counted(model.constraint_surfaces.size(), "surface"),
-                      "no surface to slide on");
+      return on_nodes(distinct_nodes(model.sliding) + attached_nodes(model, true),
+                      counted(model.constraint_surfaces.size(), "surface"), "no surface to slide on");
     case Effect::friction:
       return on_nodes(
           static_cast<std::size_t>(std::count_if(model.sliding.begin(), model.sliding.end(),
@@ -180,6 +189,13 @@ void remove_loads(Model& model, Condition&& goes)
   model.prescribed = std::move(prescribed);
 }
 
+void remove_attached(Model& model, bool sliding)
+{
+  auto& list = model.attached;
+  list.erase(std::remove_if(list.begin(), list.end(), [=](const AttachedNode& n) { return slides(n) == sliding; }),
+             list.end());
+}
+
 void remove(Model& model, Effect effect, EffectSet off)
 {
   switch (effect)
@@ -206,9 +222,11 @@ void remove(Model& model, Effect effect, EffectSet off)
       break;
     case Effect::rigid_nodes:
       model.rigid.clear();
+      remove_attached(model, false);
       break;
     case Effect::sliding:
       model.sliding.clear();
+      remove_attached(model, true);
       model.constraint_surfaces.clear();
       break;
     case Effect::friction:

@@ -79,6 +79,11 @@ void exchange_model(Archive& archive, AnyModel& model)
                 Column{ "surface", &SlidingNode::surface }, Column{ "distance", &SlidingNode::distance },
                 Column{ "constraint", &SlidingNode::constraint });
 
+  if (archive.group_if(!model.attached.empty(), "attached"))
+    archive.table("attached", model.attached, Column{ "node", &AttachedNode::node },
+                  Column{ "master", &AttachedNode::master }, Column{ "ratio", &AttachedNode::ratio },
+                  Column{ "bone", &AttachedNode::bone }, Column{ "surface", &AttachedNode::surface },
+                  Column{ "constraint", &AttachedNode::constraint });
   exchange_contacts(archive, "contacts", model.contacts);
 
   archive("gravity", model.gravity);

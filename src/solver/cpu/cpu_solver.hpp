@@ -32,7 +32,7 @@ public:
 
 private:
   using Base = HostBackend<Real, float>;
-  using Base::account_, Base::conditions_, Base::contact_, Base::discretisation_, Base::loads_, Base::model_,
+  using Base::account_, Base::attached_, Base::conditions_, Base::contact_, Base::discretisation_, Base::loads_, Base::model_,
       Base::relaxed_;
   using Base::restricted_, Base::runs, Base::u_, Base::v_;
   using typename Base::Components;

@@ -182,6 +182,13 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             account_->unconstrained(begin, end, g.v);
           if (!restricted_.idle())
             restricted_.apply(begin, end, g.next, g.v, g.u, constraint_steps[step]);
+          // nodes of a group may belong to several threads
+          if (!attached_.idle())
+          {
+            team_.barrier();
+            attached_.apply(begin, end, g.next, g.v, constraint_steps[step]);
+            team_.barrier();
+          }
           if (!contact_.idle())
             contact_.moved(slab_[t], slab_[t + 1], g.u, g.next);
           if (account_)

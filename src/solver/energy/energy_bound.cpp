@@ -36,6 +36,8 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
     driver[node.node] = model.constraint_surfaces[node.surface].bone;
   for (const auto& node : model.rigid)
     driver[node.node] = node.bone;
+  for (const auto& node : model.attached)
+    driver[node.node] = node.surface < 0 ? node.bone : model.constraint_surfaces[node.surface].bone;
   for (const auto& node : model.prescribed)
     driver[node.node] = bones + node.load;
   std::vector<double> stiffness(model.bones.size() + model.loads.size(), 0);

@@ -144,6 +144,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     if (account_)
       account_->unconstrained(0, count, v);
     restricted_.apply(0, count, u, v, old, plan.constraint_step(step));
+    attached_.apply(0, count, u, v, plan.constraint_step(step));
     if (!contact_.idle())
       contact_.moved(0, model_->size[2] + 1, old, u);
     if (account_)

@@ -29,6 +29,7 @@ template <class Real, class Relaxed>
 HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide)
     : StepBackend(input),
       restricted_(*model_, slide),
+      attached_(*model_, discretisation_.node_mass),
       loads_(*model_, discretisation_),
       contact_(*model_, discretisation_)
 {

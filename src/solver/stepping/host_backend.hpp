@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/stepping/attached_nodes.hpp"
 #include "solver/stepping/nodal_loads.hpp"
 #include "solver/stepping/restricted_nodes.hpp"
 #include "solver/stepping/step_backend.hpp"
@@ -67,12 +68,13 @@ protected:
   Components u_, v_;
   RelaxedStresses<Relaxed> relaxed_;
   RestrictedNodes<Real> restricted_;
+  AttachedNodes<Real> attached_;
   NodalLoads loads_;
   BodyContact contact_;
   std::unique_ptr<EnergyAccount<Real>> account_;  // if a ledger was asked for
 
 private:
-  std::array<EffectPart*, 4> parts() { return { { &relaxed_, &restricted_, &loads_, &contact_ } }; }
+  std::array<EffectPart*, 5> parts() { return { { &relaxed_, &restricted_, &attached_, &loads_, &contact_ } }; }
 };
 
 }  // namespace frontalis
