@@ -1,4 +1,4 @@
-# Looks for a CUDA toolkit, sets FRONTALIS_CUDA_FOUND and, where there is one, flags and GPUs of the kernels.
+# Looks for a CUDA toolkit; sets FRONTALIS_CUDA_FOUND and, if there is one, flags and GPU architectures of the kernels.
 set(FRONTALIS_CUDA_ARCHITECTURES native CACHE STRING "GPUs to build for: native, portable, or as CMAKE_CUDA_ARCHITECTURES")
 
 # "native": the GPUs of this machine. Where there is none, or with "portable": machine code for sm_80 and sm_90, and PTX

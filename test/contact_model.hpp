@@ -9,8 +9,8 @@ namespace frontalis
 namespace test
 {
 
-/// A body with a plane surface through (0, 0, z): a sphere so large that a block sees no curvature. `side`: -1 where
-/// the body is below its surface, +1 where it is above.
+/// A body with a plane surface through (0, 0, z): a sphere so large that its curvature is negligible. `side`: -1 if the
+/// body is below its surface, +1 if it is above.
 inline SampledField plate(double z, int side)
 {
   const double radius = 1000;

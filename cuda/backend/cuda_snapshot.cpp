@@ -5,12 +5,12 @@ namespace frontalis
 namespace cuda
 {
 
-// The state arrays one after the other in device memory, and what the host knows of the motion.
+// The state arrays one after the other in device memory, and the state that the host holds.
 struct CudaSolver::State : BackendState
 {
   cudaStream_t stream = nullptr;  // stream on which the copy is queued
   DeviceArray<char> bytes;
-  std::size_t mode_bytes = 0;  // those of a mode of the highest frequency, which not every state has
+  std::size_t mode_bytes = 0;  // bytes of the mode of the highest frequency; 0 if the state has none
   struct
   {
     std::int64_t plans = 0;
@@ -35,7 +35,7 @@ struct CudaSolver::State : BackendState
   }
 };
 
-// Copies between the state arrays, some of which are in host memory, and `state`. `back`: to the arrays.
+// Copies between the state arrays, some of which are in host memory, and `state`. `back`: from `state` to the arrays.
 void CudaSolver::copy_state(const State& state, bool back)
 {
   ArrayList list;
@@ -79,7 +79,7 @@ void CudaSolver::restore(const BackendState& from)
   plans_ = state.host.plans;
   still_moved_ = state.host.still_moved;
   copy_state(state, true);
-  // the host reads the frequency bound that was copied
+  // wait for the copy of the frequency bound, which the host reads
   synchronise();
 }
 

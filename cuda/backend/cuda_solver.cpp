@@ -100,7 +100,7 @@ void CudaSolver::effects_switched()
   synchronise();
   device_.run(*model_, discretisation_, conditions_.running);
   launch_ = choose_launch(device_);
-  // The bounds of the plans under way belong to other effects, so they are not used.
+  // bounds of plans that still run were found with other effects and are not used
   plans_ = 0;
 }
 
@@ -201,8 +201,8 @@ void CudaSolver::skin(SkinState& out)
   take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
 }
 
-// Long plans hide the host's work between them, but the time step must follow a tissue that stiffens: plans of 0.5 ms
-// are short enough for that. Checks, and looks at all displacements, wait for the device and are therefore rare.
+// Plans of 0.5 ms are long enough to hide the host's work between them, and short enough for the time step to follow
+// tissue that stiffens. The guard's checks and dynamic relaxation wait for the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
@@ -250,8 +250,6 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  if (!model->contacts.empty())
-    throw BackendUnavailable("backend cuda: the model has contact, which is computed on the CPU alone so far");
   if (!model->attached.empty())
     throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
   return std::make_unique<TimeStepper>(std::move(model), settings,

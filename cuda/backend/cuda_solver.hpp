@@ -12,7 +12,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// The input of one plan on its way to the device, and the frequency bound that its last step reports.
+/// The input of one plan in page-locked memory, and the frequency bound that its last step reports.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -43,6 +43,8 @@ public:
   std::optional<double> highest_frequency_squared(int most_iterations) override;
   Monitor monitor() override;
   Work work(bool open) override;
+  void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
   void skin(SkinState& out) override;
 
 private:
@@ -52,11 +54,13 @@ private:
   void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
-  void do_steps(StepArguments& g, int begin, int end);
+  void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
+  bool pushes_before_steps() const;
   void rest();
-  void queue_forces(float4* at, const float* activation, float4* out);
+  /// `springs`: with those of points of contact.
+  void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
-  /// An empty `in` stands for zeros.
+  /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 

@@ -38,7 +38,7 @@ StepArguments CudaSolver::arguments(double dt) const
 }
 
 // Copies the cleared frequency bound, the activations, the poses and the relaxation times of viscous stresses to the
-// device in one transfer from page-locked memory. `relaxation` is empty if stresses do not relax within launches.
+// device in one transfer from page-locked memory. `relaxation` is empty if launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
@@ -89,20 +89,36 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-// Launches all steps at once if nothing has to be done between them, else one launch per step.
-void CudaSolver::do_steps(StepArguments& g, int begin, int end)
+bool CudaSolver::pushes_before_steps() const
+{
+  const DevicePart* const contact = device_.touching();
+  return contact != nullptr && !contact->idle() && !contact->in_patches();
+}
+
+// Launches all steps at once if the host has nothing to do between them, else one launch per step.
+void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
     return step(g, begin, end);
+  DevicePart* const contact = device_.touching();
   for (int s = begin; s < end; ++s)
   {
     device_.loads().update(u_[present_].data(), stream_);
     g.first = present_;
     if (account_)
       account_->before_step(g, s, stream_);
+    if (pushes_before_steps())
+      contact->push(g, s, stream_);
     step(g, s, s + 1);
-    if (account_)
-      account_->after_step(g, conditions_.damping, s, stream_);
+    if (!account_)
+      continue;
+    if (pushes_before_steps())
+      contact->take_back(g, g.velocity_before, stream_);
+    account_->after_step(g, conditions_.damping, s, stream_);
+    if (contact == nullptr || contact->idle())
+      continue;
+    synchronise();
+    contact->follow(plan.constraint_step(s));
   }
 }
 
@@ -133,7 +149,7 @@ double CudaSolver::run(const StepPlan& plan)
   {
     const int before = present_;
     kick(g, plan.first_kick);
-    do_steps(g, 0, 1);
+    do_steps(plan, g, 0, 1);
     kick(g, plan.dt);
     if (still_moved_)
       require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
@@ -147,7 +163,7 @@ double CudaSolver::run(const StepPlan& plan)
     int end = done + 1;
     while (end < plan.steps && (!relaxation.empty() || elapsed[end - 1] == 0))
       ++end;
-    do_steps(g, done, end);
+    do_steps(plan, g, done, end);
     relax_after(end - 1);
     done = end;
   }
@@ -163,8 +179,7 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // The host waits for the previous plan, so that the device always has work; for the present one if motion changes
-  // fast.
+  // The host waits for the previous plan, so that the device always has work, or for this one if motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
@@ -172,7 +187,7 @@ double CudaSolver::run(const StepPlan& plan)
 }
 
 // Computes the internal forces at any displacements. `out` must hold zeros for nodes without voxels.
-void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
+void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, bool springs)
 {
   StepArguments g = arguments(0);
   g.activation_begin = g.activation_end = activation;
@@ -181,8 +196,15 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out)
   const int present = present_;
   g.u[present] = at;
   g.u[1 - present] = out;
+  g.contact.spring = springs;
+  const StepLaunch launch = launch_;
+  if (springs && device_.touching() != nullptr)
+    launch_.effects = device_.launch_with_contact().effects;
   step(g, 0, 1);
+  launch_ = launch;
   present_ = present;
+  if (springs && device_.touching() != nullptr && !launch_.patches)
+    device_.touching()->add_springs(g, stream_);
 }
 
 void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
@@ -223,6 +245,27 @@ Work CudaSolver::work(bool open)
   Work work = account_->work();
   work.viscous = device_.viscosity().work();
   return work;
+}
+
+void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger)
+{
+  if (device_.touching() == nullptr || device_.touching()->idle())
+    return;
+  NodalVectors u;
+  get(NodalField::displacements, u);
+  device_.touching()->add_energies(u, conditions_.bone, open, forces, ledger);
+}
+
+// With a ledger the host has followed every step.
+std::vector<Reaction> CudaSolver::reactions() const
+{
+  DevicePart* const contact = device_.touching();
+  if (contact == nullptr)
+    return {};
+  synchronise();
+  if (!account_ && !contact->idle())
+    contact->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
+  return contact->reactions();
 }
 
 Monitor CudaSolver::monitor()

@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Sums of work in device memory. The host adds up the partial sums on request.
+/// Sums of work in device memory, kept as partial sums. The host adds them up on request.
 class DeviceAccount
 {
 public:
@@ -21,7 +21,7 @@ public:
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
   /// Adds the work that fibres did since the last call, up to displacements `u`.
   void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
-  /// To be called before and after each step. g.first selects the displacements before the step, then after it.
+  /// Called before and after each step. g.first selects the displacements before the step, then after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
   /// Returns all work except that of viscous stresses. The stream must be idle.

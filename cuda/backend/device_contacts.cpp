@@ -1,7 +1,5 @@
 #include "cuda/backend/device_model.hpp"
 
-#include "frontalis/model/sample_field.hpp"
-
 #include <algorithm>
 #include <cstring>
 
@@ -12,10 +10,13 @@ namespace cuda
 
 DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32_t>& device_node)
 {
-  add_fields(model);
+  std::vector<physics::DistanceField> fields;
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    fields.push_back(surfaces_.add(surface.field));
+  fields_ = DeviceArray<physics::DistanceField>(fields);
   const auto surface_of = [&model](const SlidingNode& node) -> const ConstraintSurface&
   { return model.constraint_surfaces[node.surface]; };
-  // nodes with friction come first, then the order in which warps process them
+  // order: nodes with friction first; within these groups, the order in which warps process them
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
             [&](const SlidingNode& a, const SlidingNode& b)
@@ -61,20 +62,6 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
   reset();
 }
 
-void DeviceContacts::add_fields(const Model& model)
-{
-  std::vector<physics::DistanceField> fields;
-  for (const ConstraintSurface& surface : model.constraint_surfaces)
-  {
-    tables_.emplace_back(surface.field.table);
-    field_samples_.emplace_back(surface.field.samples);
-    fields.push_back(view(surface.field));
-    fields.back().table = tables_.back().data();
-    fields.back().samples = field_samples_.back().data();
-  }
-  fields_ = DeviceArray<physics::DistanceField>(fields);
-}
-
 void DeviceContacts::add_tasks(std::vector<NodeTask>& task_of) const
 {
   for (std::size_t index = 0; index < node_.size(); ++index)
@@ -101,8 +88,7 @@ void DeviceContacts::describe(StepArguments& g) const
 
 void DeviceContacts::list_arrays(ArrayList& list)
 {
-  for (std::size_t s = 0; s < tables_.size(); ++s)
-    list.add(Effect::sliding, "fields of surfaces", tables_[s].bytes() + field_samples_[s].bytes());
+  surfaces_.list_arrays(Effect::sliding, list);
   list.add(Effect::sliding, "fields of surfaces", fields_.bytes());
   list.add(Effect::sliding, "samples at nodes", sliding_.bytes() + at_.bytes() + samples_.bytes() + glides_.bytes());
   list_state(list, Effect::sliding, "tangent planes", planes_);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cuda/backend/device_memory.hpp"
+#include "cuda/backend/device_fields.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "frontalis/model/model.hpp"
 #include "solver/stepping/array_list.hpp"
@@ -18,9 +18,9 @@ class DeviceContacts : public EffectPart
 public:
   DeviceContacts(const Model& model, const std::vector<std::uint32_t>& device_node);
 
-  /// Enters sliding nodes into the tasks of all model nodes.
+  /// Enters the sliding nodes into the tasks, which are indexed by model node.
   void add_tasks(std::vector<NodeTask>& task_of) const;
-  /// Fills in what a step needs.
+  /// Sets the arguments that steps need.
   void describe(StepArguments& g) const;
   std::size_t rubbing() const { return friction_.size(); }  ///< nodes with friction
   void list_arrays(ArrayList& list) override;
@@ -28,13 +28,10 @@ public:
   void reset() override;
 
 private:
-  void add_fields(const Model& model);
-
   bool rubs_ = true;
   std::vector<std::int32_t> node_;     // model node of each sliding node
-  std::vector<std::int32_t> gliding_;  // its index into glides_; -1: its surface is still
-  std::vector<DeviceArray<std::int32_t>> tables_;
-  std::vector<DeviceArray<float>> field_samples_;
+  std::vector<std::int32_t> gliding_;  // index into glides_ of each sliding node; -1: its surface is still
+  DeviceFields surfaces_;
   DeviceArray<physics::DistanceField> fields_;
   DeviceArray<SlidingNodeField> sliding_;
   DeviceArray<float4> at_, samples_, planes_;

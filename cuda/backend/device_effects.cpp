@@ -7,7 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off keeps all arrays. Entries then mark strips without fibres, nodes without tasks and so on.
+// Switching an effect off keeps its arrays: entries then say that strips have no fibres, nodes have no tasks, and so
+// on.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -89,7 +90,7 @@ void DeviceModel::run_tasks(EffectSet running)
   patch_tasks_.upload(words.data(), words.size());
 }
 
-// The part of Effects that follows from the tasks of nodes.
+// The flags of `Effects` that follow from the tasks of nodes.
 Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 {
   Effects part = Effects::none;
@@ -104,7 +105,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the smallest kernel that computes the running effects and handles strips of the given number of rows.
+// Chooses the kernel with the fewest effects that computes the running ones, for the strips' number of rows.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;
@@ -117,7 +118,30 @@ void DeviceModel::choose_effects(EffectSet running)
   effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
   if (running.has(Effect::sliding) && running.has(Effect::friction))
     effects_ = effects_ | (most_effects_ & Effects::friction);
+  choose_kernel();
+}
+
+StepLaunch DeviceModel::launch_with_contact() const
+{
+  StepLaunch launch = launch_;
+  if (touching_ && launch.patches)
+    launch.effects = effects_ | of_nodes | Effects::contact;
+  return launch;
+}
+
+void DeviceModel::choose_kernel()
+{
   launch_.effects = effects_;
+  if (touching_ && !touching_->idle())
+    launch_ = launch_with_contact();
+}
+
+std::vector<EffectPart*> DeviceModel::parts()
+{
+  std::vector<EffectPart*> all{ &loads_, &viscosity_, &contacts_ };
+  if (touching_)
+    all.push_back(touching_.get());
+  return all;
 }
 
 void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)

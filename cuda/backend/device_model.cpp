@@ -101,12 +101,14 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
       of_device[device_node_[n]] = of_node[n];
     mobility_ = DeviceArray<float>(of_device);
   }
+  touching_ = touching_part(model, discretisation, cut, device_node_);
   if (cut.patches)
     add_patches(model, *cut.patches, tasks, palette_of_voxel_);
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
   most_effects_ = most_effects_ | node_part(tasks);
-  launch_.effects = effects_ = most_effects_;
+  effects_ = most_effects_;
+  choose_kernel();
   tasks_ = DeviceArray<NodeTask>(tasks);
 
   StepArguments& g = constants_;
@@ -139,6 +141,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   contacts_.describe(g);
+  if (touching_)
+    touching_->describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/backend/device_contacts.hpp"
+#include "cuda/backend/device_part.hpp"
 #include "cuda/backend/device_surface.hpp"
 #include "cuda/backend/device_viscosity.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -23,10 +24,10 @@ std::array<double, 3> rest_position(const Model& model, std::int32_t node);
 /// The effects that a model's kernels must compute because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Patches if they fit the shared memory, else strips.
+/// Choice between patches, if they fit the shared memory, and strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };  ///< first number of turns to try; 0 turns: use strips
+  PatchSettings patches{ 0, 0 };  ///< first number of turns (patches per block) to try; 0 turns: use strips
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
 };
@@ -40,11 +41,11 @@ struct VoxelCut
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
-  /// For each place in the partition, 1 + the number of its model voxel, or 0 if it is empty.
+  /// For each entry of the partition, 1 + the number of its model voxel, or 0 if it is empty.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
-/// A model in device memory, apart from the motion of its nodes.
+/// A model in device memory, without the motion of its nodes.
 class DeviceModel
 {
 public:
@@ -53,7 +54,7 @@ public:
 
   /// Returns step arguments with all constant data filled in.
   StepArguments arguments() const;
-  /// Switches to these effects. No array changes its address or size.
+  /// Computes only these effects from now on. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_arrays(Effect of_fibres, ArrayList& list);
   /// Brings all effects to their state at rest.
@@ -62,6 +63,8 @@ public:
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
+  /// The same with the points of contact, also where contact is switched off.
+  StepLaunch launch_with_contact() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
   double filled() const { return filled_; }                      ///< VoxelStrips::filled()
@@ -70,6 +73,7 @@ public:
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   const DeviceContacts& contacts() const { return contacts_; }
+  DevicePart* touching() const { return touching_.get(); }  ///< contact; null if the model has none
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -86,10 +90,11 @@ private:
   void run_tasks(EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
+  void choose_kernel();
 
-  std::array<EffectPart*, 3> parts() { return { { &loads_, &viscosity_, &contacts_ } }; }
+  std::vector<EffectPart*> parts();
 
-  /// The arrays with all effects switched on, kept from the first switch onwards.
+  /// Copies of the arrays with all effects switched on, made at the first switch.
   struct Whole
   {
     std::vector<Strip> strips;
@@ -126,6 +131,7 @@ private:
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;
+  std::unique_ptr<DevicePart> touching_;
 };
 
 }  // namespace cuda

@@ -17,7 +17,10 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
     throw BackendUnavailable(fmt::format("backend cuda: {} nodes and {} fibre entries; allowed are below 2^30 and 2^28",
                                          model.nodes.size(), model.fibre_muscle.size()));
   const auto fits = [&](const VoxelPatches& cut)
-  { return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes) <= choice.patch_bytes; };
+  {
+    return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
+                                           most_touching_points(model, cut)) <= choice.patch_bytes;
+  };
   PatchSettings settings = choice.patches;
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
     if (auto cut = std::make_unique<VoxelPatches>(model, settings); fits(*cut))
@@ -106,11 +109,15 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
+  launch_.most_points = most_touching_points(model, patches);
+  // points of contact have threads of their own as far as possible
+  if (launch_.most_points > 0)
+    most = std::max(most, patches.most_voxels + launch_.most_points);
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads));
   launch_.most_voxels = patches.most_voxels;
   launch_.most_halo = patches.most_halo;
   launch_.most_nodes = patches.most_nodes;
-  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes);
+  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, launch_.most_points);
 }
 
 }  // namespace cuda

@@ -15,7 +15,7 @@ namespace cuda
 class DeviceViscosity : public EffectPart
 {
 public:
-  /// `voxel_at`: 1 + the model voxel at each place of the partition, 0 if the place is empty. `apart`: a voxel that
+  /// `voxel_at`: 1 + the model voxel at each entry of the partition, 0 if the entry is empty. `apart`: a voxel that
   /// lies in several patches has separate stresses in each, so that patches need not wait for each other.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
@@ -26,9 +26,9 @@ public:
   void list_arrays(ArrayList& list) override;
   /// While viscosity is switched off, nothing is read or updated.
   void run(EffectSet running) override;
-  /// Fills in what a step needs.
+  /// Sets the arguments that steps need.
   void describe(StepArguments& g) const;
-  /// To be called once the palette entries of voxels are known.
+  /// Called once the palette entries of voxels are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
   /// Sets the relaxed stresses and the account of their work to zero.
   void reset() override;
@@ -46,8 +46,8 @@ private:
   int terms_ = 0;
   bool runs_ = true;
   std::vector<std::uint32_t> voxel_;  // model voxel of each viscous voxel
-  std::vector<char> counted_;         // whether it is the first copy of its model voxel
-  std::vector<ViscousVoxel> host_;    // until the palette entries are known
+  std::vector<char> counted_;         // whether it is the first copy of its model voxel, which the account counts
+  std::vector<ViscousVoxel> host_;    // kept until the palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
   DeviceArray<float4> makes_;

@@ -39,14 +39,14 @@ std::optional<double> CudaSolver::highest_frequency_squared(int most_iterations)
   const float4* const u = u_[present_].data();
   const float* const mobility = device_.arguments().mobility;
   const DeviceArray<float> activation(conditions_.activation);
-  queue_forces(u_[present_].data(), activation.data(), m.present.data());
+  queue_forces(u_[present_].data(), activation.data(), m.present.data(), true);
   std::vector<double2> seen;
   const auto multiply = [&](double step)
   {
     require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(step / m.largest), m.moved.data(),
                             stream_),
             "displacing nodes");
-    queue_forces(m.moved.data(), activation.data(), m.forces.data());
+    queue_forces(m.moved.data(), activation.data(), m.forces.data(), true);
     require(launch_product(nodes, mobility, u, m.forces.data(), m.present.data(), static_cast<float>(1 / step),
                            m.mode.data(), m.seen.data(), stream_),
             "a product with the stiffness");

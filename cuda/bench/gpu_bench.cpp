@@ -1,4 +1,4 @@
-// Kernel time of the CUDA backend on models made in code, beside a yardstick of the same run.
+// Kernel time of the CUDA backend on models made in code, compared with a bare element loop measured in the same run.
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -71,8 +71,8 @@ double seconds_per_step(Solver& solver, const Controls& controls, int steps)
   return spread_of(times).median;
 }
 
-// The share that fetching the skin 60 times per wall second adds: median of nine runs, each compared with the mean of
-// the runs without it before and after, because the motion goes on meanwhile.
+// The fraction of time that fetching the skin 60 times per wall second adds: median of nine runs, each compared with
+// the mean of the runs without it before and after, because the motion goes on meanwhile.
 double share_of_skin(Solver& solver, const Controls& controls, int steps)
 {
   std::vector<double> shares(9);
@@ -101,7 +101,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const double built = wall_seconds() - start;
   Controls controls;
   controls.activation.assign(model->muscles.size(), 0);
-  // at rest no node enters another cell of its field: the difference to the motion is the cost of sliding far
+  // at rest no node enters another cell of its field: the motion's additional time is the cost of entering cells
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();
@@ -152,7 +152,7 @@ int run(int count, char** arguments)
   const std::vector<std::string> wanted(arguments + 1, arguments + count);
   const auto is_wanted = [&](const std::string& name)
   {
-    // the largest only by name: it takes minutes to build
+    // the largest runs only if named, because it takes minutes to build
     return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
   if (is_wanted("yardstick"))

@@ -13,15 +13,15 @@ namespace
 
 using Point = physics::Vec3<double>;
 
-// outer ellipsoid's semi-axes (up, lateral, out) and what is cut out of it [m]
+// semi-axes of the outer ellipsoid (up, lateral, out), and the part of it that is used [m]
 constexpr double axes[3] = { 130e-3, 78e-3, 92e-3 };
-constexpr double height = 48e-3;                          // from -height to height
+constexpr double height = 48e-3;                          // extends from -height to height
 constexpr double half_width = 66e-3;                      // lateral
-constexpr double sheet_from = 3.0e-3, sheet_to = 4.2e-3;  // depth of the muscles
+constexpr double sheet_from = 3.0e-3, sheet_to = 4.2e-3;  // depth of the muscles' sheet
 
 double thickness(double up) { return 5.5e-3 + 1.2e-3 * std::exp(-std::pow((up + height) / 20e-3, 2)); }
 
-// depth below the outer surface, to first order exact near it
+// depth below the outer surface [m], to first order
 double depth(const Point& p)
 {
   const double q = std::sqrt(std::pow(p.x / axes[0], 2) + std::pow(p.y / axes[1], 2) + std::pow(p.z / axes[2], 2));
@@ -73,7 +73,7 @@ TriangleMesh sheet(double margin, double spacing, const Depth& at)
 struct MuscleShape
 {
   const char* name;
-  double up, lateral;            // middle
+  double up, lateral;            // centre
   double half_up, half_lateral;  // extent
   double direction[2];           // up, lateral
 };
@@ -142,7 +142,7 @@ struct ShellBuilder
       if (in_sheet <= 0 || std::abs(p.x - shape.up) > shape.half_up ||
           std::abs(p.y - shape.lateral) > shape.half_lateral)
         continue;
-      // along the sheet: the direction's part normal to the surface taken out
+      // along the sheet: remove the direction's component along the normal
       Point normal{ p.x / (axes[0] * axes[0]), p.y / (axes[1] * axes[1]), p.z / (axes[2] * axes[2]) };
       normal = (1 / norm(normal)) * normal;
       Point a{ shape.direction[0], shape.direction[1], 0 };

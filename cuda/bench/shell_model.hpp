@@ -5,16 +5,15 @@
 namespace frontalis
 {
 
-/// A forehead-like curved shell made in code, so that benchmarks and tests on a machine without meshes have one: part
-/// of an ellipsoid with layers (dermis, hypodermis), four overlapping muscles in a sheet below them with a tendon
-/// above, nodes that are rigid near its rim and slide on the bone elsewhere, skin and landmarks bound to it. Local x is
-/// up, y is lateral, z points out of the face.
+/// A curved shell like a forehead, made in code for benchmarks and tests without meshes: part of an ellipsoid with
+/// layers (dermis, hypodermis), four overlapping muscles in a sheet below them with a tendon above. Nodes are rigid
+/// near its rim and slide on the bone elsewhere; skin and landmarks are bound. Local x is up, y lateral, z outwards.
 struct ShellSettings
 {
   double voxel = 1e-3;              ///< edge [m]
   double density = 1100;            ///< [kg/m3]
   double stress_reference = 0.3e6;  ///< of the muscles [Pa]
-  bool tendon = true;               ///< stiff: it rules the time step
+  bool tendon = true;               ///< stiff: it limits the time step
   double damping = 60;              ///< [1/s]
 };
 

@@ -11,19 +11,19 @@ namespace frontalis
 namespace cuda
 {
 
-constexpr int tile_x = 32, tile_y = 16;  // threads; nodes on the rim are read but not stepped
+constexpr int tile_x = 32, tile_y = 16;  // threads; those on the rim of a tile read nodes but do not step them
 
 struct Block
 {
-  int nodes;             // an edge
-  int planes_per_block;  // that it steps
+  int nodes;             // along each edge
+  int planes_per_block;  // planes of nodes that a block steps
   const float* u[3];
   float* next[3];
   float* v[3];
   float mu, kappa, hourglass, scale, dt, share;
 };
 
-// internal forces of one voxel in place of its displacements, corner by corner
+// replaces the displacements of one voxel by its internal forces, corner by corner
 __device__ __forceinline__ void bare_element(const Block& b, float (&q)[3][8])
 {
   const float scale[3] = { b.scale, b.scale, b.scale };
@@ -51,7 +51,7 @@ __global__ void __launch_bounds__(tile_x* tile_y) bare_step(const Block b)
 {
   constexpr int threads = tile_x * tile_y;
   __shared__ float plane[2][3][threads];
-  __shared__ float given[3][3][threads];  // to the right, behind, right behind
+  __shared__ float given[3][3][threads];  // forces for the neighbours: to the right, behind, behind right
   const int t = threadIdx.x, tx = t % tile_x, ty = t / tile_x;
   const int i = blockIdx.x * (tile_x - 2) + tx - 1, j = blockIdx.y * (tile_y - 2) + ty - 1;
   const int n = b.nodes, first = blockIdx.z * b.planes_per_block, last = min(first + b.planes_per_block, n);
@@ -103,7 +103,7 @@ __global__ void __launch_bounds__(tile_x* tile_y) bare_step(const Block b)
     if (own && k >= first)
       for (int c = 0; c < 3; ++c)
       {
-        // one face is held
+        // nodes of the face i = 0 are held
         const float velocity = i == 0 ? 0 : b.v[c][index(k)] - b.share * force[c] - (c == 2 ? 1e-4f : 0);
         b.v[c][index(k)] = velocity;
         b.next[c][index(k)] = here[c] + b.dt * velocity;

@@ -21,7 +21,7 @@ __device__ __forceinline__ std::uint32_t largest_of_warp(std::uint32_t value)
 #endif
 }
 
-/// Data of a voxel apart from its deformation. Its first fibre is loaded early to hide memory latency.
+/// Data of a voxel other than its deformation. Its first fibre is loaded early to hide memory latency.
 struct ElementPlace
 {
   std::uint32_t palette;
@@ -56,7 +56,7 @@ __device__ __forceinline__ Activations activations_at(const StepArguments& g, st
   return { of, __fdiv_rn(static_cast<float>(step + 1), static_cast<float>(g.steps)) };
 }
 
-/// There is no branch on the voxel: places without fibres load the first entry.
+/// Loads the first fibre of a voxel. To avoid a branch, voxels without fibres load the first entry of the list.
 __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_t word, ElementPlace& place)
 {
   place.fibre_word = word;
@@ -64,7 +64,7 @@ __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_
   place.muscle_word = __ldg(g.fibre_muscle + (word >> 4));
 }
 
-/// Combines an entry of StepArguments::fibres and its word of fibre_muscle.
+/// Makes a fibre from an entry of StepArguments::fibres and its word of fibre_muscle.
 __device__ __forceinline__ physics::Fibre<float, float> fibre_of(const float4& entry, std::uint32_t word,
                                                                  float activation)
 {
@@ -84,7 +84,7 @@ struct ElementVoxel : PaletteVoxel<float, With>
 
   const ElementPlace& place;
   const Activations& activation;
-  float relaxes;  ///< time by which viscous stresses relax first [s]
+  float relaxes;  ///< time by which viscous stresses relax before the stress is computed [s]
 
   template <class Visit>
   __device__ __forceinline__ void each_fibre(Visit&& visit) const
@@ -127,8 +127,8 @@ struct ElementVoxel : PaletteVoxel<float, With>
 };
 
 /// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: time by which viscous
-/// stresses relax first [s]. Palette entry 0 has no stiffness, so that empty places yield exact zeros. `stiffness` is 0
-/// before the call; if `look` is set it becomes the present stiffness bound [N/m].
+/// stresses relax before that [s]. Palette entry 0 has no stiffness, so that entries without a voxel yield exact zeros.
+/// `stiffness` is 0 before the call; if `look` is set it becomes the present stiffness bound [N/m].
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
                                                const Activations& activation, float relaxes, float (&mode)[3][8],

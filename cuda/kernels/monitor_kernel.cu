@@ -10,7 +10,7 @@ namespace cuda
 
 constexpr int block = 128;
 
-/// A voxel with its geometry in double precision.
+/// A voxel as the monitor evaluates it, with its geometry in double precision.
 struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
 {
   const double* grid_scale;
@@ -63,7 +63,8 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
-// A node is this corner of at most one voxel, so the order of the sum is fixed.
+// Adds voxels' stiffness to nodes at one corner. A node is this corner of at most one voxel, which fixes the sum's
+// order.
 __global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)

@@ -30,7 +30,7 @@ struct StiffestVoxel
   float stiffness = 0;  ///< bound [N/m]
   std::int32_t voxel = -1;
 
-  /// The result does not depend on the order of calls. Values that are not finite count as the largest.
+  /// Keeps the larger one, in whatever order parts are added. Values that are not finite count as the largest.
   FRONTALIS_LAW void add(const StiffestVoxel& part)
   {
     const bool none = frequency_squared != frequency_squared;

@@ -61,7 +61,8 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// Functions by NodeEffect. Calls through a table keep their registers out of the kernels. `With`: effects of nodes.
+/// One function per NodeEffect, called through a table to keep their registers out of the kernels. `With`: effects of
+/// nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
@@ -84,13 +85,12 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Applies a task after the update of its node has been written. A function of its own, so that it takes no registers
-/// from the sweep through a strip.
+/// Applies a task after its node's update was written. Not inlined, which saves registers in the sweep through a strip.
 template <Effects With>
 static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
                                              int step)
 {
-  // all loads are issued at once, because memory latency dominates here
+  // issue all loads at once, because memory latency dominates here
   const NodeTask task = g.tasks[index];
   const std::int32_t sliding = task.of[node_sliding];
   const bool slides = has<With, Effects::sliding> && slides_only(task);
@@ -99,7 +99,7 @@ static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32
     fetch_sliding<With>(g, sliding, fetch);
   const float4 before = u[task.node], now = next[task.node];
   NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  // the inverse mass is taken from the new buffer: the old one may never have been written by a step
+  // take the inverse mass from the new buffer: a step may never have written it to the old one
   const float4 old = make_float4(before.x, before.y, before.z, now.w);
   if (slides)
     slide<With>(g, sliding, { old, task.node, step }, fetch, n);
@@ -128,7 +128,7 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // unconditional, so that no instruction waits for the word; nodes of other strips may be read too
+  // load without a branch, so that no instruction waits for the node's flags; nodes of other strips are read too
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }

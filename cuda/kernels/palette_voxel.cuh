@@ -10,7 +10,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Functions for rare kinds of voxel are not inlined, so that they take no registers from the others.
+// Functions for rare kinds of voxel are not inlined, so that they do not cost the others registers.
 template <class T>
 static __device__ __noinline__ void add_laws_apart(const StepArguments& g, std::uint32_t palette,
                                                    const physics::Kinematics<T>& k, physics::Matrix3<T>& P);
@@ -110,7 +110,7 @@ struct PaletteVoxel
   }
 };
 
-/// A voxel of which only the palette entry is known.
+/// A voxel known only by its palette entry.
 template <class T>
 __device__ __forceinline__ PaletteVoxel<T, Effects::general_element> palette_voxel(const StepArguments& g,
                                                                                    std::uint32_t palette)
@@ -138,7 +138,7 @@ static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, s
   physics::gauss_forces(palette_voxel<float>(g, palette), mode, look, stiffness);
 }
 
-/// Relaxation within a step is rare. It works on a copy, so that other voxels keep their deformation in registers.
+/// Relaxes viscous stresses, rarely within a step. Works on a copy, so that other voxels stay in registers.
 template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t palette, std::uint32_t viscous,
                                                float elapsed, const physics::Kinematics<float>& k)

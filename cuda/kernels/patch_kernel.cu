@@ -9,6 +9,8 @@ namespace
 
 const void* kernel(Effects effects)
 {
+  if ((effects & Effects::contact) == Effects::contact)
+    return contact_patch_kernel(effects);
   if ((effects & Effects::friction) == Effects::friction)
     return friction_patch_kernel(effects);
   if ((effects & Effects::sliding) == Effects::sliding)
@@ -26,7 +28,7 @@ int resident_blocks(const StepLaunch& launch)
   const void* const kernel = cuda::kernel(launch.effects);
   const auto bytes = static_cast<int>(launch.shared_bytes);
   cudaFuncAttributes known{};
-  // the limit belongs to the kernel, and another solver may need a larger one
+  // only raise the limit: it belongs to the kernel, and another solver may need a larger one
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
       cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||

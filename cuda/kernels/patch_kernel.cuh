@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
 
@@ -23,15 +24,20 @@ struct PatchMemory
   float* v[3];          // velocities of own nodes
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
   std::uint32_t width;  // length of a row of `force`
+  float4* push;         // of each point of contact: force on it and its coordinates
 };
 
+template <Effects With>
 __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
 {
   extern __shared__ float4 all[];
-  float* const v = reinterpret_cast<float*>(all + launch.most_halo + launch.most_nodes);
-  return {
-    all, { v, v + launch.most_nodes, v + 2 * launch.most_nodes }, v + 3 * launch.most_nodes, launch.most_voxels + 1
-  };
+  float4* const push = all + launch.most_halo + launch.most_nodes;
+  float* const v = reinterpret_cast<float*>(push + (has<With, Effects::contact> ? 2 * launch.most_points : 0));
+  return { all,
+           { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
+           v + 3 * launch.most_nodes,
+           launch.most_voxels + 1,
+           push };
 }
 
 /// Step number, stored in place of the inverse mass. Its highest bit is set, which no inverse mass has.
@@ -132,7 +138,71 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: the sum over its voxels, in the order of the corner index that the node has in them.
+/// Finds the forces on the patch's points of contact. Threads take points from the last thread on, because the first
+/// ones have the more voxels. Returns whether one of this thread's points is pushed.
+__device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchContact& contact,
+                                           const PatchMemory& memory, int step)
+{
+  bool pushed = false;
+  for (std::uint32_t p = blockDim.x - 1 - threadIdx.x; p < contact.points; p += blockDim.x)
+  {
+    const std::uint32_t index = contact.point_begin + p;
+    const ContactPoint point = g.contact.points[index];
+    const auto& at = point.coordinates;
+    std::uint32_t corner[8];
+    split(__ldg(g.contact.corners + index), corner);
+    float weight[8];
+    physics::trilinear_weights(at[0], at[1], at[2], weight);
+    physics::Vec3<float> moved{ 0, 0, 0 }, force{ 0, 0, 0 };
+#pragma unroll
+    for (int b = 0; b < 8; ++b)
+      add_part(moved, weight[b], memory.place[corner[b]]);
+    if (find_push(g, index, point, moved, step, force))
+      pushed = true;
+    memory.push[2 * p] = make_float4(force.x, force.y, force.z, at[0]);
+    memory.push[2 * p + 1] = make_float4(at[1], at[2], 0, 0);
+  }
+  return pushed;
+}
+
+/// Adds the forces on points to those on the corners of their voxels, in the order of the points. Each thread has a
+/// corner of a voxel.
+__device__ __forceinline__ void add_pushes(const StepArguments& g, const PatchContact& contact,
+                                           const PatchMemory& memory)
+{
+  for (std::uint32_t i = threadIdx.x; i < 8 * contact.voxels; i += blockDim.x)
+  {
+    const ContactVoxel voxel = g.contact.voxels[contact.voxel_begin + i / 8];
+    const std::uint32_t b = i % 8;
+    physics::Vec3<float> sum{ 0, 0, 0 };
+    for (std::uint32_t p = voxel.first; p < voxel.end; ++p)
+    {
+      const float4 push = memory.push[2 * p], more = memory.push[2 * p + 1];
+      add_part(sum, corner_weight(b, push.w, more.x, more.y), push);
+    }
+    float* const to = memory.force + 3 * b * memory.width + voxel.column;
+    // internal forces have the opposite sign
+    to[0] -= sum.x;
+    to[memory.width] -= sum.y;
+    to[2 * memory.width] -= sum.z;
+  }
+}
+
+/// Ends the computation of voxels with a barrier; with contact, adds its forces to theirs.
+template <Effects With>
+__device__ __forceinline__ void end_voxels(const StepArguments& g, const PatchContact& contact,
+                                           const PatchMemory& memory, int step)
+{
+  if (!has<With, Effects::contact>)
+    return __syncthreads();
+  const bool asked = !g.forces_only || g.contact.spring;
+  if (__syncthreads_or(asked && put_pushes(g, contact, memory, step)) == 0)
+    return;
+  add_pushes(g, contact, memory);
+  __syncthreads();
+}
+
+/// Force on a node: the sum over its voxels, in the order of their corner 0 .. 7 that the node is.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];
@@ -147,7 +217,7 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
   }
 }
 
-/// Bits of the bound of the squared highest frequency at a node; `voxels` as in sum_forces().
+/// Bits of the bound of the squared highest frequency at a node.
 __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
                                                       std::uint32_t node, float inverse_mass)
 {
@@ -160,8 +230,7 @@ __device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, co
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Updates a node. `own`: its number in the block. `last`: the launch ends with this step, so everything is written to
-/// global memory.
+/// Updates a node. `own`: its number in the block. `last`: in the last step, which writes all to global memory.
 template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -217,7 +286,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   constexpr Effects With = static_cast<Effects>(Set);
   __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   constexpr Effects plain = plain_part<With>;
-  const PatchMemory memory = patch_memory(launch);
+  const PatchMemory memory = patch_memory<With>(launch);
   const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
@@ -249,6 +318,9 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
     {
       const Patch patch = g.patches[p];
+      PatchContact contact{};
+      if (has<With, Effects::contact>)
+        contact = g.contact.patches[p];
       VoxelFetch voxel{};
       // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
@@ -272,7 +344,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         else
           put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
       }
-      __syncthreads();
+      end_voxels<With>(g, contact, memory, step);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
@@ -306,10 +378,11 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// These are separate translation units, because nvcc gives every kernel that calls through a table the registers of
-/// the largest function in all tables of the unit.
+/// Kernels are in separate translation units, because nvcc gives every kernel that calls through a table the registers
+/// of the largest function in all tables of the unit.
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
+const void* contact_patch_kernel(Effects effects);
 
 }  // namespace cuda
 }  // namespace frontalis

@@ -8,8 +8,9 @@ namespace frontalis
 namespace cuda
 {
 
-// Nodes that slide on surfaces. In each step a node takes the tangent plane of its field's level set at its place. The
-// samples around it are read from its own copy, in loads that a warp's nodes share; most steps stay in a cell.
+// Nodes that slide on surfaces. In each step a node uses the tangent plane of its field's level set at its position.
+// The samples around it are read from a copy per node, in loads that the threads of a warp share. In most steps a node
+// stays in its cell and the copy is valid.
 
 struct NodeState
 {
@@ -25,8 +26,7 @@ struct NodeStep
   int step;
 };
 
-/// Data of a sliding node, read before the step. Its samples are read when they are needed: they would take too many
-/// registers.
+/// Data of a sliding node, read before the step. Its samples would take too many registers and are read when needed.
 struct SlidingFetch
 {
   float4 at, plane;
@@ -42,7 +42,7 @@ __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
   return static_cast<std::uint32_t>(index) < g.rubbing_count;
 }
 
-/// One of the 28 numbers of a node's samples.
+/// The n-th of the 28 numbers of a node's samples (see sample_words).
 __device__ __forceinline__ float& sample_of(const StepArguments& g, std::int32_t index, int n)
 {
   return reinterpret_cast<float*>(g.samples + n / 4 * g.sliding_count + index)[n % 4];
@@ -61,7 +61,7 @@ __device__ __forceinline__ void fetch_sliding(const StepArguments& g, std::int32
   }
 }
 
-/// Copies the samples of another cell to a node. Returns false, and copies nothing, where none are stored.
+/// Copies the samples of another cell to a node. Returns false, and copies nothing, if none are stored there.
 static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int32_t index, std::uint32_t code)
 {
   const SlidingNodeField node = g.sliding[index];
@@ -89,7 +89,7 @@ __device__ __forceinline__ Function* aside(Function* function)
   return reinterpret_cast<Function*>(address);
 }
 
-/// A node's field less its level at displacement `u`. Returns false where no samples are stored.
+/// A node's field minus its level at displacement `u`. Returns false if no samples are stored there.
 __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
                                          const physics::Vec3<float>& u, physics::FieldValue<float>& value)
 {
@@ -120,7 +120,7 @@ __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t in
   return true;
 }
 
-/// The plane on which a node at displacement `u` slides in this step: that of the latest step where its field has none.
+/// The plane on which a node at displacement `u` slides in this step; without samples there, that of the latest step.
 __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArguments& g, std::int32_t index,
                                                                const SlidingFetch& fetch, const physics::Vec3<float>& u)
 {
@@ -133,7 +133,7 @@ __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArgumen
   return plane;
 }
 
-/// Slides a node, at place p and with velocity v relative to its surface, on a plane in the surface's frame. Returns
+/// Slides a node with position p and velocity v relative to its surface on a plane in the surface's frame. Returns
 /// whether it has friction. T: number type of the step.
 template <Effects With, class T>
 __device__ __forceinline__ bool slide_on(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
@@ -188,8 +188,8 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   slide<With>(g, index, at, fetch, n);
 }
 
-/// Step of a node that slides on a surface moving with a bone. Only the plane is in single precision, so that changes
-/// of frame leave a node at rest where it is.
+/// Step of a node that slides on a surface moving with a bone. Only the plane is in single precision, so that
+/// conversions between the frames do not move a node at rest.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {

@@ -9,8 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-// One warp per strip. Look: whether stiffness bounds are computed; this is a separate kernel because they take
-// registers. Set is an int, because nvcc cannot name a combination of enumerators.
+// One warp per strip. Look: whether stiffness bounds are computed, which takes registers and so has kernels of its own.
+// Set is an int, because nvcc cannot name a combination of enumerators.
 template <int Rows, bool Look, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)
@@ -69,7 +69,7 @@ StepKernel step_kernel_of(Effects effects, bool look)
   return look ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
 }
 
-/// Separate translation units, for the same reason as those of patches.
+/// Kernels are in separate translation units for the reason given in patch_kernel.cuh.
 StepKernel sliding_step_kernel(Effects effects, bool look);
 StepKernel friction_step_kernel(Effects effects, bool look);
 

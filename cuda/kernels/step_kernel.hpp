@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
+#include "cuda/kernels/contact_arguments.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
 
@@ -16,11 +17,11 @@ namespace frontalis
 /// Effects on nodes other than the forces of their voxels, in the order in which they are applied.
 enum NodeEffect : std::uint8_t
 {
-  node_load,        ///< into StepArguments::load_begin
-  node_sliding,     ///< on a still surface; into StepArguments::sliding
-  node_gliding,     ///< on a surface that moves with a bone; into StepArguments::gliding
-  node_prescribed,  ///< into StepArguments::prescribed
-  node_rigid,       ///< into StepArguments::rigid
+  node_load,        ///< index into StepArguments::load_begin
+  node_sliding,     ///< on a still surface; index into StepArguments::sliding
+  node_gliding,     ///< on a surface that moves with a bone; index into StepArguments::gliding
+  node_prescribed,  ///< index into StepArguments::prescribed
+  node_rigid,       ///< index into StepArguments::rigid
   node_effects      ///< number of effects
 };
 
@@ -39,10 +40,10 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
 
-/// The part of a vertex's force that a node takes.
+/// The contribution of a surface vertex's force to a node.
 struct LoadPart
 {
-  std::int32_t vertex;  ///< into StepArguments::vertex_force
+  std::int32_t vertex;  ///< index into StepArguments::vertex_force
   std::int32_t load;    ///< load whose ramp it follows
   float weight;
 };
@@ -60,21 +61,21 @@ struct RigidMotion
   std::int32_t bone;
 };
 
-/// What a sliding node needs when it enters another cell of its field.
+/// Data that a sliding node needs when it enters another cell of its field.
 struct SlidingNodeField
 {
-  std::int32_t surface;  ///< into StepArguments::fields
+  std::int32_t surface;  ///< index into StepArguments::fields
   std::int32_t cell[3];  ///< cell of its rest position
   float level;           ///< value of the field that it keeps [m]
 };
 
-/// A sliding node's copy of its field near its place, as words of 16 bytes that lie `sliding_count` apart: the samples
-/// of a cell less the level [m], and the inverse of their spacing [1/m]. On a sphere the inverse spacing is 0, and the
-/// first entry is the radius at the level [m].
+/// A sliding node's copy of the field near its position, in words of 16 bytes at a stride of `sliding_count`: the
+/// samples of a cell minus the level [m], and the inverse of their spacing [1/m]. On a sphere the inverse spacing is 0,
+/// and the first entry is the radius at the level [m].
 constexpr int sample_words = 7;
 
-/// The cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is that of its rest position. A
-/// node further away is past its field's rim. no_cell: there are no samples yet.
+/// The cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is the cell of the rest position.
+/// A node farther away is past its field's rim. no_cell: there are no samples yet.
 constexpr std::int32_t middle_cell = 512;
 constexpr std::uint32_t no_cell = 0xffffffffu;
 
@@ -83,7 +84,7 @@ struct GlidingNode
 {
   double rest[3];  ///< [m]
   std::int32_t bone;
-  std::int32_t sliding;  ///< into StepArguments::sliding
+  std::int32_t sliding;  ///< index into StepArguments::sliding
 };
 
 /// A law other than neo-Hookean that a voxel's tissue contains.
@@ -99,7 +100,7 @@ struct LawEntry
 /// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.
 struct StepArguments : physics::Kick<float>
 {
-  // The partition: patches or strips.
+  // the partition: patches or strips
   const Patch* patches;
   std::uint32_t patch_count;
   const uint4* patch_corners;       ///< VoxelPatches::corner
@@ -127,7 +128,7 @@ struct StepArguments : physics::Kick<float>
   const float4* viscous_makes;  ///< of each viscous voxel: fraction of two terms, rate of two terms [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
-  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: not in launches
+  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: they do not
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
@@ -142,8 +143,8 @@ struct StepArguments : physics::Kick<float>
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
   const double* load_ramp;     ///< one per load [s]
   const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; or null
-  // Sliding nodes, on still and on moving surfaces, those with friction first. Samples are a function of a node's place
-  // alone; planes and `pressing` are state.
+  // Sliding nodes, on still and on moving surfaces, those with friction first. Samples depend only on a node's
+  // position; planes and `pressing` are state.
   const physics::DistanceField* fields;
   const SlidingNodeField* sliding;
   std::uint32_t sliding_count;
@@ -151,7 +152,7 @@ struct StepArguments : physics::Kick<float>
   float4* samples;        ///< see sample_words
   float4* planes;         ///< of the latest step, normal . u = offset: normal and offset; 0: none yet
   const float* friction;  ///< coefficient, of the first `rubbing_count` nodes
-  float* pressing;        ///< their reaction per mass, delayed as friction needs it [m/s2]
+  float* pressing;        ///< their reaction per mass with the delay of friction [m/s2]
   std::uint32_t rubbing_count;
   const GlidingNode* gliding;
   const PrescribedMotion* prescribed;
@@ -175,6 +176,7 @@ struct StepArguments : physics::Kick<float>
   float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
   double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
   std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
+  ContactArguments contact;                  ///< with bodies
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -188,7 +190,7 @@ constexpr std::uint32_t most_patch_threads = 512;
 /// Most patches that a block processes in turn.
 constexpr int most_turns = 8;
 
-/// Most muscles that a model may have on the GPU, because their activations lie in shared memory.
+/// Most muscles that a model may have on the GPU, because their activations are stored in shared memory.
 constexpr int most_muscles = 512;
 
 /// Entries of patch_tasks. 0 or more: the node slides on a still surface, as its only effect, and this is its index
@@ -200,8 +202,8 @@ constexpr std::int32_t other = -2;
 constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
-/// Effects that a kernel computes. There is one kernel per set of effects, so that absent effects take neither
-/// registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
+/// Effects that a kernel computes. There is one kernel per set of effects, so that an effect that a model lacks takes
+/// neither registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
 enum class Effects : std::uint8_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
@@ -210,21 +212,21 @@ enum class Effects : std::uint8_t
   general_element = 4,  ///< other laws, hourglass controls and integrations
   sliding = 8,          ///< on surfaces
   tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
-  friction = 32         ///< of sliding nodes
+  friction = 32,        ///< of sliding nodes
+  contact = 64          ///< with bodies, in patches; always set with all effects of nodes
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
-// variables, because device code cannot call the functions above
+// sets as template variables, because device code cannot call the constexpr functions above
 template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
-/// Effects of nodes.
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// Effects of a set that concern voxels without fibres and viscosity.
+/// The effects of a set that a voxel without fibres and viscosity may have, with those of nodes.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes);
+inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact);
 /// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
@@ -239,6 +241,7 @@ struct StepLaunch
   int blocks, threads;
   std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
   std::size_t shared_bytes;                          ///< per block
+  std::uint32_t most_points;                         ///< points of contact per patch
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
@@ -251,10 +254,11 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
-/// corners of voxels and their stiffness bounds.
-constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes)
+/// corners of voxels and their stiffness bounds, points of contact.
+constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
+                                  std::size_t most_points = 0)
 {
-  return sizeof(float4) * (most_halo + most_nodes) + 3 * sizeof(float) * most_nodes +
+  return sizeof(float4) * (most_halo + most_nodes + 2 * most_points) + 3 * sizeof(float) * most_nodes +
          25 * sizeof(float) * (most_voxels + 1);
 }
 

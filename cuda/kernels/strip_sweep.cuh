@@ -16,7 +16,7 @@ struct RowValues
 };
 
 /// The displacement of a node. The fourth word of the float4 is not loaded: the compiler would reuse its unread
-/// register at once, and the next instruction would wait for the load.
+/// register at once, and the next instruction would have to wait for the load.
 struct Displacement
 {
   float2 xy;
@@ -101,13 +101,13 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
 }
 
-/// The transposed x step.
+/// Transposed x step of the transform: the forces on the nodes of a row.
 __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int left, float (&force)[3])
 {
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
-    // the first lane reads the last one, which never holds a voxel
+    // the first lane gets the value of the last one, which never holds a voxel
     const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
     force[c] = row.part[c][0] - row.part[c][1] + from_left;
   }
@@ -137,9 +137,9 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 
 /// Walks a strip along z. The force on a node is summed in a fixed order: voxels below it before those above, rows in
 /// order, right before left. No other strip adds to it, because both strips compute the voxels on their border. To hide
-/// memory latency, slots are loaded two planes ahead, displacements and fibre words one row ahead. Beyond the end of a
-/// strip lie slots of the next strip, or padding. slot, fibre_word, viscous_word: those of this lane; null if the strip
-/// has none.
+/// memory latency, slots are loaded two planes ahead, displacements and fibre words one row ahead; loads beyond the end
+/// of a strip read slots of the next strip, or padding. slot, fibre_word, viscous_word: those of this lane; null if the
+/// strip has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
                                             const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,

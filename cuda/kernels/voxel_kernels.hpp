@@ -64,7 +64,7 @@ cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const fl
 /// Blocks of launch_product(). Each stores the largest component over the root of the mass, and a sum of squares.
 constexpr int product_blocks = 128;
 
-/// mode = (forces - present) * factor / sqrt(mass), 0 at held nodes. `seen`: the numbers above.
+/// mode = (forces - present) * factor / sqrt(mass), 0 at held nodes. `seen`: receives the two numbers of each block.
 cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
                            const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream);
 

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// Cost relative to a plain voxel, measured on blocks in which all voxels or none have the effect.
+// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -23,7 +23,7 @@ float voxel_cost(const Model& model, std::size_t e)
   return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
 }
 
-// Recursive bisection of nodes by weight. Each cut takes the plane with the fewest nodes.
+// Recursive bisection of nodes by weight. Each cut is along the plane with the fewest nodes.
 class Bisection
 {
 public:
@@ -39,7 +39,7 @@ public:
     order_ = {};
   }
 
-  std::vector<std::uint32_t> part_of;  ///< of each node
+  std::vector<std::uint32_t> part_of;  ///< part of each node
 
 private:
   struct Plane
@@ -92,7 +92,7 @@ private:
     const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
                end = order_.begin() + static_cast<std::ptrdiff_t>(last);
-    // nodes of the plane stay in the model's order, so that the plane is divided along a row
+    // keep the nodes of the plane in the model's order, so that a cut within the plane runs along a row
     const auto within = std::stable_partition(begin, end, [&](std::uint32_t n) { return coordinate(n) < plane.at; });
     const auto after = std::stable_partition(within, end, [&](std::uint32_t n) { return coordinate(n) == plane.at; });
     auto middle = within;
@@ -125,7 +125,7 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// Divides the model into parts of about equal cost, in a few iterations, because shared voxels depend on the cut.
+// Divides the model into parts of about equal cost. Iterates, because shared voxels, and the cost, depend on the cut.
 std::vector<std::uint32_t> partition(const Model& model, int parts)
 {
   std::vector<float> weight(model.nodes.size(), node_cost);
@@ -156,8 +156,8 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// Nodes with other effects: 1, those that slide on a still surface: 2. They are numbered contiguously, because a warp
-// takes as long for one of them as for 32.
+// Class of each node: 2 if it only slides on a still surface, 1 if it has other effects. Classes are numbered
+// contiguously, because a warp takes as long for one such node as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
@@ -253,7 +253,7 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   }
 }
 
-// `first_place`: place of the patch's first own node in shared memory.
+// `first_place`: index of the patch's first own node in shared memory.
 void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
                              std::uint32_t first_place)
 {

@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// Distribution of the nodes: each of `blocks` blocks of threads processes `turns` patches in turn.
+/// Distribution of the nodes: each of `blocks` thread blocks processes `turns` patches one after the other.
 struct PatchSettings
 {
   int blocks = 132;
@@ -23,23 +23,23 @@ struct Patch
   std::uint32_t first_node;   ///< device node; own nodes are contiguous
   std::uint32_t nodes;        ///< number of own nodes
   std::uint32_t border;       ///< number of leading own nodes that lie in halos of other patches
-  std::uint32_t voxel_begin;  ///< into VoxelPatches::voxel
+  std::uint32_t voxel_begin;  ///< first index into VoxelPatches::voxel
   std::uint32_t voxels;
   std::uint32_t special;     ///< number of leading voxels that have fibres or viscosity
-  std::uint32_t halo_begin;  ///< into VoxelPatches::halo
+  std::uint32_t halo_begin;  ///< first index into VoxelPatches::halo
   std::uint32_t halo;
 };
 
 /// The patches of a model. Patch p belongs to block p % blocks. Device nodes are numbered patch by patch from 1; node 0
-/// is a placeholder. In the shared memory of a block the halo of the present patch comes first, at places 0 ..
-/// most_halo - 1, then the nodes of all its patches in order.
+/// is a placeholder. The shared memory of a block has the halo of the present patch first, at indices 0 .. most_halo -
+/// 1, then the nodes of all its patches in order.
 struct VoxelPatches
 {
   VoxelPatches(const Model& model, const PatchSettings& settings);
 
   std::vector<Patch> patches;
   std::vector<std::uint32_t> voxel;  ///< model voxel; in each patch viscous ones first, then by number of fibres
-  std::vector<std::array<std::uint16_t, 8>> corner;  ///< places of its corners
+  std::vector<std::array<std::uint16_t, 8>> corner;  ///< indices of its corners in shared memory
   std::vector<std::uint32_t> halo;                   ///< device nodes
   /// For each device node, the voxels of its patch of which it is corner 0 .. 7; most_voxels if there is none.
   std::vector<std::array<std::uint16_t, 8>> node_voxel;
@@ -47,7 +47,7 @@ struct VoxelPatches
 
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
-  bool fits_indices = true;                      ///< the kernel's indices of 16 bits are enough
+  bool fits_indices = true;                      ///< whether indices of 16 bits suffice
 
 private:
   void number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of);

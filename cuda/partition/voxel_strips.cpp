@@ -13,7 +13,7 @@ namespace
 {
 
 constexpr int lanes = 32;
-// Additional cost of a plane with fibres relative to one without. The most expensive strips start first.
+// Additional cost of a plane with fibres, in planes without. (The most expensive strips start first.)
 constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
@@ -53,14 +53,14 @@ private:
   std::vector<std::uint32_t> begin_;
 };
 
-// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), as many as fit a warp.
+// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), at most 32 of them.
 struct Piece
 {
   std::int32_t i, lanes;              // columns, including the halo
   std::int32_t own_first, own_count;  // own columns, relative to i
   std::int32_t j;                     // first own row
   std::int32_t k, planes;             // first plane; number of planes, including the halo
-  std::int32_t own_k, own_planes;     // those of the tile
+  std::int32_t own_k, own_planes;     // first plane and number of planes that it owns
   double cost;                        // in planes without fibres
 };
 

@@ -18,7 +18,7 @@ struct StripSettings
   int planes = 64;  ///< most planes of nodes that a strip owns
 };
 
-/// One place of a strip: a node, and the voxel of which it is the lower corner.
+/// One entry of a strip: a node, and the voxel of which it is the lower corner.
 struct StripSlot
 {
   static constexpr std::uint32_t owned = 0x80000000u;    ///< this strip computes the node's force
@@ -26,7 +26,7 @@ struct StripSlot
   static constexpr std::uint32_t node_mask = 0x3fffffffu;
 
   std::uint32_t node;   ///< device node with flags; 0: none
-  std::uint32_t voxel;  ///< 1 + model voxel, or the caller's replacement; 0: none
+  std::uint32_t voxel;  ///< 1 + model voxel, or a number that the caller puts in its place; 0: none
 };
 
 struct Strip
@@ -51,11 +51,11 @@ struct VoxelStrips
   int rows = 0;
   std::vector<Strip> strips;  ///< in descending order of cost
   std::vector<StripSlot> slots;
-  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of each place; 0: none
+  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of each entry; 0: none
   std::vector<std::uint32_t> device_node;    ///< of each model node
   std::vector<std::uint32_t> strip_of_node;  ///< strip that owns each model node
 
-  /// Fraction of the places that hold a voxel.
+  /// Fraction of the entries that hold a voxel.
   double filled() const;
 };
 

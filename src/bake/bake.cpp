@@ -130,8 +130,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   turn_families(scene, surfaces, frame, model, monitor);
 
   monitor.begin("skin");
-  bind_surfaces(scene, surfaces, frame, model, monitor);
-  bind_contacts(scene, surfaces, frame, model, monitor);
+  for (const auto bind : { bind_surfaces, bind_contacts })
+    bind(scene, surfaces, frame, model, monitor);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

@@ -42,7 +42,7 @@ struct AccuracyOptions
 Scene scene_with(Scene scene, const AccuracySetting& setting)
 {
   scene.accuracy = setting.profile;
-  // names and measured figures do not change the model, and must not make equal variants look different
+  // clear names and measured figures: they do not change the model, and would make equal variants differ
   scene.accuracy.name = "standard";
   scene.accuracy.measured = {};
   scene.profiles.clear();
@@ -54,7 +54,7 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   return scene;
 }
 
-// the profile called standard, else the one that the scene takes
+// the profile called standard; the scene's selected one if it was chosen by name or there is no standard
 AccuracyProfile standard_profile(const Scene& scene, bool chosen)
 {
   if (!chosen)
@@ -83,7 +83,7 @@ void check_numbers(const AccuracyOptions& options)
       throw WrongUsage("--voxels, --budget, --ramp, --hold, --tolerance, --time: must be numbers greater than 0");
 }
 
-// takes over the options that any subject has; those that were not given change nothing
+// takes over the options that apply to any subject; an option that was not given changes nothing
 void take_options(const AccuracyOptions& options, AccuracyPlan& plan)
 {
   plan.standard.backend = options.solver.backend;
@@ -131,7 +131,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
                     [scene](const AccuracySetting& setting) {
                       return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
                     } };
-  // any model has the names of the muscles; the coarsest is baked fastest
+  // use the coarsest model, which is baked fastest, for the names of the muscles: all models have the same
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
   plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
@@ -154,7 +154,7 @@ ClosedForm closed_form_subject(ClosedForm form, const AccuracyOptions& options)
   return form;
 }
 
-// what the command line names: a scene, or a body with a closed form
+// the subject on the command line: a scene, or a body with a closed-form solution
 ClosedForm accuracy_subject(const AccuracyOptions& options)
 {
   check_numbers(options);

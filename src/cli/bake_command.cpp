@@ -24,7 +24,7 @@ struct BakeOptions
   bool report = false;
 };
 
-// finds before the bake what would keep its result from being written
+// reports, before a long bake, faults that would prevent writing its result
 void check_output(const BakeOptions& options)
 {
   const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();

@@ -77,8 +77,8 @@ double guard_share(Solver& solver, double step)
   return times_of(check)[2] / (solver.steps_per_check() * step);
 }
 
-// the time that the CPU takes to look for the time step, once in 32 steps, over that of the steps: motions of one step
-// each look once per step
+// the share of a step's time that the CPU needs to find the critical time step, which it does once in 32 steps: motions
+// of a single step find it in each step
 double look_share(Solver& solver, const Controls& controls, double step)
 {
   const double dt = 0.999 * solver.time_step();
@@ -91,7 +91,7 @@ double look_share(Solver& solver, const Controls& controls, double step)
   return std::max(0.0, looking / 16 / step - 1) / 31;
 }
 
-// seconds per step of five repetitions, ascending
+// seconds per step in five repetitions, ascending
 std::vector<double> time_steps(Solver& solver, const Controls& controls, double seconds)
 {
   const double dt = solver.time_step();
@@ -138,7 +138,7 @@ void bench_model(const std::string& name, const std::shared_ptr<const Model>& mo
   std::fflush(stdout);
 }
 
-// plots each effect's cost over the share of voxels that have it
+// plots each effect's cost over the fraction of voxels that have it
 void draw(const std::vector<PresenceCost>& costs, const std::string& backend, const std::string& path)
 {
   Plot plot{ "Cost of an effect against its extent: " + backend,
@@ -157,7 +157,7 @@ void draw(const std::vector<PresenceCost>& costs, const std::string& backend, co
 void bench_effects(const BenchOptions& options)
 {
   const double seconds = options.quick ? 1.0 : 4.0;
-  // options and model are checked before minutes are spent
+  // check options and model before the measurement, which takes minutes
   const std::string plot = plot_path(options.plot);
   std::shared_ptr<const Model> model;
   if (!options.source.path.empty())
@@ -182,7 +182,7 @@ void bench_effects(const BenchOptions& options)
     fmt::print("one muscle active: {:.2f} us per step; all: {:.2f} us; spread of the difference {:.2f} us\n",
                1e6 * cost.one, 1e6 * cost.all, 1e6 * cost.spread);
   }
-  // last, so that the figures are not lost where the plot cannot be drawn
+  // draw last: the figures are printed even if the plot cannot be drawn
   if (!plot.empty())
     draw(costs, options.solver.backend, plot);
 }
@@ -197,9 +197,9 @@ void bench(const BenchOptions& options)
   const int threads = options.solver.threads > 0 ? options.solver.threads : cores;
   const double bandwidth = copy_bandwidth(threads);
   const double loop = bare_loop(64, threads, options.quick ? 1.5 : 5.0);
-  fmt::print("yardsticks   {} threads: copy {:.1f} GB/s, bare loop of 64^3 voxels {:.1f} million updates per second\n",
+  fmt::print("this machine {} threads: copy {:.1f} GB/s, bare loop of 64^3 voxels {:.1f} million updates per second\n",
              threads, 1e-9 * bandwidth, 1e-6 * loop);
-  fmt::print(row_format, "scene", "voxels", "us/step", "million/s", "of bar", "B/vox", "spread", "look", "guard",
+  fmt::print(row_format, "scene", "voxels", "us/step", "million/s", "/ loop", "B/vox", "spread", "bound", "guard",
              "backend");
   for (const std::int32_t edge :
        options.quick ? std::vector<std::int32_t>{ 64 } : std::vector<std::int32_t>{ 32, 64, 128 })
@@ -215,13 +215,13 @@ void add_bench_command(CLI::App& app)
 {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
-      "bench", "time the solver beside two yardsticks of the machine: copying memory and a bare loop");
+      "bench", "time the solver and, for comparison, copying memory and a bare element loop on this machine");
   command->add_option("SCENE_OR_MODEL", options->source.path, "time this model too, every muscle at activation 0.75");
   add_scene_options(*command, options->source);
   add_solver_options(*command, options->solver);
   command->add_flag("--quick", options->quick, "only the block of 64^3 voxels, a few seconds");
   command->add_flag("--effects", options->effects,
-                    "time effects that a share of the voxels has; of SCENE_OR_MODEL, one active muscle against all");
+                    "time effects that a fraction of the voxels has; on SCENE_OR_MODEL, one active muscle against all");
   command->add_option("--plot", options->plot, "draw the result of --effects: FILE.png, and FILE.svg beside it");
   command->callback([options] { bench(*options); });
 }

@@ -26,12 +26,12 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown where Ctrl-C ends the work early.
+/// Thrown when Ctrl-C ends the work early.
 struct Interrupted
 {
 };
 
-/// Whether Ctrl-C (or SIGTERM) has come, which ends the program only when it comes again.
+/// Whether Ctrl-C or SIGTERM was received once; a second one ends the program.
 bool interrupt_requested();
 
 // One function per subcommand: it declares the options in `app` and the work that is done once the command line has

@@ -13,7 +13,7 @@
 namespace frontalis
 {
 
-// What the options of several subcommands share.
+// Options that several subcommands share.
 
 /// Declares an option whose value must be above 0.
 template <class Value>

@@ -83,7 +83,7 @@ void draw(const EffectCosts& costs, const std::string& path)
   write_plot(plot, path);
 }
 
-// the bytes of each of the solver's arrays
+// prints the bytes of each of the solver's arrays
 void show_arrays(const EffectsOptions& options)
 {
   const auto solver = make_solver(std::make_shared<const Model>(obtain_model(options.source)), options.solver);
@@ -114,7 +114,7 @@ void show_effects(const EffectsOptions& options)
     fmt::print("{}", json_of(*model, costs));
   else
     print(*model, costs);
-  // last, so that the figures are not lost where the plot cannot be drawn
+  // draw last: the figures are printed even if the plot cannot be drawn
   std::fflush(stdout);
   if (!plot.empty())
     draw(costs, plot);
@@ -137,7 +137,7 @@ void add_effects_command(CLI::App& app)
   command->callback(
       [options]
       {
-        // nothing but the JSON comes to stdout
+        // with --json, stdout has nothing but the JSON
         if (options->json)
           options->source.progress = stderr;
         show_effects(*options);

@@ -30,7 +30,7 @@ std::vector<std::string> fields_of(const std::string& line)
   return fields;
 }
 
-// the number that the whole text represents, finite or not; nothing if it is not a number
+// the number that the whole text represents (it may be infinite or NaN); empty if the text is not a number
 std::optional<double> number_from(const std::string& text)
 {
   double value = 0;
@@ -147,7 +147,7 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
     if (!(time >= 0) || (!empty && time <= curve.time.back()))
       throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
     empty = false;
-    // the first knot is at 0, also where the table has no row for it
+    // the first knot must be at time 0, even if the table has no row for it
     if (time > 0)
     {
       curve.time.push_back(time);

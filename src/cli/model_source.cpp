@@ -46,7 +46,7 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-// The model of a scene's content in the cache, if it is usable. `told`: a sentence on what was found.
+// The model of a scene's content from the cache, if it is usable. `told`: receives a sentence on what was found.
 std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
 {
   if (path.empty() || !std::filesystem::exists(path))
@@ -64,7 +64,7 @@ std::optional<Model> cached_model(const std::string& path, const std::string& ha
   }
 }
 
-// a model that cannot be kept is no error, for the bake has succeeded
+// failing to store the model is not an error, because the bake has succeeded
 void keep_in_cache(const Model& model, const std::string& path, std::string& told)
 {
   if (path.empty())
@@ -116,7 +116,7 @@ Model bake_interruptibly(const Scene& scene, BakeReport* report,
   }
   catch (const Error&)
   {
-    // an interrupted bake throws an Error too
+    // bake() also throws Error when it is interrupted
     if (!interrupt_requested())
       throw;
   }

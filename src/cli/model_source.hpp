@@ -24,7 +24,7 @@ struct ModelSource
   std::string path;
   SceneOptions scene;
   std::string cache;             ///< folder that keeps models by the hash of their scene; empty: none
-  std::FILE* progress = stdout;  ///< where the stages of a bake are named if stderr is not a terminal
+  std::FILE* progress = stdout;  ///< names the stages of a bake if stderr is not a terminal
 };
 
 /// The report of a bake, ready to print.

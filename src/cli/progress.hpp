@@ -9,11 +9,11 @@
 namespace frontalis
 {
 
-/// Shows the progress of work: one bar per stage where stderr is a terminal, else one line per stage.
+/// Shows the progress of work: one bar per stage if stderr is a terminal, else one line per stage.
 class Progress
 {
 public:
-  /// `lines`: where the lines go; null: nowhere.
+  /// `lines`: stream for these lines; null: none are printed.
   explicit Progress(std::FILE* lines = stdout);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;

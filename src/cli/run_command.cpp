@@ -43,7 +43,7 @@ struct RunOptions
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
 };
 
-/// A solver with what moves it, and what has been found of its motion.
+/// A solver, the controls that move it, and observations of its motion.
 struct Run
 {
   const RunOptions& options;
@@ -66,7 +66,7 @@ private:
   void advance(double end);
 };
 
-// Looks at the present state. Ends the run before a frame of a diverged motion is written.
+// Observes the present state, and ends the run before a frame of a diverged motion is written.
 void Run::look()
 {
   solver.skin(summary.end);
@@ -182,7 +182,7 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
-// in reverse order, since an effect comes after those that it needs
+// in reverse order, because an effect comes after those that it needs
 void switch_off(Solver& solver, EffectSet off)
 {
   const auto effects = every_effect();
@@ -232,7 +232,7 @@ void simulate(const RunOptions& options)
   }
   catch (const Error& error)
   {
-    // the result up to here is written before the error is told
+    // write the result so far before the error is reported
     summary.complete = false;
     summary.failure = error.what();
     if (run.folder)
@@ -290,7 +290,7 @@ void add_run_command(CLI::App& app)
           "to the last good check and takes shorter steps")
       ->check(CLI::Range(0, 1 << 30));
   command->add_option("--time-step", options->solver.time_step,
-                      "longest time step [s], at most the critical one (0: the safe one, by the model's share of it)");
+                      "longest time step [s], at most the critical one (0: the model's share of the critical one)");
   add_scene_options(*command, options->source);
   command->callback(
       [options, command]

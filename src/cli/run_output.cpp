@@ -1,6 +1,7 @@
 #include "cli/run_output.hpp"
 
 #include "cli/reactions.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
@@ -41,14 +42,14 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
   return motion;
 }
 
-// terms of the ledger by name [J]
-std::vector<std::pair<const char*, double>> terms_of(const EnergyLedger& l)
+// energies by name [J]
+std::vector<std::pair<std::string, double>> energies_of(const EnergyLedger& ledger)
 {
-  return { { "initial", l.initial },       { "kinetic", l.kinetic },      { "internal", l.internal },
-           { "hourglass", l.hourglass },   { "viscous", l.viscous },      { "damping", l.damping },
-           { "friction", l.friction },     { "muscle", l.muscle },        { "load", l.load },
-           { "gravity", l.gravity },       { "contact", l.contact },      { "contact_stored", l.contact_stored },
-           { "constraint", l.constraint }, { "imbalance", l.imbalance() } };
+  std::vector<std::pair<std::string, double>> energies{ { "initial", ledger.initial } };
+  for (const EnergyTerm& term : ledger.terms)
+    energies.emplace_back(term.name, term.value);
+  energies.emplace_back("imbalance", ledger.imbalance());
+  return energies;
 }
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
@@ -109,7 +110,7 @@ void print_result(const Model& model, const RunSummary& summary)
              summary.worst_jacobian);
   if (summary.ledger)
   {
-    for (const auto& [name, joules] : terms_of(*summary.ledger))
+    for (const auto& [name, joules] : energies_of(*summary.ledger))
       fmt::print("energy             {:<14} {:+.5e} J\n", name, joules);
     fmt::print("energy balance     closes within {:.3g} % of the largest term\n",
                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
@@ -167,11 +168,11 @@ std::string json_of(const Model& model, const RunSummary& summary)
         { "peak_kinetic_over_peak_internal", ratio(summary.peak_kinetic, summary.peak_internal) },
         { "hourglass_share", hourglass_share(monitor) } });
   if (summary.ledger)
-    for (const auto& [name, joules] : terms_of(*summary.ledger))
+    for (const auto& [name, joules] : energies_of(*summary.ledger))
       add({ { fmt::format("ledger_{}_J", name), joules } });
   for (std::size_t c = 0; c < summary.reactions.size(); ++c)
-    json["reactions"][model.contacts[c].name] = { { "force_N", summary.reactions[c].force },
-                                                  { "moment_Nm", summary.reactions[c].moment } };
+    json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.reactions[c].force },
+                                                         { "moment_Nm", summary.reactions[c].moment } };
   if (const auto& guard = summary.guard)
     add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
   if (const auto& found = summary.equilibrium)
@@ -217,7 +218,7 @@ void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reac
 void FrameFolder::finish(const std::string& summary)
 {
   write_text(path_ + "/landmarks.csv", table_);
-  if (!model_.contacts.empty())
+  if (!touched_bodies(model_).empty())
     write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
   write_text(path_ + "/run.json", summary);
 }

@@ -24,10 +24,10 @@ struct RunSummary
   double peak_internal = 0;
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
-  std::optional<GuardCounts> guard;        ///< where the motion was guarded
+  std::optional<GuardCounts> guard;        ///< empty: the motion was not guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
-  std::vector<Reaction> reactions;         ///< at the end, face frame, one per contact of the model
-  std::optional<Equilibrium> equilibrium;  ///< empty: none was looked for
+  std::vector<Reaction> reactions;         ///< at the end, face frame, one per body that tissue touches
+  std::optional<Equilibrium> equilibrium;  ///< empty: the run did not settle
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
 };
@@ -51,8 +51,8 @@ public:
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
   void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
-  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), reactions.csv where the
-  /// model has contact (force [N] and moment [N m], face frame) and run.json.
+  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
+  /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
   void finish(const std::string& summary);
 
 private:

@@ -25,12 +25,11 @@ struct StabilityOptions
   std::vector<std::string> only;
   StabilitySettings settings;
   std::string cases, json, table, markdown, models;
-  std::string scenes;          ///< folder; empty: beside the program, or in the sources
-  std::string mesh_directory;  ///< of the real head
+  std::string scenes;          ///< folder of the cases; empty: found by stability_folder()
+  std::string mesh_directory;  ///< folder of the meshes of the real head
 };
 
-// The places where a folder of the package may be: installed (bin/ or lib/frontalis/ beside share/), in a bundle (bin/
-// beside `bundled`), or in the sources.
+// Folders of the package that may exist: installed (bin/ or lib/frontalis/ beside share/), bundled, in the sources.
 std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
 {
   std::error_code none;

@@ -68,7 +68,7 @@ void add_verify_command(CLI::App& app)
   CLI::App* command =
       app.add_subcommand("verify", "compare the solver with closed forms, published figures and CalculiX");
   command->add_option("--only", options->only, "cases to run, by name");
-  command->add_flag("--quick", options->quick, "leave out the cases that take longer than some seconds");
+  command->add_flag("--quick", options->quick, "leave out the cases that take longer than a few seconds");
   add_backend_option(*command, options->backend, false);
   command->add_option("--json", options->json, "write the figures to this file");
   command->add_option("--markdown", options->markdown,

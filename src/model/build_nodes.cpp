@@ -38,9 +38,9 @@ void build_nodes(Model& model)
   model.nodes.clear();
   model.voxel_nodes.assign(voxel_count, {});
 
-  // numbers of the nodes of a plane of the grid; -1: there is none
+  // numbers of the nodes of a plane of the grid; -1: no node
   std::vector<std::int32_t> number(static_cast<std::size_t>(row_length * (model.size[1] + 1)));
-  // place in the plane of a voxel's corner: 0 to 3, i + 2j
+  // index within the plane of the lower corner 0 to 3 (i + 2j) of a voxel
   const auto place = [&](std::size_t e, std::size_t corner)
   {
     const auto row = static_cast<std::ptrdiff_t>(model.voxels[e][1] + (corner >> 1));

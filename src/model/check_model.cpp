@@ -1,8 +1,6 @@
-#include "frontalis/effect.hpp"
-#include "frontalis/model/model.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
-
-#include <fmt/format.h>
+#include "model/effect_description.hpp"
+#include "model/model_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,76 +8,41 @@
 
 namespace frontalis
 {
+namespace checks
+{
+
+void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
+{
+  check_length(array + ".voxel", binding.voxel.size(), points, "point");
+  check_length(array + ".coordinates", binding.coordinates.size(), points, "point");
+  check_each(array + ".voxel", index_below(voxels), binding.voxel);
+  check_each(array + ".coordinates", check_finite, binding.coordinates);
+}
+
+void check_field(const std::string& array, const SampledField& field)
+{
+  using physics::DistanceField;
+  check_entry(array + " (origin)", 0, check_finite, field.origin);
+  check_not_negative(array, "radius", field.radius);
+  if (field.radius > 0)
+    return;
+  check_positive(array + " (spacing)", 0, field.spacing);
+  std::size_t bricks = 1;
+  for (const std::int32_t count : field.bricks)
+    bricks *= static_cast<std::size_t>(std::max(count, 0));
+  check_length(array + " (table)", field.table.size(), bricks, "brick");
+  const std::size_t stored = field.samples.size() / DistanceField::brick_size;
+  check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");
+  check_each(array + " (table)", index_below(stored, -1), field.table);
+  check_each(array + " (samples)", check_finite, field.samples);
+}
+
+}  // namespace checks
+
 namespace
 {
 
-template <class... Values>
-[[noreturn]] void fail(const std::string& array, fmt::format_string<Values...> found, Values&&... values)
-{
-  throw Error(array + ": " + fmt::format(found, std::forward<Values>(values)...));
-}
-
-void check_length(const std::string& array, std::size_t found, std::size_t right, const std::string& of)
-{
-  if (found != right)
-    fail(array, "has {} entries; must have {}, one per {}", found, right, of);
-}
-
-void check_finite(const std::string& array, std::size_t at, double value)
-{
-  if (!std::isfinite(value))
-    fail(array, "entry {} is {}; it must be finite", at, value);
-}
-
-void check_positive(const std::string& array, std::size_t at, double value)
-{
-  check_finite(array, at, value);
-  if (!(value > 0))
-    fail(array, "entry {} is {}; it must be above 0", at, value);
-}
-
-void check_not_negative(const std::string& array, const std::string& what, double value)
-{
-  if (!(value >= 0) || !std::isfinite(value))
-    fail(array, "{} is {}; it must be finite and at least 0", what, value);
-}
-
-void check_proportion(const std::string& array, std::size_t at, double value)
-{
-  check_finite(array, at, value);
-  if (value < 0 || value > 1.0001)
-    fail(array, "entry {} is {}; proportions lie between 0 and 1", at, value);
-}
-
-/// The check that an index is below `count` and not below `lowest`.
-auto index_below(std::size_t count, std::ptrdiff_t lowest = 0)
-{
-  return [=](const std::string& array, std::size_t at, std::ptrdiff_t index)
-  {
-    const std::ptrdiff_t end = static_cast<std::ptrdiff_t>(count);
-    if (index < lowest || index >= end)
-      fail(array, "entry {} is {}; indices run from {} to {}", at, index, lowest, end - 1);
-  };
-}
-
-/// Checks an entry that is a number or an array of numbers.
-template <class Check, class Entry>
-void check_entry(const std::string& array, std::size_t at, const Check& check, const Entry& entry)
-{
-  if constexpr (std::is_arithmetic_v<Entry>)
-    check(array, at, entry);
-  else
-    for (const auto number : entry)
-      check(array, at, number);
-}
-
-/// Checks all entries of an array, or, where a field is named, that field of each.
-template <class Check, class Entry, class... Field>
-void check_each(const std::string& array, const Check& check, const std::vector<Entry>& entries, Field... field)
-{
-  for (std::size_t at = 0; at < entries.size(); ++at)
-    check_entry(array, at, check, (entries[at].*....*field));
-}
+using namespace checks;
 
 void check_ranges(const std::string& array, const std::vector<std::int32_t>& begin, std::size_t voxels,
                   std::size_t entries)
@@ -98,14 +61,6 @@ void check_mesh(const std::string& array, const TriangleMesh& mesh)
 {
   check_each(array + ".vertices", check_finite, mesh.vertices);
   check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
-}
-
-void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
-{
-  check_length(array + ".voxel", binding.voxel.size(), points, "point");
-  check_length(array + ".coordinates", binding.coordinates.size(), points, "point");
-  check_each(array + ".voxel", index_below(voxels), binding.voxel);
-  check_each(array + ".coordinates", check_finite, binding.coordinates);
 }
 
 void check_grid(const Model& model)
@@ -197,53 +152,6 @@ void check_fibres(const Model& model)
     check_direction("fibre_direction", m, model.fibre_direction[m].data());
 }
 
-void check_field(const std::string& array, const SampledField& field)
-{
-  using physics::DistanceField;
-  check_entry(array + " (origin)", 0, check_finite, field.origin);
-  check_not_negative(array, "radius", field.radius);
-  if (field.radius > 0)
-    return;
-  check_positive(array + " (spacing)", 0, field.spacing);
-  std::size_t bricks = 1;
-  for (const std::int32_t count : field.bricks)
-    bricks *= static_cast<std::size_t>(std::max(count, 0));
-  check_length(array + " (table)", field.table.size(), bricks, "brick");
-  const std::size_t stored = field.samples.size() / DistanceField::brick_size;
-  check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");
-  check_each(array + " (table)", index_below(stored, -1), field.table);
-  check_each(array + " (samples)", check_finite, field.samples);
-}
-
-void check_attached(const Model& model)
-{
-  const auto node = index_below(model.nodes.size());
-  check_each("attached (node)", node, model.attached, &AttachedNode::node);
-  check_each("attached (master)", node, model.attached, &AttachedNode::master);
-  check_each("attached (bone)", index_below(model.bones.size(), -1), model.attached, &AttachedNode::bone);
-  check_each("attached (surface)", index_below(model.constraint_surfaces.size(), -1), model.attached,
-             &AttachedNode::surface);
-  check_each("attached (constraint)", index_below(model.constraints.size(), -1), model.attached,
-             &AttachedNode::constraint);
-  std::vector<bool> restricted(model.nodes.size(), false);
-  for (const RigidNode& rigid : model.rigid)
-    restricted[rigid.node] = true;
-  for (const SlidingNode& sliding : model.sliding)
-    restricted[sliding.node] = true;
-  for (std::size_t n = 0; n < model.attached.size(); ++n)
-  {
-    const AttachedNode& attached = model.attached[n];
-    if (restricted[attached.node])
-      fail("attached (node)", "entry {} is node {}, which another entry restricts", n, attached.node);
-    restricted[attached.node] = true;
-    if (!(std::abs(attached.ratio) <= 1))
-      fail("attached (ratio)", "entry {} is {}; ratios run from -1 to 1", n, attached.ratio);
-  }
-  for (std::size_t n = 0; n < model.attached.size(); ++n)
-    if (restricted[model.attached[n].master])
-      fail("attached (master)", "entry {} is node {}, which is restricted itself", n, model.attached[n].master);
-}
-
 void check_constraints(const Model& model)
 {
   const auto node = index_below(model.nodes.size());
@@ -263,26 +171,8 @@ void check_constraints(const Model& model)
   check_each("sliding (surface)", index_below(model.constraint_surfaces.size()), model.sliding, &SlidingNode::surface);
   check_each("sliding (distance)", check_finite, model.sliding, &SlidingNode::distance);
   check_each("sliding (constraint)", constraint_or_none, model.sliding, &SlidingNode::constraint);
-  check_attached(model);
   check_each("prescribed (node)", node, model.prescribed, &PrescribedNode::node);
   check_each("prescribed (load)", index_below(model.loads.size()), model.prescribed, &PrescribedNode::load);
-}
-
-void check_contacts(const Model& model)
-{
-  for (const Contact& contact : model.contacts)
-  {
-    const std::string name = "contacts '" + contact.name + "'";
-    check_field(name, contact.field);
-    check_not_negative(name, "reach", contact.reach);
-    index_below(model.bones.size(), -1)(name + " (bone)", 0, contact.bone);
-    check_not_negative(name, "friction", contact.friction);
-    check_length(name + " (area)", contact.area.size(), contact.points.size(), "point");
-    check_binding(name + ".binding", contact.binding, contact.points.size(), model.voxels.size());
-    check_each(name + " (points)", check_finite, contact.points);
-    for (const double area : contact.area)
-      check_not_negative(name, "an area", area);
-  }
 }
 
 void check_loads(const Model& model)
@@ -353,7 +243,7 @@ void check_model(const Model& model)
   check_material_directions(model);
   check_fibres(model);
   check_constraints(model);
-  check_contacts(model);
+  check_effects(model);
   check_loads(model);
   check_mesh("skin", model.skin);
   check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());

@@ -1,9 +1,92 @@
 #include "frontalis/model/contact.hpp"
 
 #include "frontalis/physics/number.hpp"
+#include "model/effect_description.hpp"
+#include "model/model_checks.hpp"
+#include "model/model_layout.hpp"
+
+#include <algorithm>
 
 namespace frontalis
 {
+namespace
+{
+
+EffectPresence found(const Model& model)
+{
+  std::size_t points = 0;
+  for (const Contact& contact : model.contacts)
+    points += contact.points.size();
+  return { points > 0,
+           points > 0 ? fmt::format("{} point{} of tissue", points, points == 1 ? "" : "s") : "no body to touch", 0,
+           points };
+}
+
+void check(const Model& model)
+{
+  using namespace checks;
+  for (const Contact& contact : model.contacts)
+  {
+    const std::string name = "contacts '" + contact.name + "'";
+    check_field(name, contact.field);
+    check_not_negative(name, "reach", contact.reach);
+    index_below(model.bones.size(), -1)(name + " (bone)", 0, contact.bone);
+    check_not_negative(name, "friction", contact.friction);
+    check_length(name + " (area)", contact.area.size(), contact.points.size(), "point");
+    check_binding(name + ".binding", contact.binding, contact.points.size(), model.voxels.size());
+    check_each(name + " (points)", check_finite, contact.points);
+    for (const double area : contact.area)
+      check_not_negative(name, "an area", area);
+  }
+}
+
+// Writes or reads the contacts of a model file. A model without contacts stores nothing.
+template <class Archive, class Contacts>
+void exchange_contacts(Archive& archive, Contacts& contacts)
+{
+  const std::string path = "contacts";
+  if (!archive.group_if(!contacts.empty(), path))
+    return;
+  archive.table(path, contacts, Column{ "name", &Contact::name }, Column{ "bone", &Contact::bone },
+                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach });
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+  {
+    const std::string own = path + "/" + std::to_string(c);
+    exchange_field(archive, own, contacts[c].field);
+    archive(own + "/points", contacts[c].points);
+    archive(own + "/area", contacts[c].area);
+    exchange_binding(archive, own, contacts[c].binding);
+  }
+}
+
+// if bodies share nodes, the nodes get the highest bone index
+void set_bones(const Model& model, std::vector<std::int32_t>& bone)
+{
+  for (const Contact& contact : model.contacts)
+    for (const auto voxel : contact.binding.voxel)
+      for (const auto node : model.voxel_nodes[voxel])
+        bone[node] = std::max(bone[node], contact.bone);
+}
+
+void add_bodies(const Model& model, std::vector<TouchedBody>& bodies)
+{
+  for (const Contact& contact : model.contacts)
+    bodies.push_back({ contact.name, contact.bone });
+}
+
+}  // namespace
+
+EffectDescription contact_description()
+{
+  return { Effect::contact,
+           found,
+           [](Model& model, EffectSet) { model.contacts.clear(); },
+           check,
+           [](ModelWriter& archive, const Model& model) { exchange_contacts(archive, model.contacts); },
+           [](ModelReader& archive, Model& model) { exchange_contacts(archive, model.contacts); },
+           set_bones,
+           add_bodies };
+}
 
 void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding)
 {

@@ -1,8 +1,9 @@
-#include "frontalis/model/effects.hpp"
+#include "model/effect_description.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace frontalis
 {
@@ -56,14 +57,6 @@ std::size_t loaded_nodes(const Model& model)
   return static_cast<std::size_t>(std::count(loaded.begin(), loaded.end(), true));
 }
 
-bool slides(const AttachedNode& node) { return node.surface >= 0; }
-
-std::size_t attached_nodes(const Model& model, bool sliding)
-{
-  return static_cast<std::size_t>(std::count_if(model.attached.begin(), model.attached.end(),
-                                                [=](const AttachedNode& node) { return slides(node) == sliding; }));
-}
-
 template <class Entry>
 std::size_t distinct_nodes(const std::vector<Entry>& entries)
 {
@@ -86,66 +79,14 @@ std::size_t count_surface_loads(const Model& model)
   return static_cast<std::size_t>(std::count_if(model.loads.begin(), model.loads.end(), is_surface_load));
 }
 
-std::size_t contact_points(const Model& model)
+EffectPresence on_voxels(std::size_t voxels, const std::string& why, const std::string& otherwise)
 {
-  std::size_t count = 0;
-  for (const Contact& contact : model.contacts)
-    count += contact.points.size();
-  return count;
+  return { voxels > 0, voxels > 0 ? why : otherwise, voxels, 0 };
 }
 
-// what the model has of an effect that is not switched off
-EffectPresence found(const Model& model, Effect effect)
+EffectPresence on_nodes(std::size_t nodes, const std::string& why, const std::string& otherwise)
 {
-  const auto on_voxels = [](std::size_t voxels, const std::string& why, const std::string& otherwise) {
-    return EffectPresence{ voxels > 0, voxels > 0 ? why : otherwise, voxels, 0 };
-  };
-  const auto on_nodes = [](std::size_t nodes, const std::string& why, const std::string& otherwise) {
-    return EffectPresence{ nodes > 0, nodes > 0 ? why : otherwise, 0, nodes };
-  };
-  switch (effect)
-  {
-    case Effect::elasticity:
-      return on_voxels(model.voxels.size(), "always", "no voxel");
-    case Effect::fibre_stiffness:
-      return on_voxels(voxels_with_fibres(model, true),
-                       counted(count_passive(model), "muscle") + " with passive fibres",
-                       "no muscle has passive fibres");
-    case Effect::contraction:
-      return on_voxels(voxels_with_fibres(model, false), counted(model.muscles.size(), "muscle"), "no muscles");
-    case Effect::viscosity:
-      return on_voxels(viscous_voxels(model), "materials with a Prony series", "no material is viscous");
-    case Effect::gravity:
-    {
-      const bool any = std::any_of(model.gravity.begin(), model.gravity.end(), [](double g) { return g != 0; });
-      return on_nodes(any ? model.nodes.size() : 0, "the scene gives an acceleration", "no acceleration given");
-    }
-    case Effect::surface_loads:
-      return on_nodes(loaded_nodes(model), counted(count_surface_loads(model), "load"), "no traction or pressure");
-    case Effect::prescribed_displacement:
-      return on_nodes(distinct_nodes(model.prescribed),
-                      counted(model.loads.size() - count_surface_loads(model), "path"), "no node has a path");
-    case Effect::rigid_nodes:
-      return on_nodes(distinct_nodes(model.rigid) + attached_nodes(model, false), "nodes at rigid surfaces",
-                      "nothing is held");
-    case Effect::sliding:
-      return on_nodes(distinct_nodes(model.sliding) + attached_nodes(model, true),
-                      counted(model.constraint_surfaces.size(), "surface"), "no surface to slide on");
-    case Effect::friction:
-      return on_nodes(
-          static_cast<std::size_t>(std::count_if(model.sliding.begin(), model.sliding.end(),
-                                                 [&](const SlidingNode& node)
-                                                 { return model.constraint_surfaces[node.surface].friction > 0; })),
-          "surfaces with friction", "no surface has friction");
-    case Effect::contact:
-    {
-      const std::size_t points = contact_points(model);
-      return { points > 0, points > 0 ? counted(points, "point") + " of tissue" : "no body to touch", 0, points };
-    }
-    case Effect::output_fields:
-      return { !model.skin.vertices.empty(), model.skin.vertices.empty() ? "no skin" : "on request", 0, 0 };
-  }
-  return {};
+  return { nodes > 0, nodes > 0 ? why : otherwise, 0, nodes };
 }
 
 void remove_fibres(Model& model, bool keep_passive)
@@ -189,58 +130,155 @@ void remove_loads(Model& model, Condition&& goes)
   model.prescribed = std::move(prescribed);
 }
 
-void remove_attached(Model& model, bool sliding)
+EffectDescription elasticity()
 {
-  auto& list = model.attached;
-  list.erase(std::remove_if(list.begin(), list.end(), [=](const AttachedNode& n) { return slides(n) == sliding; }),
-             list.end());
+  return { Effect::elasticity,
+           [](const Model& model) { return on_voxels(model.voxels.size(), "always", "no voxel"); } };
 }
 
-void remove(Model& model, Effect effect, EffectSet off)
+EffectDescription fibre_stiffness()
 {
-  switch (effect)
-  {
-    case Effect::fibre_stiffness:
-      for (Muscle& muscle : model.muscles)
-        muscle.passive = false;
-      break;
-    case Effect::contraction:
-      remove_fibres(model, !off.has(Effect::fibre_stiffness));
-      break;
-    case Effect::viscosity:
-      for (Material& material : model.materials)
-        material.viscous_share = material.viscous_time = {};
-      break;
-    case Effect::gravity:
-      model.gravity = {};
-      break;
-    case Effect::surface_loads:
-      remove_loads(model, is_surface_load);
-      break;
-    case Effect::prescribed_displacement:
-      remove_loads(model, [](const Load& load) { return !is_surface_load(load); });
-      break;
-    case Effect::rigid_nodes:
-      model.rigid.clear();
-      remove_attached(model, false);
-      break;
-    case Effect::sliding:
-      model.sliding.clear();
-      remove_attached(model, true);
-      model.constraint_surfaces.clear();
-      break;
-    case Effect::friction:
-      for (ConstraintSurface& surface : model.constraint_surfaces)
-        surface.friction = 0;
-      break;
-    case Effect::contact:
-      model.contacts.clear();
-      break;
-    case Effect::elasticity:
-    case Effect::output_fields:
-      break;
-  }
+  return { Effect::fibre_stiffness,
+           [](const Model& model)
+           {
+             return on_voxels(voxels_with_fibres(model, true),
+                              counted(count_passive(model), "muscle") + " with passive fibres",
+                              "no muscle has passive fibres");
+           },
+           [](Model& model, EffectSet)
+           {
+             for (Muscle& muscle : model.muscles)
+               muscle.passive = false;
+           } };
 }
+
+EffectDescription contraction()
+{
+  return { Effect::contraction,
+           [](const Model& model) {
+             return on_voxels(voxels_with_fibres(model, false), counted(model.muscles.size(), "muscle"), "no muscles");
+           },
+           [](Model& model, EffectSet off) { remove_fibres(model, !off.has(Effect::fibre_stiffness)); } };
+}
+
+EffectDescription viscosity()
+{
+  return { Effect::viscosity,
+           [](const Model& model)
+           { return on_voxels(viscous_voxels(model), "materials with a Prony series", "no material is viscous"); },
+           [](Model& model, EffectSet)
+           {
+             for (Material& material : model.materials)
+               material.viscous_share = material.viscous_time = {};
+           } };
+}
+
+EffectDescription gravity()
+{
+  return { Effect::gravity,
+           [](const Model& model)
+           {
+             const bool any = std::any_of(model.gravity.begin(), model.gravity.end(), [](double g) { return g != 0; });
+             return on_nodes(any ? model.nodes.size() : 0, "the scene gives an acceleration", "no acceleration given");
+           },
+           [](Model& model, EffectSet) { model.gravity = {}; } };
+}
+
+EffectDescription surface_loads()
+{
+  return { Effect::surface_loads,
+           [](const Model& model) {
+             return on_nodes(loaded_nodes(model), counted(count_surface_loads(model), "load"),
+                             "no traction or pressure");
+           },
+           [](Model& model, EffectSet) { remove_loads(model, is_surface_load); } };
+}
+
+EffectDescription prescribed_displacement()
+{
+  return { Effect::prescribed_displacement,
+           [](const Model& model)
+           {
+             return on_nodes(distinct_nodes(model.prescribed),
+                             counted(model.loads.size() - count_surface_loads(model), "path"), "no node has a path");
+           },
+           [](Model& model, EffectSet)
+           { remove_loads(model, [](const Load& load) { return !is_surface_load(load); }); } };
+}
+
+EffectDescription rigid_nodes()
+{
+  EffectDescription rigid{ Effect::rigid_nodes,
+                           [](const Model& model) {
+                             return on_nodes(distinct_nodes(model.rigid), "nodes at rigid surfaces", "nothing is held");
+                           },
+                           [](Model& model, EffectSet)
+                           {
+                             model.rigid.clear();
+                             remove_attached(model, false);
+                           } };
+  rigid.set_bones = [](const Model& model, std::vector<std::int32_t>& bone)
+  {
+    for (const RigidNode& node : model.rigid)
+      bone[node.node] = node.bone;
+  };
+  return rigid;
+}
+
+EffectDescription sliding()
+{
+  EffectDescription sliding{ Effect::sliding,
+                             [](const Model& model)
+                             {
+                               return on_nodes(distinct_nodes(model.sliding),
+                                               counted(model.constraint_surfaces.size(), "surface"),
+                                               "no surface to slide on");
+                             },
+                             [](Model& model, EffectSet)
+                             {
+                               model.sliding.clear();
+                               remove_attached(model, true);
+                               model.constraint_surfaces.clear();
+                             } };
+  sliding.set_bones = [](const Model& model, std::vector<std::int32_t>& bone)
+  {
+    for (const SlidingNode& node : model.sliding)
+      bone[node.node] = model.constraint_surfaces[node.surface].bone;
+  };
+  return sliding;
+}
+
+EffectDescription friction()
+{
+  return { Effect::friction,
+           [](const Model& model)
+           {
+             const auto rough = [&](const SlidingNode& node)
+             { return model.constraint_surfaces[node.surface].friction > 0; };
+             return on_nodes(static_cast<std::size_t>(std::count_if(model.sliding.begin(), model.sliding.end(), rough)),
+                             "surfaces with friction", "no surface has friction");
+           },
+           [](Model& model, EffectSet)
+           {
+             for (ConstraintSurface& surface : model.constraint_surfaces)
+               surface.friction = 0;
+           } };
+}
+
+EffectDescription output_fields()
+{
+  return { Effect::output_fields, [](const Model& model) -> EffectPresence {
+            return { !model.skin.vertices.empty(), model.skin.vertices.empty() ? "no skin" : "on request", 0, 0 };
+          } };
+}
+
+// in the order of the enumeration Effect
+const std::array<EffectDescription, effect_traits.size()> descriptions{
+  { elasticity(), fibre_stiffness(), contraction(), viscosity(), gravity(), surface_loads(), prescribed_displacement(),
+    rigid_nodes(), sliding(), friction(), contact_description(), attachment_description(), output_fields() }
+};
+
+const EffectDescription& description_of(Effect effect) { return descriptions[static_cast<std::size_t>(effect)]; }
 
 }  // namespace
 
@@ -256,7 +294,7 @@ EffectPresence presence_of(const Model& model, Effect effect)
 {
   if (is_off(model, effect))
     return { false, "switched off by the scene", 0, 0 };
-  return found(model, effect);
+  return description_of(effect).found(model);
 }
 
 EffectSet effects_of(const Model& model)
@@ -272,11 +310,51 @@ void switch_off(Model& model, EffectSet off)
 {
   check_switched_off(off, effects_of(model));
   for (const Effect effect : every_effect())
-    if (off.has(effect))
-      remove(model, effect, off);
+    if (const auto remove = description_of(effect).remove; off.has(effect) && remove != nullptr)
+      remove(model, off);
   for (const Effect effect : every_effect())
     if (off.has(effect) && !is_off(model, effect))
       model.switched_off.push_back(name_of(effect));
+}
+
+std::vector<TouchedBody> touched_bodies(const Model& model)
+{
+  std::vector<TouchedBody> bodies;
+  for (const EffectDescription& effect : descriptions)
+    if (effect.add_bodies != nullptr)
+      effect.add_bodies(model, bodies);
+  return bodies;
+}
+
+std::vector<std::int32_t> moving_bones(const Model& model)
+{
+  std::vector<std::int32_t> bone(model.nodes.size(), -1);
+  // in reverse order: effects that restrict a node override those that only touch it
+  for (auto effect = descriptions.rbegin(); effect != descriptions.rend(); ++effect)
+    if (effect->set_bones != nullptr)
+      effect->set_bones(model, bone);
+  return bone;
+}
+
+void exchange_effects(ModelWriter& archive, const Model& model)
+{
+  for (const EffectDescription& effect : descriptions)
+    if (effect.write != nullptr)
+      effect.write(archive, model);
+}
+
+void exchange_effects(ModelReader& archive, Model& model)
+{
+  for (const EffectDescription& effect : descriptions)
+    if (effect.read != nullptr)
+      effect.read(archive, model);
+}
+
+void check_effects(const Model& model)
+{
+  for (const EffectDescription& effect : descriptions)
+    if (effect.check != nullptr)
+      effect.check(model);
 }
 
 }  // namespace frontalis

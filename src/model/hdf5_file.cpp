@@ -35,7 +35,7 @@ private:
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-/// Creation properties of an object: no times, so that equal models give equal bytes.
+/// Creation properties that store no time stamps, so that equal models give equal bytes.
 hid_t timeless(hid_t kind)
 {
   const hid_t list = H5Pcreate(kind);

@@ -44,13 +44,13 @@ inline Hdf5Types types_of(std::int64_t) { return { H5T_NATIVE_INT64, H5T_STD_I64
 inline Hdf5Types types_of(float) { return { H5T_NATIVE_FLOAT, H5T_IEEE_F32LE }; }
 inline Hdf5Types types_of(double) { return { H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE }; }
 
-/// An HDF5 file open for writing or for reading, without times and without HDF5's own messages. Every function throws
-/// Error naming the array. Strings have a fixed length and are padded with zeros.
+/// An HDF5 file open for writing or for reading, without time stamps and without HDF5's own error messages. Every
+/// function throws Error naming the array. Strings have a fixed length and are padded with zeros.
 class Hdf5File
 {
 public:
   static Hdf5File create(const std::string& path);
-  /// Throws Error: missing, not HDF5, truncated or damaged.
+  /// Throws Error if the file is missing, not HDF5, truncated or damaged.
   static Hdf5File open(const std::string& path);
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
@@ -83,13 +83,13 @@ public:
 
   void write_attribute(const std::string& group, const std::string& name, const std::vector<std::int64_t>& values);
   void write_attribute(const std::string& group, const std::string& name, const std::string& value);
-  /// The attribute's number; `otherwise` if there is none.
+  /// The value of the attribute; `otherwise` if it does not exist.
   std::int64_t attribute(const std::string& group, const std::string& name, std::int64_t otherwise) const;
 
 private:
   explicit Hdf5File(hid_t file) : file_(file) {}
   void write(const std::string& path, const void* data, hsize_t rows, hsize_t width, hid_t memory, hid_t type);
-  /// Rows of an array, checking its width.
+  /// Number of rows of an array. Throws Error if they do not have this width.
   hsize_t rows(const std::string& path, hsize_t width) const;
   void read(const std::string& path, void* data, hsize_t rows, hid_t memory) const;
   void write_attribute(const std::string& group, const std::string& name, hid_t space, hid_t memory, hid_t type,

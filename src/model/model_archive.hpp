@@ -12,25 +12,25 @@
 namespace frontalis
 {
 
-/// A field of the rows of a table, and its name in the file.
+/// Names a field of a structure as a column of a table in the file.
 template <class Row, class Value>
 struct Column
 {
   const char* name;
   Value Row::*field;
-  /// std::vector<bool> has no array of bytes.
+  /// Values as bytes for bool, because std::vector<bool> is not an array in memory.
   using Values = std::vector<std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>>;
 };
 template <class Row, class Value>
 Column(const char*, Value Row::*) -> Column<Row, Value>;
 
-/// Puts the fields of a model into a group of the file: arrays, single values, and vectors of structures as tables.
+/// Writes the fields of a model to a group of the file: arrays, single values, and vectors of structures as tables.
 class ModelWriter
 {
 public:
   ModelWriter(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
-  /// Whether to go on with a group that is only in files where `stored` holds.
+  /// Whether to continue with a group that the file has only if `stored` is true.
   bool group_if(bool stored, const std::string&) const { return stored; }
 
   template <class T>
@@ -62,7 +62,7 @@ private:
   std::string group_;
 };
 
-/// Takes the fields of a model from a group of the file.
+/// Reads the fields of a model from a group of the file.
 class ModelReader
 {
 public:

@@ -34,7 +34,7 @@ void write_whole(const Model& model, const std::string& path)
   file.close();
 }
 
-/// Writes a file, or the entries of a folder, to the disk.
+/// Flushes a file, or the entries of a folder, to the disk.
 void synchronise(const std::string& path)
 {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -48,7 +48,7 @@ void synchronise(const std::string& path)
     throw Error(std::string("cannot be written to the disk: ") + std::strerror(reason));
 }
 
-/// Reads a model; where `scene_hash` is given, it must be the model of that scene.
+/// Reads a model. If `scene_hash` is not null, the model must be that of this scene.
 Model read(const std::string& path, const std::string* scene_hash)
 {
   try

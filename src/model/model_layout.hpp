@@ -3,7 +3,7 @@
 #include "model/model_archive.hpp"
 
 #include "frontalis/model/model.hpp"
-#include "model/contact_layout.hpp"
+#include "model/effect_description.hpp"
 
 #include <string>
 #include <utility>
@@ -41,7 +41,7 @@ void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
 /// file. Points are in local coordinates [m].
 void write_vtk_arrays(Hdf5File& file, const Model& model);
 
-/// The one description of our part of the file, for both directions. Derived arrays (nodes) are not in it.
+/// Lists all that a model file stores, once for writing and reading. Derived arrays (nodes) are not stored.
 template <class Archive, class AnyModel>
 void exchange_model(Archive& archive, AnyModel& model)
 {
@@ -79,12 +79,7 @@ void exchange_model(Archive& archive, AnyModel& model)
                 Column{ "surface", &SlidingNode::surface }, Column{ "distance", &SlidingNode::distance },
                 Column{ "constraint", &SlidingNode::constraint });
 
-  if (archive.group_if(!model.attached.empty(), "attached"))
-    archive.table("attached", model.attached, Column{ "node", &AttachedNode::node },
-                  Column{ "master", &AttachedNode::master }, Column{ "ratio", &AttachedNode::ratio },
-                  Column{ "bone", &AttachedNode::bone }, Column{ "surface", &AttachedNode::surface },
-                  Column{ "constraint", &AttachedNode::constraint });
-  exchange_contacts(archive, "contacts", model.contacts);
+  exchange_effects(archive, model);
 
   archive("gravity", model.gravity);
   archive.table("loads", model.loads, Column{ "name", &Load::name }, Column{ "kind", &Load::kind },

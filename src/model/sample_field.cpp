@@ -12,19 +12,20 @@ namespace
 using Point = std::array<double, 3>;
 using physics::DistanceField;
 
-// Distances that samples of a brick must cover [m].
+// Range of distances [m] that a brick must have samples for.
 struct Band
 {
   double least = 1e300, largest = -1e300;
   bool home = false;  // a node rests in the brick
 };
 
-// Whether the distance is in the band somewhere in a cube, found by halving it down to `smallest` [m].
+// Whether the distance is in the band anywhere in a cube, found by halving the cube down to `smallest` [m].
 bool reaches(const Distance& distance, const Band& band, const Point& middle, double edge, double smallest)
 {
   const SurfaceDistance d = distance(middle);
   const double radius = 0.5 * std::sqrt(3.0) * edge;
-  // the nearest point may jump to the rim and back, and sign and way past the rim with it, but not the true distance
+  // Within the cube, the nearest point may jump to the rim and back, and with it the sign and past_rim. The unsigned
+  // distance changes by at most `radius`.
   const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
   const bool too_far =
       std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;
@@ -45,7 +46,7 @@ bool reaches(const Distance& distance, const Band& band, const Point& middle, do
   return false;
 }
 
-// Calls visit(index in the table) for bricks within `way` of a point.
+// Calls visit(index in the table) for the bricks within the distance `way` of a point.
 template <class Visit>
 void visit_bricks(const SampledField& field, const Point& p, double way, const Visit& visit)
 {
@@ -78,7 +79,7 @@ SampledField empty_field(const Point& lower, const Point& upper, double spacing)
   return field;
 }
 
-// Samples the bricks that reach into their bands.
+// Samples the bricks in which the distance reaches the brick's band.
 void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
 {
   const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;

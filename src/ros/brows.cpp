@@ -14,9 +14,9 @@ namespace
 using Point = std::array<double, 3>;
 
 constexpr double half_width = 4.0e-3;     // half the width of the band at its inner end [m]
-constexpr double inner_length = 9.0e-3;   // of the band beyond the innermost landmark [m]
-constexpr double outer_length = 11.0e-3;  // of the band beyond the outermost landmark [m]
-constexpr double density = 0.85;          // share of the skin that hair covers in the middle of the band
+constexpr double inner_length = 9.0e-3;   // how far the band extends beyond the innermost landmark [m]
+constexpr double outer_length = 11.0e-3;  // how far it extends beyond the outermost landmark [m]
+constexpr double density = 0.85;          // fraction of the skin that hair covers in the middle of the band
 
 Point blend(const Point& a, const Point& b, double share)
 {
@@ -53,7 +53,7 @@ std::vector<Point> brow_line(const Model& model, const std::string& side)
   return points;
 }
 
-/// Distance of a vertex from a line [m], and the share of the line's length at which the closest point is, 0..1.
+/// Distance of a vertex from a line [m], and the closest point as a fraction of the line's length, 0..1.
 std::pair<double, double> closest_on_line(const std::vector<Point>& points, const Point& vertex)
 {
   double length = 0, best = 1e9, at = 0;

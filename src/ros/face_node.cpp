@@ -56,7 +56,7 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
 
 FaceNode::~FaceNode()
 {
-  // First no callback may begin any more; then the loader and the runner end, which still use the publishers.
+  // Order matters: no callback may begin any more; then the loader and the runner end, which still use the publishers.
   stopping_ = true;
   frame_timer_.stop();
   diagnostics_timer_.stop();
@@ -67,7 +67,7 @@ FaceNode::~FaceNode()
   for (auto& service : services_)
     service.shutdown();
   loader_.join();
-  const std::shared_ptr<Runner> last = runner();  // destroyed once the mutex is free again
+  const std::shared_ptr<Runner> last = runner();  // keeps the runner until after the mutex is unlocked
   const std::lock_guard<std::mutex> lock(runner_mutex_);
   runner_.reset();
 }
@@ -196,7 +196,7 @@ void FaceNode::repeat_frame_and_play_demo()
     if ((ros::WallTime::now() - last_published_).toSec() > repetition_period)
     {
       last_published_ = ros::WallTime::now();
-      // the frame of a face that stands still is sent again for late subscribers
+      // resend the frame of a face that stands still, for late subscribers
       if (runner_ && has_frame_ && frame_finite_)
         publisher_.publish(frame_, ros::Time::now(), paused_);
       // a face whose model could not be made has failed; one that is still being baked has not

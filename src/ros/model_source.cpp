@@ -70,7 +70,7 @@ class LineReader
 public:
   LineReader(asio::io_context& context, BakeLog use) : pipe_(context), use_(std::move(use))
   {
-    // a process that another thread starts must not hold the pipe open
+    // a program started by another thread must not inherit the pipe and keep it open
     for (const int end : { pipe_.native_source(), pipe_.native_sink() })
       fcntl(end, F_SETFD, FD_CLOEXEC);
   }
@@ -117,7 +117,7 @@ bp::child start(const std::string& program, const std::vector<std::string>& argu
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent)
       _exit(EXIT_FAILURE);
-    // the program must not inherit which signals the node blocks or ignores
+    // the program must not inherit the node's set of blocked signals
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -139,7 +139,7 @@ bp::child start(const std::string& program, const std::vector<std::string>& argu
 void run(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
          const std::atomic<bool>& cancelled)
 {
-  static std::mutex starting;  // between the pipes' creation and the start no other bake may start and inherit them
+  static std::mutex starting;  // held until the program runs, so that no other bake inherits these pipes
   std::unique_lock<std::mutex> lock(starting);
   asio::io_context context;
   std::string said;

@@ -25,7 +25,7 @@ public:
     int number = 0;
     if (!handle_.hasParam(key) || handle_.getParam(key, value))
       return value;
-    // roslaunch turns a text such as 1 into a number
+    // roslaunch turns a text such as "1" into a number
     if (handle_.getParam(key, number))
       return std::to_string(number);
     add_fault(key, "has the wrong type; allowed is a text");

@@ -20,8 +20,7 @@ Vector unit(const Vector& a)
   return { { a[0] / length, a[1] / length, a[2] / length } };
 }
 
-/// Diffuse light (Lambert's cosine) that reaches beyond the edge of the shadow, as light that scatters below the skin
-/// does. With w = 0 it ends at the edge.
+/// Lambert's cosine, extended into the shadow by w to imitate light that scatters below the skin; 0: plain Lambert.
 float wrapped(float cosine, float w) { return std::max(0.0f, (cosine + w) / (1 + w)); }
 
 // directions in the face frame: x out of the face, y to its left, z up
@@ -31,12 +30,12 @@ const Vector view = { { 1, 0, 0 } };
 const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
 
 const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear, before gamma
-const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // how far each colour scatters; red goes farthest
+const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // how far each colour scatters into the shadow; red goes farthest
 const Vector hair_albedo = { { 0.050f, 0.030f, 0.020f } };
 const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
-constexpr float hollow_depth = 5.0e-3f;  // share of light that a hollow loses per unit of mean curvature [m]
+constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses per unit of mean curvature [m]
 
 }  // namespace
 

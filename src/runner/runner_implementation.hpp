@@ -29,7 +29,7 @@ struct Runner::Implementation
   bool stop = false;
   bool paused = false;
   bool reset_wanted = false;
-  bool cancel_wanted = false;  ///< of the step under way
+  bool cancel_wanted = false;  ///< ends the call of step() under way
   std::uint64_t resets_done = 0;
   std::string reset_error;  ///< why the latest reset failed; empty if it did not
   struct StepRequest
@@ -63,7 +63,7 @@ struct Runner::Implementation
   double period() const { return 1 / settings.frame_rate; }
   /// Simulated time on the clock of the activations [s]. With time scaling it differs from the solver's time.
   double time() const { return solver->time() * model->time_scaling; }
-  /// Duration of a slice: the solver steps so long without looking at requests and at the wall clock [s].
+  /// Simulated duration of a slice [s], in which the solver does not look at requests or at the wall clock.
   double slice() const;
 
   void advance(double seconds, const Controls& controls);

@@ -17,7 +17,7 @@ constexpr int steps_per_slice = 32;
 // wall time between computations of the energies and volume ratios
 constexpr std::chrono::seconds monitor_period(1);
 
-// whether the difference of two poses of a bone is invisible: below 1e-5 rad and 1e-6 m
+// whether two poses of a bone differ too little to be seen: below 1e-5 rad and 1e-6 m
 bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
 {
   const auto within = [](double limit) { return [limit](double x, double y) { return std::abs(x - y) < limit; }; };
@@ -135,7 +135,7 @@ void Runner::Implementation::run_frame()
 {
   const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
   // Deadlines follow a fixed schedule, so that late frames do not make the next ones late. Each frame has at least a
-  // quarter of its length; a frame that was missed altogether is not made up for.
+  // quarter of its length; frames that were missed completely are skipped.
   deadline = std::max(deadline + length, Clock::now() + length / 4);
   deadline = std::min(deadline, Clock::now() + length);
   const double end = settings.pace == Pace::fastest
@@ -192,7 +192,7 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
   try
   {
-    // the guard must not save, as a state to return to, one that went bad since the latest check
+    // check first, so that the guard does not save a state that went bad since the latest check
     if (guard && !frame.failed)
       guard->check();
   }
@@ -261,7 +261,7 @@ void Runner::Implementation::serve_until_stopped()
           continue;
       }
       std::swap(reset_now, reset_wanted);
-      // a step that was requested before the reset but has not begun yet is ended too
+      // also ends a step() that was requested before the reset but has not begun
       if (reset_now)
       {
         refuse(step_request, ended_early);
@@ -305,7 +305,7 @@ void Runner::Implementation::run()
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
       reset_error = frame.failure;
-      ++resets_done;  // the caller of a reset that failed must not wait for ever
+      ++resets_done;  // count failed resets too, or their caller would wait for ever
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }
 }

@@ -19,26 +19,70 @@ void read_displacement(const Node& node, SceneLoad& load)
     node.fault("found null for all three; at least one must be a length");
 }
 
+void read_within(Mapping& mapping, SceneConstraint& constraint)
+{
+  constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
+}
+
+void read_place(Mapping& mapping, SceneConstraint& constraint)
+{
+  constraint.crop = read_region(mapping.optional("crop"));
+  constraint.bone = mapping.optional("bone").name();
+}
+
+void read_friction(Mapping& mapping, SceneConstraint& constraint)
+{
+  constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
+}
+
+// A kind of constraint: the key for its surfaces, and the function that reads its other keys.
+struct ConstraintKind
+{
+  SceneConstraint::Kind kind;
+  const char* key;
+  void (*read)(Mapping&, SceneConstraint&, const SceneNames&);
+};
+
+constexpr ConstraintKind constraint_kinds[] = {
+  { SceneConstraint::Kind::rigid, "rigid",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      read_within(mapping, constraint);
+      read_place(mapping, constraint);
+    } },
+  { SceneConstraint::Kind::sliding, "sliding",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      read_within(mapping, constraint);
+      read_place(mapping, constraint);
+      read_friction(mapping, constraint);
+    } },
+  { SceneConstraint::Kind::contact, "contact",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames& names)
+    {
+      constraint.on = mapping.optional("on").reference(names.surfaces);
+      read_place(mapping, constraint);
+      read_friction(mapping, constraint);
+    } },
+};
+
 }  // namespace
 
 void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
 {
   const auto read = [&](const Node& entry, Mapping& mapping, SceneConstraint& constraint)
   {
-    const std::string kind = one_of(entry, mapping, { "rigid", "sliding", "contact" });
-    if (kind.empty())
-      return;
-    using Kind = SceneConstraint::Kind;
-    constraint.kind = kind == "rigid" ? Kind::rigid : kind == "sliding" ? Kind::sliding : Kind::contact;
-    constraint.surfaces = mapping.optional(kind).references(names.surfaces);
-    if (constraint.kind == Kind::contact)
-      constraint.on = mapping.optional("on").reference(names.surfaces);
-    else
-      constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
-    constraint.crop = read_region(mapping.optional("crop"));
-    constraint.bone = mapping.optional("bone").name();
-    if (constraint.kind != Kind::rigid)
-      constraint.friction = mapping.optional("friction").number(Dimension::number, not_negative, constraint.friction);
+    std::vector<std::string> keys;
+    for (const ConstraintKind& kind : constraint_kinds)
+      keys.emplace_back(kind.key);
+    const std::string key = one_of(entry, mapping, keys);
+    for (const ConstraintKind& kind : constraint_kinds)
+      if (key == kind.key)
+      {
+        constraint.kind = kind.kind;
+        constraint.surfaces = mapping.optional(key).references(names.surfaces);
+        kind.read(mapping, constraint, names);
+      }
   };
   read_list(node, scene.constraints, read);
 }

@@ -23,7 +23,7 @@ struct LawShare
   {
     return law_stiffening(law, parameters, at_rest, per_tangent, k);
   }
-  /// [J]; in a batch, 0 where a voxel does not have the law, whatever its parameters are there.
+  /// [J]; 0 in the lanes of a batch whose voxels do not have the law, whatever their parameters are.
   FRONTALIS_LAW T energy(const physics::Kinematics<T>& k) const
   {
     using N = physics::Number<T>;

@@ -40,7 +40,7 @@ FRONTALIS_LAW T law_stiffness(Law law, const T* numbers, const physics::Kinemati
   return stiffness;
 }
 
-/// By how much a law raises the bound of a voxel's stiffness above that at rest [N/m]; see LawPart::per_tangent.
+/// Increase of a voxel's stiffness bound over that at rest, by one law [N/m]; see LawPart::per_tangent.
 template <class T>
 FRONTALIS_LAW T law_stiffening(Law law, const T* numbers, const T& at_rest, const T& per_tangent,
                                const physics::Kinematics<T>& k)

@@ -22,7 +22,7 @@ bool is_rigid_motion(const RigidTransform& pose)
 
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
 {
-  // rotation from `from` to `to` as axis and angle, then Rodrigues' formula for the part of it
+  // axis and angle of the rotation from `from` to `to`; Rodrigues' formula applies the fraction of it
   const auto& a = from.rotation;
   const auto& b = to.rotation;
   double r[3][3];
@@ -136,7 +136,7 @@ double farthest_way(const RigidTransform& from, const RigidTransform& to, const 
 
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner)
 {
-  // short enough for chords to be arcs, to 1 % in half a turn
+  // pieces so short that chord and arc differ by at most 1 % in half a turn
   constexpr int pieces = 8;
   double fastest = 0;
   RigidTransform before = from;

@@ -1,4 +1,4 @@
-// Fibre fields compared with the analytic ones of simple shapes, and the messages if none can be found.
+// Fibre fields compared with analytic ones of simple shapes, and the messages if no fibres can be found.
 
 #include "bake/scene_pieces.hpp"
 #include "files.hpp"
@@ -253,14 +253,14 @@ TEST(Fibres, FollowAControlNet)
     for (const double radius : { 20e-3, 40e-3 })
       for (const double z : { -10e-3, 10e-3 })
       {
-        // turned so that the arc is centred on x
+        // rotated so that the arc is symmetric to x
         const double x = corner[0] > 0 ? corner[0] : 0.7071067811865476;
         const double y = corner[0] > 0 ? 0 : 0.7071067811865476 * corner[1];
         net.points.push_back({ radius * x, radius * y, z });
         net.weights.push_back(corner[0] > 0 ? 0.7071067811865476 : 1);
       }
   scene.muscles[0].net = net;
-  // the cylinder is longer than the control net: its ends get the net's last direction
+  // points of the cylinder beyond the control net get the direction at the net's end
   const auto clamped = [](const Vector3& p)
   {
     const double angle = std::max(-pi / 4, std::min(pi / 4, std::atan2(p[1], p[0])));

@@ -9,7 +9,7 @@ namespace
 
 using namespace frontalis;
 
-/// An ellipsoid 1.5 m up, longest along `axis`.
+/// An ellipsoid 1.5 m above the origin, longest along `axis`.
 Scene ellipsoid_scene(std::size_t axis)
 {
   Scene scene = plain_scene(1e-3);
@@ -48,7 +48,7 @@ TEST_P(Frame, LocalAxesArePermutedConsistently)
   EXPECT_EQ(r[3 * axis], 1);
   EXPECT_GE(model.size[0], 29);
 
-  // skin, landmark, muscle and gravity come back in scene coordinates
+  // skin, landmark, muscle and gravity have their values when transformed back to scene coordinates
   for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
   {
     const Vector3 p = transformed(model.to_scene, model.skin.vertices[v]);
@@ -73,7 +73,7 @@ TEST_P(Frame, LocalAxesArePermutedConsistently)
   const Vector3 gravity = transformed(turn, model.gravity);
   EXPECT_EQ(gravity, scene.gravity);
 
-  // the face frame: x forward, z up made square to it, and its origin
+  // the face frame: its origin, x forward, z along `up` made perpendicular to x
   const auto face_of = [&](const Vector3& scene_point)
   {
     Vector3 local{};
@@ -118,7 +118,7 @@ TEST(Binding, ReproducesAffineMotion)
     }
   }
   EXPECT_LT(farthest, 2);
-  // the landmark too
+  // the landmark is bound as precisely as the skin
   const Vector3 expected = field(model.landmark_positions[0]);
   const Vector3 found = interpolated(model, model.landmark_binding, 0, field);
   for (std::size_t a = 0; a < 3; ++a)
@@ -151,7 +151,7 @@ TEST(Binding, KeepsTheOrderOfTheSurface)
   {
     const Vector3 p = transformed(cut.to_scene, v);
     if (std::abs(p[0] - scene.skin.crop.upper[0]) < 1e-9)
-      continue;  // new on the cut
+      continue;  // a new vertex on the cut
     const auto same = [&](const Vector3& w)
     {
       const Vector3 q = transformed(whole.to_scene, w);

@@ -1,4 +1,4 @@
-// Nodes that slide over a bone keep to a field of the sheet that tissue faces.
+// Nodes that slide over a bone stay on level sets of a distance field: that of the side of the bone that faces tissue.
 
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
@@ -70,14 +70,14 @@ TriangleMesh read_stl(const std::string& path)
 double table_radius(const Point& d, bool outer)
 {
   const double waves = std::sin(15 * d.x + 1) * std::sin(13 * d.y) * std::sin(14 * d.z + 2);
-  // a ridge at each brow
+  // a ridge above each eye
   const double brow = std::hypot(70 * (d.z - 0.1) / 6, 70 * (std::abs(d.y) - 0.3) / 15);
   const double ridge = d.x > 0 ? 4 * std::exp(-brow * brow) : 0;
   return outer ? 70 + waves + ridge : 64 + 0.7 * std::sin(17 * d.x) * std::sin(16 * d.y + 1) * std::sin(12 * d.z);
 }
 
-// An artificial closed skull of two tables, 4 to 10 mm apart, with brow ridges and bumps and about as many triangles as
-// the real bone: the squares on a cube's faces, moved onto the tables.
+// An artificial closed skull with an outer and an inner table, 4 to 10 mm apart, with brow ridges and bumps and about
+// as many triangles as the real bone: the squares on a cube's faces, moved onto the tables.
 TriangleMesh made_bone()
 {
   constexpr int squares = 38;
@@ -117,7 +117,7 @@ TriangleMesh made_bone()
 
 Point point(const std::array<double, 3>& p) { return { p[0], p[1], p[2] }; }
 
-// A bone under tissue that lies on the side where `forward` points to.
+// A bone under tissue; `forward` points from the bone to the tissue.
 struct CoveredBone
 {
   PreparedSurfaces surfaces;
@@ -136,7 +136,7 @@ struct CoveredBone
     {
       const ClosestPoint closest = bone.tree().closest(p);
       const double distance = bone.signed_distance(p, closest);
-      // voxels reach into the bone
+      // half an edge below the surface, because voxels reach into the bone
       return distance > -0.5 * edge && distance < 5e-3 && bone.pseudonormal(closest).dot(forward) > 0.4 &&
              (closest.point - bone.box().center()).dot(forward) > 0;
     };
@@ -159,12 +159,12 @@ struct CoveredBone
     restrict_nodes(scene, surfaces, frame, model, monitor);
   }
 
-  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, frame, model) }; }
+  PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, {}, frame, model) }; }
   const SampledField& field() const { return model.constraint_surfaces.at(0).field; }
   BakeProgress progress;
 };
 
-// A node that moves along a level as the solver moves it: on a plane until slip is used up, then on a new one.
+// A node that moves along a level set as in the solver: on a tangent plane until slip is used up, then on a new one.
 struct Walker
 {
   KeptLevel level;
@@ -188,8 +188,7 @@ struct Walker
   }
 };
 
-// Where the nearest point jumps from the rim of the sheet to another part of it, the field must not: its gradient is
-// longer than 1 only where it does.
+// Where the nearest point jumps from the rim of the sheet to another part, the field must not: its gradient is about 1.
 void check_slopes(const CoveredBone& bone)
 {
   const physics::DistanceField field = view(bone.field());
@@ -220,7 +219,7 @@ void check_paths(const CoveredBone& bone)
     const Point& n = walker.plane.normal;
     const Point heading = cross(n, Point{ unit(random), unit(random), unit(random) });
     walker.v = 0.1 / norm(heading) * heading;
-    // 10,000 steps at 0.1 m/s are 5 mm
+    // 10,000 steps of 5 us at 0.1 m/s are 5 mm
     for (int i = 0; i < 10000; ++i)
     {
       const Point reference = walker.reference;
@@ -234,7 +233,7 @@ void check_paths(const CoveredBone& bone)
       }
     }
     most_loss = std::max(most_loss, std::abs(dot(walker.v, walker.v) / 0.01 - 1));
-    // turn of the normal within a micrometre
+    // angle by which the normal turns within a micrometre
     double turn = 0;
     Walker slow = walker;
     for (int i = 0; i < 5000; ++i)
@@ -249,14 +248,14 @@ void check_paths(const CoveredBone& bone)
     sharpest += turn > 1 * pi / 180 ? 1 : 0;
     most_turn = std::max(most_turn, turn);
   }
-  std::printf("largest turn in a micrometre %.3f degrees, energy %.2e, off the level %.2f um, %.4f renewals a step\n",
+  std::printf("largest turn in a micrometre %.3f degrees, energy %.2e, off the level %.2f um, %.4f renewals per step\n",
               most_turn * 180 / pi, most_loss, 1e6 * most_off, static_cast<double>(renewals) / 1e6);
   EXPECT_EQ(sharpest, 0);
   EXPECT_LT(most_loss, 1e-3);
   EXPECT_LT(most_off, 5e-6);
 }
 
-// The level is near the true distance from the sheet, at nodes and where they may come.
+// Levels of the field agree with the true distance from the sheet, at nodes and at points that nodes may reach.
 void check_distances(const CoveredBone& bone)
 {
   const Model& model = bone.model;
@@ -274,7 +273,7 @@ void check_distances(const CoveredBone& bone)
     const Vector3d at = bone.frame.to_scene(to_vector(p));
     const ClosestPoint closest = sheet.tree().closest(at);
     const double distance = sheet.signed_distance(at, closest);
-    // at most so far as the node may leave its level
+    // nodes do not leave their level by more than this
     if (std::abs(distance - node.distance) > 0.3e-3)
       continue;
     const double level = level_at(bone.field(), p);
@@ -299,7 +298,7 @@ TEST(FrontalBone, NodesKeepToTheOuterTableOfAMadeBone)
 {
   const CoveredBone bone(made_bone(), { 1, 0, 0 }, 3e-3);
   EXPECT_GT(bone.model.sliding.size(), 1000U);
-  // the sheet has no triangle of the inner table, and nodes hold to none
+  // the sheet has no triangle of the inner table, and no node slides on it
   const PreparedSurface sheet = bone.sheet();
   EXPECT_GT(sheet.mesh().triangles.size(), 3000U);
   for (const auto& v : sheet.mesh().vertices)

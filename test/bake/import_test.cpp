@@ -1,4 +1,4 @@
-// Meshes that are repaired, and the list of repairs. Meshes that are refused are in test/model/bad.
+// Import of meshes with faults that are repaired or reported. Meshes that are refused are in test/model/bad.
 
 #include "bake/mesh/surface.hpp"
 #include "bake/mesh/mesh_faults.hpp"
@@ -137,7 +137,7 @@ TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
 
 TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
 {
-  // the midpoint of an edge belongs to only one of its sides: a triangle without area fills the crack
+  // the midpoint of an edge is a vertex of only one of its triangles: a triangle without area fills the crack
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
   const Triangle split = mesh.triangles[0];
   const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
@@ -149,7 +149,7 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
   const std::size_t triangles = mesh.triangles.size();
   const LoadedSurface surface = load(mesh);
   EXPECT_TRUE(told(surface, "1 triangle without area left out"));
-  EXPECT_EQ(surface.mesh.triangles.size(), triangles);  // one less, and its neighbour is two
+  EXPECT_EQ(surface.mesh.triangles.size(), triangles);  // one is removed, and its neighbour is split in two
   EXPECT_TRUE(unbalanced_edges(surface.mesh).empty());
   EXPECT_EQ(find_mesh_faults(surface.mesh).flat.count, 0u);
   EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
@@ -158,7 +158,7 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
 TEST_F(Import, HolesAreDataAndMeasured)
 {
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
-  // without its top
+  // without its upper side
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {
@@ -192,7 +192,7 @@ TEST_F(Import, ASmallCrossingIsDataAndALargeOneAnError)
 
 TEST(MeshFaults, CountsSliversAndCrossings)
 {
-  // a long thin triangle, and one that stabs it
+  // a long thin triangle, and one that passes through it
   TriangleMesh mesh;
   mesh.vertices = { { 0, 0, 0 }, { 100, 0, 0 }, { 50, 1, 0 }, { 50, 0.3, -5 }, { 51, 0.3, 5 }, { 49, 0.3, 5 } };
   mesh.triangles = { { 0, 1, 2 }, { 3, 4, 5 } };

@@ -23,7 +23,7 @@ protected:
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Writes a sphere without the triangles that have a vertex where `leave` holds (unit coordinates).
+  /// Writes a sphere without the triangles that have a vertex for which `leave` is true (unit coordinates).
   template <class Leave>
   Surface sphere_file(const std::string& name, double radius, const Leave& leave) const
   {
@@ -45,7 +45,7 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
   scene.volumes = { volume_inside("tissue", { "head" }, "fat", true) };
   BakeReport report;
   const Model model = bake(scene, &report);
-  // the cap over the neck is 0.7 % of the ball; the surface that closes it may bulge by no more
+  // the opened cap is 0.7 % of the ball's volume; the bake may close the hole with an error of that order
   EXPECT_NEAR(tissue_volume(model) / (4.0 / 3 * pi * 8e-6), 1, 0.02);
   bool reported = false;
   for (const std::string& finding : report.findings)
@@ -56,7 +56,7 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
 TEST_F(OpenSurfaces, GapsBetweenTwoBonesLetNothingThrough)
 {
   Scene scene = plain_scene(1e-3);
-  // two halves of a skull, 0.5 mm apart, around a space that must not become tissue
+  // two halves of a skull with a gap of 0.5 mm: the space between them must not become tissue
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),
                      sphere_file("upper", 14e-3, [](const Vector3& v) { return v[2] < 0.03; }),
                      sphere_file("lower", 14e-3, [](const Vector3& v) { return v[2] > -0.03; }) };
@@ -83,9 +83,9 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
   scene.volumes[0].outside = { "bone" };
   const auto ball = [](double r) { return 4.0 / 3 * pi * r * r * r; };
-  // without a depth everything inside the skin and outside the bone is tissue, the cavity too
+  // without a depth, everything inside the skin and outside the bone is tissue, including the cavity
   EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3) + ball(13e-3)), 1, 0.01);
-  // with a depth, only what the skin sees: the cavity from 10 to 13 mm is near enough, but behind the bone
+  // with a depth, tissue is not behind the bone, although the cavity from 10 to 13 mm is near enough to the skin
   scene.volumes[0].within = "skin";
   scene.volumes[0].depth_max = 10e-3;
   EXPECT_NEAR(tissue_volume(bake(scene)) / (ball(20e-3) - ball(15e-3)), 1, 0.01);
@@ -93,7 +93,7 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
 
 TEST_F(OpenSurfaces, AnOpeningHidesNothing)
 {
-  // a slot into a block from above, wider than deep: the tissue below it sees the slot's mouth
+  // a slot in the upper side of a block: an opening (`without`) does not hide the tissue below it
   Scene scene = plain_scene(1e-3);
   scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 20e-3, 20e-3 }),
                      box_surface("slot", { 0, 0, 10e-3 }, { 10e-3, 10e-3, 4e-3 }) };
@@ -103,7 +103,7 @@ TEST_F(OpenSurfaces, AnOpeningHidesNothing)
   const double shell = 8e-6 - 1e-6, slot = 10e-3 * 10e-3 * 2e-3;
   scene.volumes[0].without = { "slot" };
   EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - slot), 1, 0.01);
-  // as a bone it also takes what lies behind it
+  // a bone (`outside`) does: the tissue behind it is left out too
   scene.volumes[0].without.clear();
   scene.volumes[0].outside = { "slot" };
   EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - 2.5 * slot), 1, 0.01);

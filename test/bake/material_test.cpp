@@ -43,7 +43,7 @@ SceneMaterial of_law(const std::string& law, const std::map<std::string, double>
   return material;
 }
 
-// bulk modulus of a shear modulus at a Poisson ratio of 0.45
+// bulk modulus that belongs to a shear modulus at a Poisson ratio of 0.45
 double bulk(double shear) { return shear * 2 * 1.45 / (3 * 0.1); }
 
 }  // namespace
@@ -90,7 +90,7 @@ TEST(Materials, FibreFamiliesTurnIntoLocalAxes)
   SceneMaterial skin = of_law("holzapfel", { { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 } });
   skin.families = { { { 0.8, 0.6, 0 }, { 0, 0, 1 } } };
   const Model model = bake_material(skin);
-  // back to the scene's axes
+  // transform directions back to the scene's axes
   for (std::size_t family = 0; family < 2; ++family)
     for (std::size_t row = 0; row < 3; ++row)
     {
@@ -121,7 +121,7 @@ TEST(Materials, FibreFamiliesFollowASurface)
       p[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
     out = transformed(model.to_scene, p);
     const double radius = std::sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    // at a small radius the facets of the mesh dominate
+    // near the centre the error from the mesh's facets dominates
     if (radius < 4e-3)
       continue;
     const auto& d = model.material_directions[e];
@@ -138,9 +138,9 @@ TEST(Materials, FibreFamiliesFollowASurface)
       between += double(d[a]) * double(d[3 + a]);
     EXPECT_NEAR(between, 0.28, 1e-5);
   }
-  // the normals of a mesh with edges of 0.5 mm have smaller errors
+  // the normals of a mesh with edges of 0.5 mm have errors below this
   EXPECT_LT(most_normal, 0.07);
-  // on the side that the plane faces they are as given
+  // where the surface is normal to the plane of the given families, directions are the given ones
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     Vector3 p{};

@@ -47,7 +47,7 @@ TEST(RestrictedNodes, RigidFloorSlidingRoof)
     EXPECT_EQ(node.bone, 0);
     EXPECT_EQ(model.constraints.at(static_cast<std::size_t>(node.constraint)), "hold");
   }
-  // the roof's lower face is 0.3 mm above the tissue, its outward normal points down to it
+  // the lower side of `roof` is 0.3 mm above the tissue and faces it
   ASSERT_EQ(model.sliding.size(), 21u * 13u);
   for (const SlidingNode& node : model.sliding)
   {
@@ -61,7 +61,7 @@ TEST(RestrictedNodes, RigidFloorSlidingRoof)
 
 TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)
 {
-  // the bone's surface cuts voxels: their outer nodes lie in the bone
+  // the bone's surface cuts voxels: the voxels' outer nodes are in the bone
   Scene scene = block_scene();
   scene.surfaces.push_back(box_surface("bone", { 10e-3, 6e-3, 0 }, { 60e-3, 60e-3, 5e-3 }));
   scene.volumes[0].outside = { "bone" };
@@ -71,7 +71,7 @@ TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)
   std::set<double> heights;
   for (const RigidNode& node : model.rigid)
     heights.insert(std::round(1e6 * transformed(model.to_scene, node_position(model, node.node))[2]));
-  // bone up to 2.5 mm: the voxel from 2 to 3 mm is half tissue, its lower nodes are caught, its upper ones are free
+  // the bone ends at 2.5 mm, in the middle of voxels, whose lower nodes are rigid and whose upper ones are free
   EXPECT_EQ(heights.size(), 1u);
   EXPECT_EQ(model.rigid.size(), 21u * 13u);
 }
@@ -94,7 +94,7 @@ TEST(RestrictedNodes, RigidWinsOverPrescribedOverSliding)
   EXPECT_EQ(model.rigid.size(), 6u * 13u);
   EXPECT_EQ(model.prescribed.size(), 4u * 13u);
   EXPECT_EQ(model.sliding.size(), 11u * 13u);
-  // along local axes
+  // in local axes
   ASSERT_EQ(model.loads.size(), 1u);
   for (std::size_t a = 0; a < 3; ++a)
   {
@@ -115,7 +115,7 @@ TEST(RestrictedNodes, AConstraintThatCatchesNothingIsNamed)
 TEST(Islands, UnheldAndCornerHungPartsAreRemoved)
 {
   Scene scene = plain_scene(1e-3);
-  // a block; one that touches it by an edge alone; one apart, held; one apart, loose
+  // a block, a second one that touches its edge only, a separate one with held nodes, and a separate one without
   scene.surfaces = { box_surface("block", { 10e-3, 10e-3, 10e-3 }, { 20e-3, 20e-3, 20e-3 }),
                      box_surface("edge", { 21e-3, 10e-3, 21e-3 }, { 2e-3, 4e-3, 2e-3 }),
                      box_surface("held", { 40e-3, 10e-3, 5e-3 }, { 10e-3, 10e-3, 10e-3 }),

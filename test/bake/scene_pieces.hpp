@@ -90,7 +90,7 @@ inline SceneMaterial material(const std::string& name, double young = 1e5)
   return material;
 }
 
-/// A scene with materials fat, dermis and muscle, voxels of the given edge, and no voxel dropped for want of tissue.
+/// A scene with materials fat, dermis and muscle and voxels of the given edge; none is dropped for being nearly empty.
 inline Scene plain_scene(double voxel)
 {
   Scene scene;
@@ -103,7 +103,7 @@ inline Scene plain_scene(double voxel)
 
 inline double voxel_volume(const Model& model) { return model.spacing[0] * model.spacing[1] * model.spacing[2]; }
 
-/// Tissue in the model, or the part of one material [m3].
+/// Volume of the model's tissue, or of one material in it [m3].
 inline double tissue_volume(const Model& model, const std::string& material = "")
 {
   double sum = 0;

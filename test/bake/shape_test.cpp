@@ -134,7 +134,7 @@ TEST_F(MeshFile, BadFilesAreNamedWithTheReason)
   const std::string lines = fault(write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
   EXPECT_NE(lines.find("lines.obj"), std::string::npos);
   EXPECT_NE(lines.find("triangles"), std::string::npos);
-  // a binary STL whose first vertex is not a number
+  // a binary STL file whose first vertex is NaN
   std::string nan(84, '\0');
   nan[80] = 1;
   std::string triangle(50, '\0');
@@ -194,7 +194,7 @@ TEST(Forehead, ClosedPartsAreClosedAndOutward)
     EXPECT_EQ(make_orientation_consistent(mesh), 0u) << part;
     EXPECT_GT(signed_volume(mesh), 0) << part;
   }
-  // some 110 cm2 of 4 to 8 mm
+  // about 110 cm2 of tissue, 4 to 8 mm thick
   const double tissue = signed_volume(forehead("tissue"));
   EXPECT_GT(tissue, 45e-6);
   EXPECT_LT(tissue, 80e-6);
@@ -219,7 +219,7 @@ TEST(Forehead, HasTheStatedDimensions)
     area_x += (b - a).cross(c - a)[0];
   }
   EXPECT_GT(area_x, 0.01);
-  // soft tissue: 4 to 8 mm, thick at the brow, thin at the hairline
+  // thickness of the soft tissue: 8 mm at the brow to 4 mm at the hairline
   const PreparedSurface skull("skull", forehead("skull"));
   double thinnest = 1, thickest = 0;
   for (const Vector3& v : skin.vertices)

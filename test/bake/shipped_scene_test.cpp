@@ -48,7 +48,7 @@ void expect_whole_muscles(const Model& model, const BakeReport& report)
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
   {
     const double inside = volume_in_report(report, model.muscles[m].name, ": ");
-    // the smallest muscles lose a little with voxels that bone leaves too little tissue in
+    // small muscles lose a little where bone leaves voxels nearly empty, because these are dropped
     EXPECT_NEAR(muscle_volume(model, static_cast<int>(m)) / inside, 1, 0.08) << model.muscles[m].name;
     EXPECT_GT(inside / volume_in_report(report, model.muscles[m].name, "tissue, "), 0.7) << model.muscles[m].name;
   }
@@ -65,8 +65,8 @@ void expect_measured_muscles(const BakeReport& report)
 }
 
 /// A head of spheres in mesh files, in the frame and the length unit of a real one: x to the subject's left, y
-/// backwards, z up [mm]. The skin is open at the neck; the bone is a shell 10 to 12 mm below it, so that behind it
-/// there is room for tissue at an allowed depth; six muscles lie between them.
+/// backwards, z up [mm]. The skin is open at the neck. The bone is a shell 10 to 12 mm below it, and the space behind
+/// it is within the depth at which the scene allows tissue. Six muscles lie between skin and bone.
 class MadeHead : public testing::Test
 {
 protected:
@@ -193,7 +193,7 @@ TEST_F(MadeHead, BakesFromMeshFiles)
   const Model model = bake_head(report, 2e-3);
   expect_one_piece(report);
   EXPECT_NEAR(tissue_volume(model) / soft_tissue(), 1, 0.03);
-  // nothing behind the bone: no voxel deeper than its outer table by more than half its own diagonal
+  // no tissue behind the bone: no voxel is deeper than the outer table by more than half its own diagonal
   for (const auto& voxel : model.voxels)
   {
     const Vector3d p = to_vector(
@@ -232,11 +232,11 @@ TEST(ForeheadScene, BakesWithAllItsParts)
   ASSERT_EQ(model.demo.size(), 4u);
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
   {
-    // what the kept voxels carry is what lies in the tissue, but for voxels dropped at its edges
+    // the model has the volume of the mesh in the tissue, except for voxels dropped at the tissue's edges
     const double meshed = volume_in_report(report, model.muscles[m].name, ": ");
     EXPECT_NEAR(muscle_volume(model, static_cast<int>(m)) / meshed, 1, 0.03) << model.muscles[m].name;
   }
-  // the brow is a free edge, the hairline is held
+  // nodes at the brow are free, nodes at the hairline are held
   double lowest = 1;
   for (const RigidNode& node : model.rigid)
   {
@@ -283,7 +283,7 @@ TEST(RealHead, BakesFromSegmentedMeshes)
   BakeReport report;
   const Model model = bake(scene, &report);
 
-  // one piece, with nothing behind the bone: in the forehead the soft tissue is less than 10 mm deep
+  // the model is connected and has nothing behind the bone: tissue of the forehead is less than 10 mm deep
   expect_one_piece(report);
   EXPECT_GT(tissue_volume(model), 80e-6);
   EXPECT_LT(tissue_volume(model), 160e-6);

@@ -16,7 +16,7 @@ TEST(Voxelise, SphereHasItsVolume)
   scene.volumes = { volume_inside("tissue", { "ball" }, "fat", true) };
   const Model model = bake(scene);
   EXPECT_NEAR(tissue_volume(model) / (4.0 / 3 * pi * 1e-6), 1, 0.01);
-  // at the default, dropping nearly empty voxels costs little
+  // with the default fill_min, dropping nearly empty voxels costs little volume
   scene.accuracy.fill_min = 0.2;
   EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * 1e-6), 1, 0.01);
 }
@@ -66,7 +66,7 @@ TEST(Voxelise, ShellLayersHaveTheirVolumes)
   EXPECT_NEAR(tissue_volume(model, "dermis") / (ball(outer - 0.02e-3) - ball(outer - 1.82e-3)), 1, 0.01);
   EXPECT_NEAR(tissue_volume(model, "fat") / (ball(outer - 1.82e-3) - ball(inner)), 1, 0.01);
 
-  // only voxels at the surface carry the thin layer
+  // only voxels at the surface have a part of the thin layer
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     Vector3 centre;
@@ -106,7 +106,7 @@ TEST(Voxelise, VolumeClosedByOpenSurfacesTogetherInAnyOrientation)
   scene.surfaces = { forehead_surface("tissue"), forehead_surface("skin"), forehead_surface("rim") };
   scene.volumes = { volume_inside("whole", { "tissue" }, "fat", true) };
   const double whole = tissue_volume(bake(scene));
-  // the same body from its skin, its rim and the bone: the deep face of `tissue` is the bone without its margin
+  // the same body from skin, rim and bone: without a margin, the bone's surface is the deep face of `tissue`
   scene.surfaces.push_back(forehead_surface("skull"));
   scene.surfaces.back().shape->dimensions = { { "margin", 1e-9 } };
   scene.volumes[0].inside.clear();
@@ -151,7 +151,7 @@ TEST(Voxelise, MuscleWeightIsItsShareOfTheTissue)
                     { "b", "b", { 0, 1, 0 }, 0.3e6, false, true, 2 } };
   BakeReport report;
   const Model model = bake(scene, &report);
-  // clipped to the tissue; where the two bars cross, both have the whole voxel
+  // muscles are clipped to the tissue; where the two bars cross, each has the whole voxel
   EXPECT_NEAR(muscle_volume(model, 0) / (20e-3 * 4.6e-3 * 4.6e-3), 1, 0.01);
   EXPECT_NEAR(muscle_volume(model, 1) / (4.6e-3 * 12e-3 * 4.6e-3), 1, 0.01);
   bool clipped = false;

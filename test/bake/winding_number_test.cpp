@@ -16,7 +16,7 @@ TriangleMesh sphere_with_holes()
 {
   TriangleMesh mesh = make_shape(*sphere_surface("ball", { 0, 0, 0 }, 1, 0.04).shape);
   join_vertices(mesh);
-  // holes around three axes, one large
+  // holes around three axes, one of them large
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {
@@ -71,7 +71,7 @@ TEST(WindingNumber, AgreesWithTheExactSumOnASphereWithHoles)
     worst = std::max(worst, std::abs(tree.winding_number(p) - exact_winding(mesh, p)));
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 5e-3);
-  EXPECT_GT(worst, 0);  // the series is used at all
+  EXPECT_GT(worst, 0);  // 0 would mean that the series expansion was never used
 }
 
 TEST(WindingNumber, VariationBoundHoldsAwayFromTheSurface)
@@ -125,7 +125,7 @@ TEST(SurfaceDistance, IsExactWithTheRightSign)
   ASSERT_TRUE(surface.closed());
   for (const Vector3d& p : points(2000, 2))
   {
-    // distance to a cube of half edge 1
+    // the exact distance from a cube of half edge 1
     const Vector3d q{ std::abs(p[0]) - 1, std::abs(p[1]) - 1, std::abs(p[2]) - 1 };
     const Vector3d out{ std::max(q[0], 0.0), std::max(q[1], 0.0), std::max(q[2], 0.0) };
     const double expected = out.norm() + std::min(0.0, std::max({ q[0], q[1], q[2] }));

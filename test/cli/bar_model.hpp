@@ -47,7 +47,7 @@ inline Model bar_model()
     if (model.nodes[n][0] == 0)
       model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
 
-  // skin: the free end, which the last voxel of each row carries
+  // the skin is the free end, bound to the last voxel of each row
   for (const std::int32_t row : { 0, 1, 2, 3 })
   {
     const int j = row % 2;

@@ -1,4 +1,4 @@
-// Scene reader, bake and doc/scene.md agree about the generated forehead.
+// The scene reader, the bake and doc/scene.md agree on the generated forehead.
 
 #include "cli/program.hpp"
 
@@ -36,7 +36,7 @@ TEST(ForeheadShape, every_part_of_the_bake_may_stand_in_a_scene)
 
 TEST(ForeheadShape, a_part_of_the_scene_that_the_bake_lacks_would_be_found)
 {
-  // the message of the scene lists exactly the shapes that the bake makes
+  // the reader's message lists exactly the parts that the bake can generate
   const TemporaryFolder folder;
   std::ofstream(folder / "scene.yaml") << scene_with("  skin: {shape: forehead, part: chin_and_jaw}\n");
   std::string allowed;

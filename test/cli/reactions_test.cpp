@@ -1,4 +1,4 @@
-// `frontalis run` tells the force and moment on a body that tissue touches.
+// `frontalis run` reports the force and moment on a body that tissue touches.
 
 #include "cli/bar_model.hpp"
 #include "cli/program.hpp"
@@ -36,12 +36,12 @@ TEST(Reactions, are_printed_and_written_in_the_face_frame)
   expect_contains(result.output, "energy             contact        +");
   const nlohmann::json json = json_from(text_of(folder / "frames" + "/run.json"));
   const auto force = json["reactions"]["touch"]["force_N"], moment = json["reactions"]["touch"]["moment_Nm"];
-  // less than E A strain = 15 mN for 0.5 of 16 mm, because only the corners of the end touch
+  // below E A strain = 15 mN, the force for a strain of 0.5 / 16, because only the corners of the end touch
   const double up = force[2];
   EXPECT_GT(up, 0.007);
   EXPECT_LT(up, 0.015);
   EXPECT_NEAR(force[0], 0, 0.01 * up);
-  // in the middle of the end, (502, 252) mm from the origin of the face frame
+  // the force acts in the middle of the end, (502, 252) mm from the origin of the face frame
   EXPECT_NEAR(moment[0], 0.252 * up, 0.01 * up);
   EXPECT_NEAR(moment[1], -0.502 * up, 0.01 * up);
   EXPECT_NEAR(moment[2], 0, 0.01 * up);

@@ -155,7 +155,7 @@ TEST_F(RunModes, equilibrium_that_is_not_reached_is_an_error)
   EXPECT_NE(result.errors.find("no equilibrium after"), std::string::npos) << result.errors;
 }
 
-// the numbers of the system that this package rebuilds, on coarse voxels
+// the published numbers of Warburton & Maddock (config/published.yaml), on coarse voxels
 TEST(PublishedForehead, contracts_to_three_quarters_activation_and_its_energies_balance)
 {
   const TemporaryFolder folder;

@@ -59,7 +59,7 @@ Ply read_ply(const std::string& path)
   return ply;
 }
 
-// motion of a landmark as run.json has it: forward, left, up [mm]
+// motion of a landmark in run.json: forward, left, up [mm]
 std::array<double, 3> motion_in(const std::string& json, const std::string& landmark)
 {
   const nlohmann::json motion = json_from(json).at("landmarks").at(landmark);
@@ -97,7 +97,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
          "hourglass share", "worst J", "real-time factor", "element updates", "landmark           tip: -" })
     expect_contains(result.output, word);
 
-  // 0.3 s at the model's 50 frames a second, and the rest
+  // one frame at the start, then 50 per second for 0.3 s
   const std::vector<std::string> names = names_in(frames);
   ASSERT_EQ(names.size(), 18U);
   EXPECT_EQ(names[0], "landmarks.csv");
@@ -105,7 +105,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
   EXPECT_EQ(names[2], "skin_0000.ply");
   EXPECT_EQ(names[17], "skin_0015.ply");
 
-  // rest: the free end 16 mm up from the local origin, in the face frame
+  // at rest the free end is 16 mm above the local origin; in the face frame
   const Ply first = read_ply(frames + "/skin_0000.ply");
   ASSERT_EQ(first.vertices.size(), 4U);
   EXPECT_EQ(first.triangles, (std::vector<std::array<std::int32_t, 3>>{ { 0, 1, 2 }, { 1, 3, 2 } }));
@@ -114,8 +114,8 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
   EXPECT_NEAR(first.vertices[1][2], -0.125 + 0.016, 1e-6);
   EXPECT_NEAR(first.vertices[1][5], 1, 1e-6);
 
-  // an incompressible bar under half its shear modulus shortens to 0.874 of its 16 mm; the held end and the
-  // compressibility of this one change that a little
+  // an incompressible bar under a stress of half its shear modulus shortens to 0.874 of its 16 mm; this bar is
+  // compressible and held at one end, which changes that a little
   const std::array<double, 3> motion = motion_in(text_of(frames + "/run.json"), "tip");
   EXPECT_NEAR(motion[2], -2.0, 0.3);
   EXPECT_NEAR(motion[0], 0, 0.01);
@@ -126,7 +126,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
     up += (vertex[2] - first.vertices[1][2]) * 1e3 / 4;
   EXPECT_NEAR(up, motion[2], 0.3);
 
-  // the table's last row says the same
+  // the last row of the table agrees
   std::istringstream table(text_of(frames + "/landmarks.csv"));
   std::string row;
   std::string last_row;

@@ -1,4 +1,4 @@
-// exit codes and messages of the program: wrong usage, bad scenes, places that cannot be written
+// exit codes and messages of the program for wrong usage, bad scenes and paths that cannot be written
 
 #include "cli/program.hpp"
 

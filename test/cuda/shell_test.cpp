@@ -70,7 +70,7 @@ TEST_F(Shell, MovesAsTheReferenceDoes)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
 }
 
-// Without sliding, because backends change contact planes at different times, which moves the skin by micrometres.
+// Without sliding, because backends replace tangent planes at different times, which moves the skin by micrometres.
 TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;
@@ -125,7 +125,7 @@ TEST_F(Shell, StartsAgainAfterReset)
   EXPECT_EQ(first.vertices, second.vertices);
 }
 
-// Few enough voxels and steps for a tool that checks each access to shared memory.
+// The model is small, so that the test can run under compute-sanitizer's racecheck.
 TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
 {
   ShellSettings settings;

@@ -1,4 +1,4 @@
-// The GPU's code for sliding nodes, run by the host: where a toolkit is, no GPU is needed.
+// The GPU's code for sliding nodes, run by the host: it needs a CUDA toolkit but no GPU.
 #include <gtest/gtest.h>
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
@@ -14,7 +14,7 @@
 #include <cmath>
 #include <vector>
 
-// what only nvcc knows
+// replacements for what only nvcc defines
 #define __noinline__
 static inline std::uint32_t __float_as_uint(float x)
 {
@@ -111,7 +111,7 @@ public:
     return 0.5 * (std::pow(double(state.v[0]), 2) + std::pow(double(state.v[1]), 2) + std::pow(double(state.v[2]), 2));
   }
   double moved() const { return std::hypot(double(state.u[0]), double(state.u[1]), double(state.u[2])); }
-  // from the sphere on which it started [m], after `number` steps
+  // distance after `number` steps from the sphere on which the node started [m]
   double off_level(int number) const
   {
     const physics::Vec3<double> p =
@@ -134,7 +134,7 @@ private:
   StepArguments g_{};
 };
 
-// on samples and on the closed form, on a still surface and on one in the frame of a bone
+// calls body(field, glides) for a sampled field and a closed form, on a still surface and on one in the frame of a bone
 template <class Body>
 void each_kind(const Body& body)
 {
@@ -208,7 +208,7 @@ TEST(SlidingNodesOfTheGpu, RubAgainstABoneThatTurns)
   EXPECT_LT(std::abs(node.off_level(steps)), 0.1e-6);
 }
 
-// Past the samples a node goes on along its latest plane.
+// A node beyond the samples continues on its latest plane.
 TEST(SlidingNodesOfTheGpu, KeepTheirPlanePastTheRim)
 {
   const SampledField field = sampled();

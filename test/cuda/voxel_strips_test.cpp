@@ -16,7 +16,7 @@ namespace
 
 constexpr int lanes = 32;
 
-// A curved thin shell with a hole: it has short and long rows in x, and pieces that share warps.
+// A curved thin shell with a hole, which has short and long rows in x, and pieces that share a warp.
 Model shell()
 {
   test::BlockSettings s;
@@ -170,7 +170,7 @@ TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
   EXPECT_GT(without, 0u);
 }
 
-// The most expensive strips must not start last.
+// The most expensive strips must start first.
 TEST(VoxelStrips, BeginWithThoseThatHaveFibres)
 {
   test::BlockSettings s;

@@ -5,7 +5,7 @@
 namespace frontalis
 {
 
-/// A model of nx by ny by nz voxels with one entry of everything that a model can hold.
+/// A model of nx by ny by nz voxels with at least one entry of every kind that a model can have.
 inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
 {
   Model model;

@@ -144,7 +144,7 @@ TEST_F(ModelFile, GivesBackEveryField)
 TEST_F(ModelFile, EqualModelsGiveEqualBytes)
 {
   write_model(full_block(3, 4, 5), path("a.vtkhdf"));
-  ::sleep(2);  // longer than the resolution of HDF5's object times
+  ::sleep(2);  // longer than the resolution of HDF5's time stamps
   write_model(full_block(3, 4, 5), path("b.vtkhdf"));
   EXPECT_TRUE(bytes(path("a.vtkhdf")) == bytes(path("b.vtkhdf")));
   Model other = full_block(3, 4, 5);
@@ -180,7 +180,7 @@ TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
 {
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
   std::string content = bytes(path("a.vtkhdf"));
-  // the attribute's message: name padded to 24 bytes, type (16), shape of a scalar (8), value
+  // bytes of the attribute: name padded to 24 bytes, type (16), shape of a scalar (8), value
   const std::size_t name = content.find("model_file_version");
   ASSERT_NE(name, std::string::npos);
   const std::size_t at = name + 24 + 16 + 8;
@@ -232,7 +232,7 @@ TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
   EXPECT_THROW(write_model(bad, path("bad.vtkhdf")), Error);
   EXPECT_THROW(write_model(full_block(2, 2, 2), path("no_folder/a.vtkhdf")), Error);
   EXPECT_TRUE(fs::is_empty(folder_));
-  // a good file stays when its successor cannot be written
+  // an existing file stays intact if writing its successor fails
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
   const std::string before = bytes(path("a.vtkhdf"));
   EXPECT_THROW(write_model(bad, path("a.vtkhdf")), Error);

@@ -39,7 +39,7 @@ protected:
           { bound = tangent_stiffness(solid, kinematics_of(F), along...); });
     return bound;
   }
-  /// Turns the fibres, where there are some.
+  /// Rotates the fibre directions of a law that has fibres.
   void turn_directions(const Matrix& Q)
   {
     for (int d = 0; d < description_of(GetParam()).directions; ++d)

@@ -54,7 +54,7 @@ TEST(VoxelElement, TransposeIsTheTranspose)
 
 TEST(Hourglass, BendingModeHasTheEnergyOfPureBending)
 {
-  // u_x = c xi eta on a cube of edge h: 1/2 E integral (2c/h eta)^2
+  // energy of u_x = c xi eta on a cube of edge h: the integral of 1/2 E (2c/h eta)^2
   const double h = 2e-3, young = 1e5, c = 1e-5;
   double mode[8];
   for (int b = 0; b < 8; ++b)
@@ -75,7 +75,7 @@ TEST(AssumedStrain, ABarBendsWithYoungsModulusAndAPlateIsStifferAlongShortEdges)
   for (int axis = 0; axis < 3; ++axis)
   {
     const AxisBending<double> b = axis_bending(k, weight, axis);
-    // energy of a strain whose Poisson contraction is free
+    // the energy is that of a strain with free lateral contraction
     EXPECT_NEAR(b.own - b.coupled * b.coupled / b.own, young * volume, 1e-12 * young * volume);
     EXPECT_NEAR(b.coupled / b.own, axis == 1 ? nu / 4 : nu, 1e-12);
   }

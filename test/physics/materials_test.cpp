@@ -40,7 +40,7 @@ TEST_P(EveryLaw, AtRestItIsFreeOfStressAndHasItsShearModulus)
   EXPECT_LT(largest(stress_at(identity())), 1e-9 * modulus);
   Matrix F = identity();
   F.a[2][1] = 1e-6;
-  // with fibres, the modulus of the description may be that of another direction
+  // with fibres, the modulus in the description may hold for another direction
   const double found = stress_at(F).a[2][1] / 1e-6;
   if (description_of(GetParam()).directions == 0)
     EXPECT_NEAR(found, modulus, 1e-4 * modulus);
@@ -48,7 +48,7 @@ TEST_P(EveryLaw, AtRestItIsFreeOfStressAndHasItsShearModulus)
     EXPECT_GT(found, 0);
 }
 
-// test/solver/voxel_bound_test.cpp shows that it holds in deformed voxels
+// That the bound also holds in deformed voxels is shown by test/solver/voxel_bound_test.cpp.
 TEST_P(EveryLaw, TheBoundOfItsTangentStiffnessHoldsAtRestAndIsBlindToRotations)
 {
   const double at_rest = tangent_bound_at(identity());
@@ -100,7 +100,7 @@ TEST(Holzapfel, FibresAreSlackInShearAcrossTheirPlane)
 
 TEST(Guccione, ShearModulusAcrossAFibreAtAnAngle)
 {
-  // shear of yz with the fibre along (0.8, 0.6, 0): Efs^2 + Efn^2 = (0.6 / 2)^2 of its square
+  // shear of yz with the fibre along (0.8, 0.6, 0): Efs^2 + Efn^2 is (0.6 / 2)^2 times the squared shear
   Matrix F = identity(), P{};
   F.a[2][1] = 1e-6;
   const Vec3<double> fibre[1] = { { 0.8, 0.6, 0 } };

@@ -53,7 +53,7 @@ TEST(NeoHookean, StressIsTheGradientOfTheEnergyAlsoWhereCrushedAndInverted)
   }
 }
 
-// At a strain of 1e-5, rounding errors of numbers near 1 are 1 % of it, and pressure magnifies them 50 times.
+// A float near 1 has a rounding error of 1 % of a strain of 1e-5, and the bulk modulus magnifies it 50 times.
 TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 {
   const double gradient[3][3] = { { 1.1e-5, 0.4e-5, -0.3e-5 },
@@ -76,14 +76,14 @@ TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 
 TEST(NeoHookean, UniaxialTable)
 {
-  // stretch, P11/mu, lateral stretch, J: sides free
+  // columns: stretch, P11/mu, lateral stretch, J; uniaxial, with free sides
   const double table[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
                                { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
                                { 2.0, 1.718609, 0.715038, 1.022560 } };
   for (const auto& row : table)
   {
-    // bisection for the lateral stretch that frees the sides
+    // find by bisection the lateral stretch at which the sides are free of stress
     double low = 0.3, high = 2.5;
     for (int i = 0; i < 100; ++i)
     {

@@ -89,7 +89,7 @@ class Accuracy(unittest.TestCase):
         profile = os.path.join(self.folder.name, "fine.yaml")
         with open(profile, "w", encoding="utf-8") as file:
             file.write('finest: {voxel: 0.6 mm, measured: {error: 0.05 mm, cost: 5, machine: "a bench"}}\n')
-        # the reference backend is too slow for this many voxels on any machine
+        # on any machine, the reference backend is too slow for this number of voxels
         self.start("slow", profile, "reference")
         self.assertIn("skin error 0.05 mm RMS, measured cost 5 s per simulated second on a bench", self.line("slow", "'finest'"))
         speed = self.line("slow", "real-time factor")

@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// A flat skin of 2 mm spacing in the plane x = 0, y from -60 to 60 mm, z from 0 to 40 mm; local frame = face frame.
+/// A flat skin with points every 2 mm: x = 0, y from -60 to 60 mm, z from 0 to 40 mm; local frame = face frame.
 Model flat_face()
 {
   Model model;

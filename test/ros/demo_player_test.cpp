@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// Raise for 1 s with a ramp of 0.4 s, relax for 0.5 s with a ramp that is too long, knit for 1 s at once.
+/// A demo: raise for 1 s with a ramp of 0.4 s, relax for 0.5 s with a longer ramp, knit for 1 s without a ramp.
 Model with_demo()
 {
   Model model = small_model();

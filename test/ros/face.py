@@ -13,7 +13,7 @@ from frontalis.srv import ListMuscles, Step, SwitchEffect
 from geometry_msgs.msg import PoseArray
 from std_srvs.srv import SetBool, Trigger
 
-LIMIT = 180  # [s] of wall time, for each wait
+LIMIT = 180  # [s] of wall time for each wait
 
 
 class Face:

@@ -24,7 +24,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Programs that stand in for `frontalis`, in a folder that also takes the place of the temporary folder.
+/// Shell scripts that stand in for the program `frontalis`, in a folder that is also used as the temporary folder.
 class ModelSource : public testing::Test
 {
 protected:
@@ -195,9 +195,9 @@ TEST_F(ModelSource, ABakeCanBeInterruptedEvenIfItIgnoresRequestsToEnd)
 TEST_F(ModelSource, ABakeEndsWithTheProcessThatStartedIt)
 {
   BakeRequest request;
-  // the loop limits how long a failing test leaves the program behind
+  // the loop ends a program that a failing test leaves behind
   request.program = program("trap '' HUP INT TERM; echo started; for i in $(seq 600); do sleep 1; done");
-  // the program inherits the writing end, so that the reading end tells when nobody holds it any more
+  // the program inherits the writing end: the reading end reaches its end of file once no process has it open
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
   const pid_t node = fork();

@@ -43,7 +43,7 @@ class Moved(unittest.TestCase):
     def send(self, *messages):
         for message in messages:
             self.poses.publish(message)
-        rospy.sleep(0.2)  # most messages have arrived then
+        rospy.sleep(0.2)  # by then most messages have arrived
 
     def step_until_tip_at(self, place, within):
         """Steps until the tip rests at a place [m]. It takes more than one step if a pose arrives late."""
@@ -80,7 +80,7 @@ class Moved(unittest.TestCase):
         self.assertFalse(self.face.state.failed)
         for now, before in zip(self.tip(), self.rest):
             self.assertAlmostEqual(now, before, 6)
-        # good messages are still taken
+        # after bad messages, good ones are still accepted
         self.send(pose((0, 0, 0.003)))
         self.step_until_tip_at((self.rest[0], self.rest[1], self.rest[2] + 0.003), 5e-5)
 

@@ -151,13 +151,13 @@ class Services(unittest.TestCase):
         joints.publish(JointState(name=["lift"], velocity=[0.9]))
         joints.publish(JointState(name=["lift"], position=[math.inf]))
         expression.publish("astonishment")
-        rospy.sleep(1)  # if the messages take longer, the test still passes and only misses what they do
+        rospy.sleep(1)  # time for the messages to arrive; if they take longer, the test passes without testing them
         self.assertEqual(self.face.target(), {"lift": 0.4})
         self.assertTrue(self.face.step(0.1).success)
         wait(lambda: self.face.state.time > 0.05, "the state")
         self.assertAlmostEqual(self.face.state.activation[0], 0.4, 6)
         self.assertFalse(self.face.state.failed)
-        # good messages are still taken
+        # after bad messages, good ones are still accepted
         self.face.command(lift=0.1)
         wait(lambda: self.face.target() == {"lift": 0.1}, "a good command after bad ones")
 

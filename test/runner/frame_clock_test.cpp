@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-/// A wall time in seconds, from an arbitrary beginning.
+/// A wall time, in seconds from an arbitrary origin.
 FrameClock::TimePoint at(double seconds)
 {
   using Duration = FrameClock::TimePoint::duration;

@@ -40,7 +40,7 @@ TEST(ProfileReport, names_the_most_accurate_profile_that_would_run_in_real_time)
       std::string::npos)
       << speed_report(model, 0.5);
   model.profile = "fine";
-  // sixteen times as fast as that machine
+  // on a machine sixteen times as fast
   EXPECT_NE(speed_report(model, 0.8).find("profile 'standard' would run in real time: about 0.12 s"), std::string::npos)
       << speed_report(model, 0.8);
 }

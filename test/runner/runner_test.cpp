@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 namespace
 {
 
-// a bar along x, fixed at x = 0, one muscle along it, its far end as skin
+// a bar along x, fixed at x = 0, with one muscle along it; the skin is its free end
 std::shared_ptr<const Model> bar()
 {
   test::BlockSettings s;
@@ -68,7 +68,7 @@ bool comes_true(const Condition& condition)
   return true;
 }
 
-/// A step of a million seconds in a thread of its own, under way once the constructor has returned.
+/// A call of step() with a million seconds, in a thread of its own; it is under way once the constructor has returned.
 class LongStep
 {
 public:
@@ -80,7 +80,7 @@ public:
                 error_ = error_of(runner, 1e6);
             })
   {
-    // until it is under way, steps of a negligible length are served
+    // until the long step is under way, very short steps succeed
     EXPECT_TRUE(comes_true([&] { return error_of(runner, 1e-9) == busy; }));
   }
   /// Waits for the end of the step and returns its error.
@@ -325,7 +325,7 @@ TEST(Runner, EffectsGoOffAndOnAgainWhileItStandsStillAndWhileItRuns)
   running.switch_effect(Effect::contraction, false);
   running.set_activation({ { "puller", 0.5 } });
   EXPECT_EQ(names_of(running.effects()), "elasticity, rigid_nodes, output_fields");
-  // with the effect the bar would be short after this time, as it was while standing still
+  // if contraction were on, the bar would be short after this time
   EXPECT_TRUE(comes_true([&, begin = time.load()] { return time > begin + 0.05; }));
   EXPECT_NEAR(at, 6e-3, 1e-6);
   running.switch_effect(Effect::contraction, true);
@@ -369,11 +369,11 @@ TEST(Runner, TimeScalingPlaysTheSameClock)
   auto model = std::make_shared<Model>(*bar());
   model->time_scaling = 4;
   Runner runner(model, settings(Pace::lock_step), {});
-  // a small activation, since time steps are shorter while voxels stiffen fast
+  // a small activation, because voxels that stiffen fast need shorter time steps
   runner.set_activation({ { "puller", 0.2 } });
   const Frame scaled = runner.step(0.04);
   EXPECT_NEAR(scaled.time, 0.04, 1e-12);
-  // a quarter of the steps
+  // without time scaling the same time takes four times as many steps
   Runner plain(bar(), settings(Pace::lock_step), {});
   plain.set_activation({ { "puller", 0.2 } });
   EXPECT_NEAR(static_cast<double>(scaled.steps), static_cast<double>(plain.step(0.04).steps) / 4, 0.1 * scaled.steps);

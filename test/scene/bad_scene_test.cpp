@@ -1,4 +1,4 @@
-// Each scene of test/scene/bad has one fault, described in its first line. Reading must find that fault and no other.
+// Each scene of test/scene/bad has one fault. The message in its first line must be reported, and no other.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/read_scene.hpp"

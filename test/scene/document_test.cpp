@@ -1,4 +1,4 @@
-// The example of the document is a good scene.
+// The example of doc/scene.md is a valid scene.
 
 #include "frontalis/scene/read_scene.hpp"
 #include "files.hpp"

@@ -46,7 +46,7 @@ class Accuracy : public test::EveryBackend
 {
 };
 
-// A weight w per length bends the tip by w L^4 / (8 E I), that is 3 rho g L^4 / (2 E h^2), and shears it a little.
+// A weight w per length deflects the tip by w L^4 / (8 E I), which is 3 rho g L^4 / (2 E h^2), plus a little by shear.
 TEST_P(Accuracy, selective_reduced_integration_bends_and_does_not_lock)
 {
   for (const double poisson : { 0.3, 0.49 })
@@ -114,7 +114,7 @@ TEST_P(Accuracy, a_stiff_layer_among_soft_ones_steps_longer_by_the_assembled_bou
   EXPECT_LT(assembled->monitor().kinetic, 2 * early) << "and is stable";
 }
 
-// A stiff voxel among soft ones gets mass until the requested time step is allowed; its weight stays the same.
+// Mass is added to a stiff voxel among soft ones until the requested time step is allowed; the weight does not change.
 TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
 {
   Model model = cantilever(2, 0.45);
@@ -192,7 +192,7 @@ TEST_P(Accuracy, activation_changes_no_faster_than_its_slew_limit)
 
 FRONTALIS_EVERY_BACKEND(Accuracy);
 
-// Creep of 0.2 um/s in steps of 2 us: single precision loses it, compensated and double precision keep it.
+// Creep of 0.2 um/s in steps of 2 us is lost in single precision, but not in compensated and double precision.
 TEST(Precision, slow_motion_far_from_rest_is_kept_by_compensation)
 {
   test::BlockSettings settings;

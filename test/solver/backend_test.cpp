@@ -35,7 +35,7 @@ TEST(Backend, AnUnknownNameIsRefusedWithThoseThatThereAre)
   }
 }
 
-// On a machine with a GPU, the fallback is caused by a model that the GPU does not accept.
+// On a machine with a GPU, the fallback to the CPU is caused by a model that the GPU does not accept.
 TEST(Fallback, FromTheGpuIsToldOnce)
 {
   Model model = test::block_model({});

@@ -17,13 +17,6 @@ using Vectors = std::vector<std::array<double, 3>>;
 
 constexpr double degree = 3.14159265358979 / 180;
 
-inline std::vector<Backend> host_backends()
-{
-  auto backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
 class BodiesTouch : public EveryBackend
 {
 protected:
@@ -48,7 +41,10 @@ inline double mean(const Vectors& vectors, std::size_t axis)
   return sum / static_cast<double>(vectors.size());
 }
 
-inline double mechanical(const EnergyLedger& l) { return l.kinetic + l.internal + l.hourglass + l.contact_stored; }
+inline double mechanical(const EnergyLedger& l)
+{
+  return l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"];
+}
 
 // A block with a fingertip above it, which is a bone; its lower side is held.
 inline Model block_and_finger(double friction, bool sampled = false)
@@ -84,7 +80,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   return model;
 }
 
-// Presses the finger in by 0.8 mm and draws it along x by 2 mm while it turns.
+// Presses the finger in by 0.8 mm and moves it along x by 2 mm while it turns.
 inline void press_and_stroke(Solver& solver, double seconds)
 {
   Controls controls = solver.controls();
@@ -96,7 +92,3 @@ inline void press_and_stroke(Solver& solver, double seconds)
 
 }  // namespace test
 }  // namespace frontalis
-
-#define FRONTALIS_HOST_BACKENDS(suite)                                                           \
-  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::ValuesIn(frontalis::test::host_backends()), \
-                           frontalis::test::backend_name)

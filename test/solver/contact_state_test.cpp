@@ -1,4 +1,4 @@
-// Tissue that touches rigid bodies: memory, snapshots, switches, the time step.
+// Tissue that touches rigid bodies: memory, snapshots, switching, and the time step.
 
 #include "bodies_touch.hpp"
 
@@ -93,7 +93,7 @@ TEST_P(BodiesTouch, contact_is_switched_while_running)
   EXPECT_EQ(displacements(*solver), displacements(*fresh));
 }
 
-// The bound of the highest frequency holds with all points in contact, and contact costs few steps.
+// The frequency bound, which assumes contact at all points, is not exceeded, and it shortens steps by little.
 TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
 {
   Model model = block_and_finger(0), without = model;
@@ -101,7 +101,7 @@ TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
   const double with = make(model)->time_step(), plain = make(without)->time_step();
   EXPECT_LT(with, plain);
   EXPECT_GT(with, 0.97 * plain);
-  // undamped at the full step, pressed
+  // without damping, at the full time step, in contact
   model.damping = 0;
   model.time_step_share = 1;
   for (const auto estimate : { TimeStepEstimate::element, TimeStepEstimate::assembled })
@@ -116,7 +116,7 @@ TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
   }
 }
 
-FRONTALIS_HOST_BACKENDS(BodiesTouch);
+FRONTALIS_EVERY_BACKEND(BodiesTouch);
 
 }  // namespace
 }  // namespace frontalis

@@ -55,7 +55,7 @@ struct Oscillators
   }
 };
 
-// Runs the motion to rest; returns the number of looks it took, or 0 if it does not get there.
+// Runs the motion to rest; returns the number of calls of look() that it took, or 0 if it does not come to rest.
 int settle(Oscillators& motion, double tolerance, DynamicRelaxation& relaxation, int steps_per_look)
 {
   for (int looks = 1; looks < 5000; ++looks)
@@ -140,7 +140,7 @@ TEST(DynamicRelaxation, does_not_damp_above_what_is_allowed)
   EXPECT_EQ(relaxation.damping(), 3);
 }
 
-// Windows end when the change is clear of rounding errors, at the latest after a set number of looks, and at the end.
+// A window ends when the change exceeds rounding errors, after a set number of calls of look(), or with the motion.
 TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
 {
   for (const bool last : { false, true })
@@ -151,7 +151,7 @@ TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
     int asked = 0;
     for (int look = 1; look <= 64; ++look)
     {
-      motion.time += 1e-3;  // the motion stands still
+      motion.time += 1e-3;  // time passes, but the masses do not move
       NodalVectors u = motion.displacements();
       const auto forces = [&](NodalVectors& out)
       {

@@ -40,10 +40,10 @@ inline std::vector<unsigned> every_combination()
   return combinations;
 }
 
-/// Distance from the plane z = 0 [m].
+/// Height above the plane z = 0 [m].
 inline double height(const std::array<double, 3>& p) { return p[2]; }
 
-/// Strips of several lengths, so that tiles are full, half full and empty. Each effect has its own part of the scene.
+/// A model with these effects, each in its own part. Rows of several lengths give full, half full and empty tiles.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {
@@ -130,7 +130,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-/// Largest difference of a component over the largest component of b, which counts as at least 1 um.
+/// Largest difference of a component, relative to the largest component of b or 1 um.
 inline double difference(const Vectors& a, const Vectors& b)
 {
   double worst = 0, largest = 1e-6;

@@ -68,7 +68,7 @@ TEST(Effects, every_combination_moves_like_the_reference)
   }
 }
 
-// Energies balance for every combination of effects. Without a drive there are only rounding errors.
+// Energies balance for every combination of effects; in models that nothing drives, all terms are rounding errors.
 TEST(Effects, every_combination_balances_its_energies)
 {
   for (const Backend& backend : available_backends())

@@ -71,7 +71,7 @@ TEST_P(Forces, RigidMotionGivesNone)
   solver_->set_displacements(u);
   Vectors f;
   solver_->internal_forces(f);
-  // relative to the force of 1 % stretch
+  // errors are relative to the forces at 1 % stretch
   solver_->set_displacements(affine(model, { { { { 1.01, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } } }));
   Vectors scale;
   solver_->internal_forces(scale);
@@ -109,7 +109,7 @@ TEST_P(EnergyGradient, IsTheForce)
   s.keep = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
   Model model = test::block_model(s);
   model.hourglass = std::get<1>(GetParam());
-  // Energies are those of the reference, in double precision; forces are those of the backend under test.
+  // energies from the reference in double precision, forces from the backend under test
   const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = make_solver(std::make_shared<const Model>(model), { std::get<0>(GetParam()), 0, 0 });
   const Vectors u = random_displacements(model, 2e-4);
@@ -151,7 +151,7 @@ TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)
   for (auto* s : { reference.get(), solver_.get() })
   {
     Controls controls{ { 0.7f }, {} };
-    s->advance(1e-9, controls);  // applies the activation
+    s->advance(1e-9, controls);  // a tiny step applies the activation
     s->set_displacements(u);
   }
   reference->internal_forces(expected);

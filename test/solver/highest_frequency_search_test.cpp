@@ -27,7 +27,7 @@ struct Chain
   Discretisation discretisation;
   NodalVectors u, mode;
   int products = 0;
-  double curvature = 0;  // of the springs' force law [1/m]
+  double curvature = 0;  // of the springs' force law: relative change of stiffness per displacement [1/m]
   double mass = 1e-6;
 
   Chain() : model(bar()), discretisation(model), u(model.nodes.size())
@@ -38,7 +38,7 @@ struct Chain
   }
   double search(int most_iterations)
   {
-    products = -1;  // the evaluation of the forces at u does not count
+    products = -1;  // does not count the evaluation of the forces at u
     return highest_frequency_squared(
         model, discretisation, u,
         [this](const NodalVectors& at, NodalVectors& out)
@@ -69,7 +69,7 @@ struct Chain
 TEST(HighestFrequencySearch, finds_that_of_a_chain)
 {
   Chain chain;
-  // little is left of the other modes after 2000 products
+  // 2000 products suppress the other modes
   EXPECT_NEAR(chain.search(2000) / chain.exact(), 1, 5e-3);
   EXPECT_LE(chain.search(2000) / chain.exact(), 1 + 1e-9) << "it comes from below";
   for (const auto n : chain.discretisation.held)
@@ -90,7 +90,7 @@ TEST(HighestFrequencySearch, goes_on_from_the_latest_mode)
 TEST(HighestFrequencySearch, takes_the_curvature_of_laws_out_of_two_products)
 {
   Chain straight, curved;
-  // the stiffness changes by some tenths along the displacement of a product
+  // the stiffness changes noticeably along the displacement of a product
   curved.curvature = 0.1 / mode_amplitude(curved.model);
   EXPECT_NEAR(curved.search(300) / straight.search(300), 1, 0.03);
 }
@@ -122,7 +122,7 @@ TEST(LargestEigenvalue, ends_where_it_has_settled)
   const auto growing = [&](double) { return std::pow(1.001, ++products); };
   largest_eigenvalue(40, 1, growing);
   EXPECT_EQ(products, 40);
-  // two alternating values: each is compared with the latest of its own sign
+  // values alternate with the sign of the step: each is compared with the latest one of its own sign
   products = 0;
   EXPECT_EQ(largest_eigenvalue(100, 1, [&](double step) { return ++products, step > 0 ? 5.0 : 3.0; }), 5);
   EXPECT_EQ(products, 9);

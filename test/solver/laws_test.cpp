@@ -23,7 +23,7 @@ Material material_of(Law law)
   return m;
 }
 
-// Rows of voxels with one law, the other, or both.
+// Rows of voxels with the law, with neo-Hookean tissue, or with both.
 Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
 {
   test::BlockSettings s;
@@ -150,7 +150,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
         largest = std::max(largest, std::abs(expected));
         error = std::max(error, std::abs(f_turned[n][i] - expected));
       }
-    // single precision rounds displacements of millimetres, an error of 1e-7 in strain times the bulk modulus
+    // rounding displacements of millimetres to floats changes strain by 1e-7, which the bulk modulus multiplies
     EXPECT_LT(error / largest, std::get<0>(GetParam()) == "reference" ? 1e-9 : 1e-4);
   }
 }
@@ -184,7 +184,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
   const auto solver_ = solver(model);
-  // moves every node by up to 0.4 voxels: some voxels keep little more than half of their volume
+  // moves every node by up to 0.4 voxels, so that some voxels keep little more than half of their volume
   solver_->set_displacements(random_displacements(model, 4e-4));
   const Monitor before = solver_->monitor();
   for (int i = 0; i < 10; ++i)
@@ -222,7 +222,7 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
           ASSERT_TRUE(std::isfinite(f[n][axis])) << n << " " << axis;
           work += f[n][axis] * u[n][axis];
         }
-      // the voxels do work on the way back to rest
+      // voxels that return to rest do work
       EXPECT_GT(work, 0);
     }
 }

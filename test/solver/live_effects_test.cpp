@@ -16,7 +16,7 @@ namespace
 
 using namespace test;
 
-// The effects are strong enough to show beside each other.
+// Each effect is strong enough to be seen beside the others.
 Model whole_scene()
 {
   Model model = scene_of(everything);
@@ -81,7 +81,7 @@ void switch_live(Solver& solver, Effect effect, bool on)
   solver.switch_effect(effect, on);
 }
 
-// Each effect changes the motion. If one did not, the comparisons below could not fail.
+// Each effect changes the motion; otherwise the comparisons below could not fail.
 TEST_P(LiveEffects, each_is_felt)
 {
   const auto whole = make(whole_scene());
@@ -128,7 +128,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
   for (const Effect effect : live_effects())
   {
     const auto solver = make(whole_scene());
-    solver->monitor();  // allocates its memory on first use
+    solver->monitor();  // the first call allocates memory
     const auto bytes = bytes_of(*solver);
     go(*solver, 4e-4);
     switch_live(*solver, effect, false);
@@ -138,7 +138,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     solver->switch_effect(effect, true);
     if (effect == Effect::viscosity)
     {
-      // nothing has relaxed, so the forces are those of an elastic body of the same shape
+      // no stress has relaxed, so the forces are those of an elastic body of the same shape
       Model elastic = whole_scene();
       switch_off(elastic, EffectSet().with(Effect::viscosity));
       const auto other = make(elastic);
@@ -153,7 +153,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     }
     go(*solver, 4e-4);
     EXPECT_TRUE(solver->monitor().finite) << name_of(effect);
-    // reset keeps the switches, and the motion from rest is that of a solver that was never switched
+    // reset() does not switch effects; the motion from rest equals that of a solver that was never switched
     if (effect == Effect::sliding)
       solver->switch_effect(Effect::friction, true);
     solver->reset();
@@ -230,7 +230,7 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
-// Nothing is stored for an absent effect, whether other effects are present or not.
+// A solver made without an effect has the memory of a model without it, whatever other effects there are.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)
 {
   const std::map<Effect, unsigned> bit{ { Effect::viscosity, viscosity },
@@ -262,7 +262,7 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   switch_off(off, EffectSet().with(Effect::contraction).with(Effect::fibre_stiffness));
   auto without_fibres = bytes_of(*make(off)),
        never = bytes_of(*make(scene_of(everything & ~(contraction | passive_fibres))));
-  // muscles keep their names and accept activations
+  // the controls differ, because muscles keep their names and accept activations
   without_fibres.erase("elasticity: controls");
   never.erase("elasticity: controls");
   EXPECT_EQ(without_fibres, never);

@@ -43,7 +43,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
   return load;
 }
 
-// Fixes one component on the lower face of an axis.
+// Prescribes one component as 0 on the lower face of an axis.
 void roller(Model& model, int axis)
 {
   Load load;

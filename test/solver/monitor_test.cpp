@@ -64,7 +64,7 @@ TEST_P(Monitors, find_voxels_inside_out_and_numbers_that_are_none)
   const Model model = test::block_model(settings);
   const auto solver = this->solver(model, 2);
   Vectors u(model.nodes.size());
-  // one corner of the block is pushed through it: this inverts the voxel there, and no other
+  // pushing one corner of the block through it inverts the voxel there, and no other
   u[0] = { { 3.5e-3, 3.5e-3, 3.5e-3 } };
   solver->set_displacements(u);
   const Monitor crushed = solver->monitor();

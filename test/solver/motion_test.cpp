@@ -27,7 +27,7 @@ void prescribe(Model& model, int axis, bool upper, const std::array<bool, 3>& fi
       model.prescribed.push_back({ static_cast<std::int32_t>(n), index });
 }
 
-// The planes of symmetry x = 0, y = 0, z = 0.
+// Makes x = 0, y = 0 and z = 0 planes of symmetry.
 void symmetry(Model& model)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -116,8 +116,8 @@ TEST_P(Motion, ActiveBarShortensAsTheClosedFormSays)
 
 TEST_P(Motion, CantileverBendsAsBeamTheorySays)
 {
-  // square section, length 10 heights, tip deflection under gravity: q L^4 / (8 E I) with shear correction (Timoshenko:
-  // + q L^2 / (2 k G A), k = 5/6), small deflections
+  // A beam of square section, ten times as long as high. Deflection of its tip under gravity, for small deflections and
+  // with shear (Timoshenko): q L^4 / (8 E I) + q L^2 / (2 k G A), k = 5/6.
   for (const int through : { 1, 2, 4 })
   {
     test::BlockSettings s;
@@ -273,7 +273,7 @@ TEST_P(Motion, SameInputSameBits)
   }
 }
 
-// rigid nodes stop the NaN from spreading
+// the upper planes of nodes are rigid, so that the NaN does not spread over the whole block
 TEST_P(Motion, OneNodeWithoutANumberIsFound)
 {
   test::BlockSettings settings;

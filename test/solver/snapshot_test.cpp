@@ -34,10 +34,10 @@ struct Variant
   std::string name;
   std::function<void(Model&)> change;
   bool ledger = false;
-  int parts = 1;  // number of parts of a run, 80 steps each
+  int parts = 1;  // a run has so many parts of 80 steps
 };
 
-// A floor that a bone moves, with friction.
+// Makes the floor a bone, with friction.
 void move_floor(Model& m)
 {
   m.bones = { "jaw" };
@@ -45,7 +45,7 @@ void move_floor(Model& m)
   m.constraint_surfaces[0].friction = 0.4;
 }
 
-// A load that does not follow the surface, so that on a GPU one launch makes many steps.
+// Makes the load constant, so that on a GPU one launch makes many steps.
 void steady(Model& m)
 {
   for (Load& load : m.loads)
@@ -53,7 +53,7 @@ void steady(Model& m)
       load.kind = Load::Kind::traction;
 }
 
-// All effects at once, a moving floor with friction, all precisions, and the assembled time step.
+// All effects at once; with a moving floor and friction, in all precisions, with the assembled time step.
 std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
@@ -95,7 +95,8 @@ protected:
     if (variant.ledger)
     {
       const EnergyLedger l = solver.ledger();
-      seen.work = l.muscle + 3 * l.constraint + 5 * l.viscous + 7 * l.damping + 11 * l.friction + 13 * l.load;
+      seen.work =
+          l["muscle"] + 3 * l["constraint"] + 5 * l["viscous"] + 7 * l["damping"] + 11 * l["friction"] + 13 * l["load"];
     }
     return seen;
   }
@@ -146,7 +147,7 @@ TEST_P(Snapshots, a_reset_leaves_nothing_behind)
   }
 }
 
-// Otherwise the variant would be the plain one.
+// The assembled estimate lengthens steps within these motions; otherwise its variant would test nothing new.
 TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);
@@ -164,7 +165,7 @@ TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
     const auto other = solver_of(variant);
     other->unpack(bytes);
     EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == here) << variant.name;
-    // a snapshot of another solver is refused, and nothing changes
+    // damaged bytes are refused, and nothing changes
     const Seen before = play(*other, variant, 0.2f, 3e-4);
     other->unpack(bytes);
     play(*other, variant, 0.2f, 3e-4);

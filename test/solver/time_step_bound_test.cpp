@@ -20,8 +20,8 @@ using test::Vectors;
 namespace
 {
 
-// Fat with random single voxels of stiffer and heavier materials, two materials in some; holes; a muscle through some
-// voxels; nodes that are rigid, prescribed, or prescribed along one axis; unequal edges; all forms of the element.
+// A model of fat with random single voxels of stiffer and heavier materials, some with two; with holes; a muscle
+// through some voxels; nodes that are rigid, prescribed, or prescribed along one axis; unequal edges; all elements.
 Model random_mixture(std::mt19937& random)
 {
   std::uniform_real_distribution<double> share(0, 1);
@@ -98,7 +98,7 @@ double critical_step(const Model& model)
   return make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 })->monitor().critical_time_step;
 }
 
-// Includes voxels of another material where `stiff` says so.
+// A model with a stiffer material in the voxels for which `stiff` is true.
 Model with_stiff_voxels(const std::function<bool(const std::array<std::int32_t, 3>&)>& stiff)
 {
   test::BlockSettings settings;
@@ -114,7 +114,7 @@ Model with_stiff_voxels(const std::function<bool(const std::array<std::int32_t, 
 
 }  // namespace
 
-// Nodes that are prescribed along one axis are free along the others.
+// Nodes with a displacement prescribed along one axis are free along the others.
 TEST(AssembledBound, holds_for_mixtures_fibres_and_constraints)
 {
   std::mt19937 random(3);
@@ -183,7 +183,7 @@ class Looks : public test::EveryBackend
 {
 };
 
-// This compares the bound from the stepping kernels with that of the monitor.
+// Bounds found by the stepping kernels equal that of the monitor.
 TEST_P(Looks, find_what_the_monitor_finds)
 {
   std::mt19937 random(11);
@@ -202,7 +202,7 @@ TEST_P(Looks, find_what_the_monitor_finds)
       u[node.node] = { 0, 0, 0 };
     solver->set_displacements(u);
     const std::vector<float> activation(model.muscles.size(), 0);
-    // an old estimate decays in steps in which nothing moves
+    // the step follows a falling bound slowly: make steps in which nothing moves until it has
     for (int step = 0; step < 100; ++step)
       solver->advance(1e-13, { activation, {} });
     const double critical = solver->monitor().critical_time_step;

@@ -41,7 +41,7 @@ bool is_cautious(const TimeStepController& controller)
   return choice.bound_every_step && choice.bound_awaited && choice.steps == 8 && choice.dt <= 1.000001 * step;
 }
 
-// Number of steps at rest until the controller is calm.
+// Number of steps at rest until the controller is no longer cautious.
 int steps_until_calm(TimeStepController& controller)
 {
   int steps = 0;
@@ -162,7 +162,7 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
   for (int step = 0; step < 256; ++step)
     controller.observe(0.9 * squared, 1);
   EXPECT_TRUE(is_calm(controller));
-  // far below that stiffness, changes of the same size are not a vibration
+  // at lower stiffness, changes of the same relative size are not a vibration
   TimeStepController soft(rest, 0.9, 0);
   for (const double share : { 1.0, 0.9, 1.0, 0.9 })
     soft.observe(share * rest, 32);

@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-/// Records the requests to a scripted backend and holds its answers.
+/// Requests to a scripted backend, and the answers it gives.
 struct Script
 {
   std::vector<StepPlan> plans;
@@ -29,7 +29,7 @@ struct ScriptState : BackendState
   void archive(ByteArchive& archive) override { archive(plans); }
 };
 
-/// Moves nothing and records what it is asked to do.
+/// A backend that moves nothing and records its calls.
 class ScriptedBackend : public StepBackend
 {
 public:
@@ -231,19 +231,19 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   EXPECT_THROW(Stepped().solver.ledger(), Error);
 
   s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
-  s.script.work = { 11, 7, 5, 1, 3, 2 };  // by muscles, loads, constraints; lost to friction, damping, viscosity
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // done by muscles, loads, constraints; lost to friction, damping, viscosity
   const EnergyLedger now = s.solver.ledger();
   // velocities are half a step behind displacements, and gravity changes them within the step
   const double mass = 1000 * 64e-9;
-  EXPECT_NEAR(now.kinetic, 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
-  EXPECT_NEAR(now.initial, now.kinetic + 3 + 2, 1e-12);
-  EXPECT_EQ(now.internal, 3);
-  EXPECT_EQ(now.hourglass, 2);
-  EXPECT_EQ(now.gravity, 0) << "nothing has moved";
-  EXPECT_EQ(now.muscle, 11);
-  EXPECT_NEAR(now.load, 7, 1e-12);
-  EXPECT_EQ(now.constraint, 5 + 1) << "without friction";
-  EXPECT_EQ(now.friction, 1);
+  EXPECT_NEAR(now["kinetic"], 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
+  EXPECT_NEAR(now.initial, now["kinetic"] + 3 + 2, 1e-12);
+  EXPECT_EQ(now["internal"], 3);
+  EXPECT_EQ(now["hourglass"], 2);
+  EXPECT_EQ(now["gravity"], 0) << "nothing has moved";
+  EXPECT_EQ(now["muscle"], 11);
+  EXPECT_NEAR(now["load"], 7, 1e-12);
+  EXPECT_EQ(now["constraint"], 5 + 1) << "without friction";
+  EXPECT_EQ(now["friction"], 1);
   EXPECT_EQ(now.largest, 11);
   EXPECT_NEAR(now.imbalance(), 2 + 3 + 1 - 11 - 7 - 6, 1e-12);
 }

@@ -10,7 +10,7 @@ namespace
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-// All nodes are held, so that the stress at a constant strain can be observed.
+// A block with all nodes held, for the stress at a constant strain.
 Model held_block(const std::array<double, 2>& share, const std::array<double, 2>& time)
 {
   test::BlockSettings settings;
@@ -25,7 +25,7 @@ Model held_block(const std::array<double, 2>& share, const std::array<double, 2>
   return model;
 }
 
-// Simple shear by prescribed displacements at once, to which only the isochoric stress responds.
+// A block whose nodes are displaced at once to simple shear, to which only the isochoric stress responds.
 Model sheared_block(double shear, const std::array<double, 2>& share, const std::array<double, 2>& time)
 {
   Model model = held_block(share, time);
@@ -95,11 +95,11 @@ TEST_P(Viscosity, energy_that_a_swinging_block_loses_is_accounted_for)
   const double initial = swinging->ledger().initial;
   swinging->advance(0.05, {});
   const EnergyLedger ledger = swinging->ledger();
-  EXPECT_GT(ledger.viscous, 0.5 * initial) << "much of the motion is lost";
+  EXPECT_GT(ledger["viscous"], 0.5 * initial) << "much of the motion is lost";
   EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.largest);
 }
 
-// Relaxation must count at the middle of its step; at the end, it would leave an error of dt / (2 time constant).
+// Relaxation must count at the middle of its step: at the end, the error of its work would be dt / (2 time constant).
 TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps)
 {
   test::BlockSettings settings;
@@ -118,7 +118,7 @@ TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps
   swinging->set_velocities(v);
   swinging->advance(0.02, {});
   const EnergyLedger ledger = swinging->ledger();
-  EXPECT_GT(ledger.viscous, 0.5 * ledger.initial);
+  EXPECT_GT(ledger["viscous"], 0.5 * ledger.initial);
   EXPECT_LT(std::abs(ledger.imbalance()), 2e-3 * ledger.largest);
 }
 

@@ -66,7 +66,7 @@ Matrix random_gradient(std::mt19937& random, double most, int index)
   return product(random_rotation(random), product(diagonal, random_rotation(random)));
 }
 
-// Ratio of the true eigenvalue to its bound for a single voxel.
+// Ratio of the largest true eigenvalue to its bound for a single voxel.
 double true_over_bound(const Model& model, const Matrix& F)
 {
   Vectors u(8);
@@ -84,7 +84,7 @@ struct Tissue
   const char* name;
   Law law;
   double poisson;
-  physics::MaterialNumbers own;  // replaces parameters that are not 0 here
+  physics::MaterialNumbers own;  // parameters that are not 0 replace those of the block's material
   double allowed;
 };
 constexpr double mu = 34e3 / 2.98;

@@ -55,7 +55,7 @@ double error_of(const AccuracyFindings& findings, const std::string& name)
   throw Error("no row is called " + name);
 }
 
-// Each halving of the edge divides the error by about four: by 3 to 6, because at the finest edge the neglected
+// Each halving of the edge divides the error by about four. Allowed is 3 to 6, because at the finest edge the neglected
 // nonlinear terms begin to count.
 TEST_F(ClosedForms, bending_converges_with_the_second_order)
 {

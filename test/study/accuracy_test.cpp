@@ -20,7 +20,7 @@ namespace
 
 constexpr double length = 8e-3, width = 4e-3;
 
-// A bar of flesh, held at x = 0, with a muscle in its upper half: it shortens and bends up.
+// A bar of tissue, held at x = 0, with a muscle in its upper half: it shortens and bends up.
 Model bar(const AccuracySetting& setting)
 {
   const double edge = setting.profile.voxel[0];
@@ -40,7 +40,7 @@ Model bar(const AccuracySetting& setting)
     model.fibre_weight[e] = m == 1 ? 0.5F : 2 * model.voxels[e][2] >= m ? 1 : 0;
   for (const std::int32_t node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
     model.rigid.push_back({ node, -1 });
-  // skin: the upper face, at points that are corners of voxels of every size
+  // the skin is the upper face; its points are corners of voxels of every size
   for (int i = 0; i <= 2; ++i)
     for (int j = 0; j <= 1; ++j)
     {
@@ -57,7 +57,7 @@ Model bar(const AccuracySetting& setting)
   model.hourglass = setting.profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
   if (setting.profile.precision == "double")
     model.precision = Precision::double_precision;
-  // this bar exists only with the default number of samples
+  // any other number of samples stands for a bake that fails
   if (setting.profile.samples != 4)
     throw Error("no such bar");
   return model;
@@ -137,7 +137,7 @@ double true_error(const AccuracySetting& setting)
     solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
     solver->skin(skins[which]);
   }
-  // the area of a corner is a quarter of its two triangles, or of its one
+  // area of each vertex in units of a third of a triangle: the number of triangles at it
   const double area[] = { 1, 2, 3, 3, 2, 1 };
   double sum = 0;
   for (std::size_t v = 0; v < 6; ++v)
@@ -146,7 +146,7 @@ double true_error(const AccuracySetting& setting)
   return std::sqrt(sum);
 }
 
-// Steps per simulated second of the motion that the study plays.
+// Steps per simulated second of the motion in the study.
 double true_steps(const AccuracySetting& setting)
 {
   const auto solver = make_solver(std::make_shared<const Model>(bar(setting)), { "cpu", 1 });
@@ -180,7 +180,7 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_TRUE(best.error.rms <= fine || best.cost <= row_named(findings, "1 mm").cost)
       << "a setting with a larger error must be cheaper";
   EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
-  // seconds depend on the machine, but not the number of steps
+  // costs in seconds depend on the machine, the number of steps does not
   const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
   EXPECT_EQ(quick.name, findings.rows[findings.front.front()].name);
   for (const AccuracyRow* row : { &chosen, &best, &quick })
@@ -228,7 +228,7 @@ TEST_F(Accuracy, motions_of_another_backend_serve_and_are_told)
   EXPECT_TRUE(std::any_of(there.notes.begin(), there.notes.end(), told));
 }
 
-// Content of files by name; motions only, because costs differ between runs.
+// Contents of files by name, for motions only, because costs differ between runs.
 std::map<std::string, std::string> files_in(const std::string& folder, const std::string& extension)
 {
   std::map<std::string, std::string> files;
@@ -251,7 +251,7 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
   const auto whole = files_in(plan.folder + "/variants", ".motion");
   plan.folder = folder + "/parts";
   int checkpoints = 0, calls = 0;
-  // about 17 calls per round: it ends within a variant's 30 slices, or while it settles, which then starts again
+  // each round ends after about 17 calls: within a variant's 30 slices, or while it settles, which then starts again
   for (bool complete = false; !complete; ++calls)
   {
     ASSERT_LT(calls, 1000);

@@ -30,7 +30,7 @@ bool is_active(const TimedSolver& timed)
   return !activation.empty() && std::all_of(activation.begin(), activation.end(), [](float a) { return a == 0.75f; });
 }
 
-// Returns prices as times, with a disturbance common to all solvers of a round, and records the comparisons.
+// Returns prescribed costs as times, with a disturbance common to all solvers of a round, and records the comparisons.
 struct SetTimes
 {
   struct Comparison
@@ -162,7 +162,7 @@ TEST(EffectCosts, OneMuscleIsTimedAgainstAll)
   EXPECT_EQ(cost.spread, 0);
 }
 
-// The number of timed steps follows from the resolution of the clock.
+// The number of steps to time follows from the resolution of the clock.
 TEST(StepTimes, HaveARowPerTurnAndAColumnPerSolver)
 {
   const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));

@@ -1,5 +1,5 @@
-// Small scenes, random ones and former failures, must stay finite, explain their energy or be stopped with a report,
-// and repeat bit by bit.
+// Small scenes, random ones and former failures: their motion must stay finite, and either account for its energy or be
+// stopped with a report. Repeating it must give the same bits.
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/sample_field.hpp"
@@ -29,7 +29,7 @@ struct SmallScene
   std::array<std::int32_t, 3> size;
   std::array<double, 3> spacing;  // [m]
   std::vector<Material> materials;
-  int holes, seed;  // tenths of the voxels that are missing, and the random seed
+  int holes, seed;  // number of missing voxels, in tenths of all, and the random seed
   double damping;
   std::array<double, 3> gravity;
   HourglassControl hourglass;
@@ -167,8 +167,8 @@ void expect_sound(const SmallScene& scene)
 
 }  // namespace
 
-// The bone's jerks excite vibrations near the limit of the time step. A step that grows and shrinks with every swing
-// left 13 % of the energy unexplained here.
+// The bone's jerks excite vibrations near the critical time step. If the step follows every swing, 13 % of the energy
+// is unexplained here.
 TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -192,7 +192,7 @@ TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
   expect_sound(scene);
 }
 
-// The same without damping and with an assembled time step: 16 % were unexplained.
+// The same without damping and with an assembled time step, which then leaves 16 % unexplained.
 TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -223,7 +223,7 @@ TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 namespace
 {
 
-// Integers shrink well in RapidCheck: x / scale for an integer x from low to high.
+// A random number made of an integer, because RapidCheck shrinks integers well: x / scale, x from low to high.
 double real(int low, int high, double scale) { return *rc::gen::inRange(low, high + 1) / scale; }
 
 Material material()
@@ -233,7 +233,7 @@ Material material()
   auto& p = result.parameters;
   const double mu = p[0];
   result.law = static_cast<Law>(*rc::gen::inRange(0, static_cast<int>(physics::material_table.size())));
-  // a law without its own numbers below takes those of its example, scaled to this shear modulus
+  // laws without parameters in the cases below use those of their example, scaled to this shear modulus
   if (result.law != Law::neo_hookean)
   {
     const auto& description = physics::description_of(result.law);
@@ -314,7 +314,7 @@ TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
         RC_ASSERT(fault.empty());
       });
   EXPECT_TRUE(held);
-  // a guard that stopped all scenes would hide other faults
+  // a guard that stops every scene would hide other faults
   EXPECT_LT(stopped, 0.2 * scenes);
   EXPECT_GT(scenes, 0);
 }

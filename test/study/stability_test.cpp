@@ -1,4 +1,4 @@
-// A hard case takes its bounds from its file, and faults of the file are reported.
+// The files of hard cases: a case's bounds come from its file, and faults of the file are reported.
 
 #include "frontalis/study/stability.hpp"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path sources = fs::path(FRONTALIS_SOURCE_DIRECTORY) / "test/stability";
 
-// The files of all cases, with one line of one of them changed.
+// Copies of all cases' files, with one line of one of them changed.
 class StabilityFile : public ::testing::Test
 {
 protected:

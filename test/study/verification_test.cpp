@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -38,6 +39,27 @@ TEST(Cases, HaveNamesOfTheirOwnAndATextInTheManual)
     EXPECT_NE(texts.find("\n## " + c.name + ": "), std::string::npos) << c.name;
   }
 }
+
+// runs a case on every backend of this machine
+class ContactCase : public testing::TestWithParam<const char*>
+{
+};
+
+TEST_P(ContactCase, IsRight)
+{
+  const auto cases = verification_cases();
+  const auto found = std::find_if(cases.begin(), cases.end(), [](const auto& c) { return c.name == GetParam(); });
+  ASSERT_NE(found, cases.end());
+  Finding finding;
+  found->run("cpu", finding);
+  EXPECT_FALSE(finding.checks.empty());
+  for (const Check& check : finding.checks)
+    EXPECT_TRUE(check.passed()) << check_line(found->name, check);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, ContactCase,
+                         testing::Values("contact_pressure", "contact_impact", "contact_wrench", "contact_incline"),
+                         [](const auto& one) { return std::string(one.param); });
 
 TEST(Manual, HasTheTextOfEachCaseAroundItsFigures)
 {

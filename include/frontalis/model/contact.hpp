@@ -13,13 +13,13 @@ namespace frontalis
 /// A rigid body that tissue may touch and leave, and the points of the tissue that touch it.
 struct Contact
 {
-  std::string name;        ///< of its constraint
-  std::int32_t bone = -1;  ///< index into Model::bones of the one that is the body; -1: it stands still
+  std::string name;        ///< of the constraint in the scene
+  std::int32_t bone = -1;  ///< index into Model::bones of the body; -1: the body stands still
   double friction = 0;     ///< Coulomb's coefficient
   SampledField field;      ///< distance from the body, negative inside
-  double reach = 0;        ///< a point that is farther from the surface than this may have no samples around it [m]
+  double reach = 0;        ///< samples are stored at least this far from the surface [m]
 
-  // vertices of the tissue's surface
+  // points of the tissue: vertices of its surface
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
   std::vector<double> area;                   ///< of the surface, a third of each triangle at the vertex [m2]
   Binding binding;                            ///< one entry per point

@@ -4,6 +4,7 @@
 #include "frontalis/model/model.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,26 @@ struct EffectPresence
   std::size_t nodes = 0;   ///< nodes that it acts on; 0 if it acts on voxels
 };
 
-/// The one place that says which effects a model has.
+/// Tells whether a model has an effect; no other function decides this.
 EffectPresence presence_of(const Model& model, Effect effect);
 EffectSet effects_of(const Model& model);
 
 /// Whether one of the voxel's materials is viscous.
 bool is_viscous(const Model& model, std::size_t voxel);
 
-/// Takes effects out of a model, so that nothing is stored for them, and notes their names in Model::switched_off.
+/// A rigid body that tissue may touch, and so exert a force on.
+struct TouchedBody
+{
+  std::string name;
+  std::int32_t bone = -1;  ///< index into Model::bones of the body; -1: it stands still
+};
+/// All bodies that the model's tissue may touch, in the order of Solver::reactions().
+std::vector<TouchedBody> touched_bodies(const Model& model);
+
+/// For each node, the index of a bone that may move it; -1: none.
+std::vector<std::int32_t> moving_bones(const Model& model);
+
+/// Removes effects from a model, so that nothing is stored for them, and adds their names to Model::switched_off.
 /// Throws Error if check_switched_off() does.
 void switch_off(Model& model, EffectSet off);
 

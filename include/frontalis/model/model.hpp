@@ -32,8 +32,8 @@ struct Model
   std::vector<std::int32_t> mixture_begin;
   std::vector<std::int16_t> mixture_material;
   std::vector<float> mixture_proportion;
-  /// Empty, or two directions per voxel (local axes, length 1) that its materials with fibres take instead of their
-  /// own; those with one direction take the first. Zero: the material's own.
+  /// Empty, or two directions per voxel (local axes, length 1) that replace those of its materials with fibres; a
+  /// material with one direction uses the first. Zero: the material's own directions hold.
   std::vector<std::array<float, 6>> material_directions;
 
   // muscles of voxel e: entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1
@@ -77,7 +77,7 @@ struct Model
   double damping = 0;  ///< mass-proportional damping coefficient [1/s]
   double time_scaling = 1;
   double frame_rate = 30;  ///< [1/s] of wall time
-  /// Fastest change of a muscle's activation in simulated time [1/s]; 0: no limit.
+  /// Fastest change of a muscle's activation [1/s of simulated time]; 0: no limit.
   double activation_slew = 0;
   double time_step_share = 0.9;
   MassScalingSettings mass_scaling;
@@ -101,7 +101,7 @@ struct Model
   };
   std::vector<DemoPhase> demo;
 
-  /// Names of effects that the scene switched off: nothing is stored for them (model/effects.hpp).
+  /// Names of effects that the scene switched off; no data is stored for them (model/effects.hpp).
   std::vector<std::string> switched_off;
 
   // accuracy profiles of the scene, as they were measured (doc/accuracy.md)
@@ -113,7 +113,7 @@ struct Model
     std::string machine;  ///< on which it was measured
   };
   std::vector<AccuracyProfile> profiles;
-  std::string profile;  ///< name of the one that the model was baked with
+  std::string profile;  ///< name of the profile that the model was baked with
 
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };

@@ -17,8 +17,7 @@ void write_model(const Model& model, const std::string& path);
 /// Reads and checks a model. Throws Error with the path and what is wrong: missing, truncated, another version.
 Model read_model(const std::string& path);
 
-/// The same, for a model that must have been baked from the scene of that content hash by this version of the package;
-/// throws Error otherwise.
+/// Like read_model(), but throws Error unless this version of the package baked the model from the scene of that hash.
 Model read_model_of(const std::string& path, const std::string& scene_hash);
 
 }  // namespace frontalis

@@ -11,8 +11,8 @@
 namespace frontalis
 {
 
-/// Signed distance from a surface where nodes may slide along it, in local coordinates at rest: the arrays of a
-/// physics::DistanceField, which says what they mean. See model/sample_field.hpp.
+/// Signed distance from a surface where nodes may slide along it, in local coordinates at rest: storage for the arrays
+/// of a physics::DistanceField, which documents them. See model/sample_field.hpp.
 struct SampledField
 {
   std::array<double, 3> origin{ { 0, 0, 0 } };
@@ -26,7 +26,7 @@ struct SampledField
 struct ConstraintSurface
 {
   std::string name;
-  std::int32_t bone = -1;  ///< index into Model::bones of the one it moves with; -1: still
+  std::int32_t bone = -1;  ///< index into Model::bones of the bone that it moves with; -1: it stands still
   double friction = 0;     ///< Coulomb's coefficient
   SampledField field;
 };
@@ -34,7 +34,7 @@ struct ConstraintSurface
 struct RigidNode
 {
   std::int32_t node = 0;
-  std::int32_t bone = -1;        ///< index into Model::bones; -1: still
+  std::int32_t bone = -1;        ///< index into Model::bones; -1: it stands still
   std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 
@@ -42,7 +42,7 @@ struct SlidingNode
 {
   std::int32_t node = 0;
   std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
-  double distance = 0;           ///< value of the surface's field at the rest position, which the node keeps [m]
+  double distance = 0;           ///< value of the surface's field at rest, kept while the node slides [m]
   std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 

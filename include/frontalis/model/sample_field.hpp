@@ -7,15 +7,14 @@
 namespace frontalis
 {
 
-/// Distance of a point from a surface [m]. The nearest point of the surface, to which both figures belong, is
-/// hypot(value, past_rim) away.
+/// Distance of a point from a surface [m]. The nearest point of the surface is hypot(value, past_rim) away.
 struct SurfaceDistance
 {
   SurfaceDistance(double signed_distance, double past = 0) : value(signed_distance), past_rim(past) {}
-  double value;     ///< signed; past the rim of an open surface, from its continuation along the tangent plane there
-  double past_rim;  ///< way past the rim of an open surface, 0 beside or above it
+  double value;     ///< signed; past the rim of an open surface, from the surface's tangent plane at the rim
+  double past_rim;  ///< how far the point is past the rim of an open surface; 0 beside or above the surface
 };
-/// Of a point in local coordinates.
+/// The distance of a point in local coordinates.
 using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 
 /// Calls body(0) .. body(count - 1), in any order or at once.
@@ -23,13 +22,13 @@ using Loop = std::function<void(std::size_t count, const std::function<void(std:
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// Samples a distance every `spacing` [m], in all bricks that sliding nodes can reach: those within `travel` [m] of a
-/// node's rest position in which the distance is between the least and the largest of such nodes, give or take a
-/// spacing, and which do not lie past the rim.
+/// node's rest position in which the distance is between the least and the largest of such nodes, with a margin of one
+/// spacing, and which are not past the rim.
 SampledField sample_field(const std::vector<std::array<double, 3>>& rest, const Distance& distance, double spacing,
                           double travel, const Loop& loop = one_by_one);
 
-/// The same in all bricks that come within `reach` [m] of a surface, on either side. `lower`, `upper`: corners of a box
-/// around the surface.
+/// Samples a distance in all bricks that come within `reach` [m] of a surface, on either side. `lower`, `upper`:
+/// corners of a box around the surface.
 SampledField sample_band(const std::array<double, 3>& lower, const std::array<double, 3>& upper,
                          const Distance& distance, double spacing, double reach, const Loop& loop = one_by_one);
 
@@ -38,16 +37,16 @@ SampledField sphere_field(const std::array<double, 3>& centre, double radius);
 
 physics::DistanceField view(const SampledField& field);
 
-/// Value of the field at p [m]; not a number where there are no samples.
+/// Value of the field at p [m]; NaN if no samples are stored there.
 double level_at(const SampledField& field, const std::array<double, 3>& p);
-/// Whether samples are stored within `way` of p [m].
+/// Whether samples are stored within the distance `way` of p [m].
 bool has_samples_near(const SampledField& field, const std::array<double, 3>& p, double way);
 
-/// For models made by programs: adds a surface without friction that does not move, and lets nodes slide on it where
-/// they are. Returns its index.
+/// For models made by programs: adds a surface without friction that does not move, and lets the given nodes slide
+/// along it, each at its distance at rest. Returns the index of the surface.
 std::int32_t slide_on(Model& model, const std::string& name, SampledField field,
                       const std::vector<std::int32_t>& nodes);
-/// The same, with samples of its distance.
+/// The same, for a surface given by its distance, which is sampled here.
 std::int32_t slide_on(Model& model, const std::string& name, const Distance& distance,
                       const std::vector<std::int32_t>& nodes, double spacing = 0.5e-3, double travel = 20e-3);
 

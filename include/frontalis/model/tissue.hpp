@@ -14,8 +14,8 @@ struct Material
 {
   std::string name;
   Law law = Law::neo_hookean;
-  /// Of the law, in its order with the bulk modulus [Pa] between the first and the second, then its fibre directions
-  /// (local axes, length 1) from `physics::first_direction` on.
+  /// Parameters of the law in its own order, with the bulk modulus [Pa] between the first and the second, then its
+  /// fibre directions (local axes, length 1) from `physics::first_direction` on.
   std::array<double, physics::parameter_slots> parameters{};
   double density = 0;  ///< [kg/m3]
   /// Viscosity of the isochoric part as a Prony series of up to two terms: the share of the instantaneous stress that
@@ -30,8 +30,8 @@ struct Muscle
   double stress_reference = 0.3e6;  ///< active stress at full activation and optimal length [Pa]
   bool passive = false;
   bool tension_length = true;
-  double rise_time = 0;  ///< time constant with which a growing activation follows the one asked for [s]; 0: at once
-  double fall_time = 0;  ///< the same for a falling one [s]
+  double rise_time = 0;  ///< time constant with which activation rises to the commanded one [s]; 0: at once
+  double fall_time = 0;  ///< the same for falling activation [s]
 };
 
 /// Mass added to voxels so that they do not limit the time step.
@@ -46,10 +46,10 @@ struct MassScalingSettings
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::int32_t> materials;  ///< selective: voxels that contain one of these; empty: all
-  double time_step = 0;                 ///< selective: that they must allow [s]; 0: as much as the other voxels allow
+  double time_step = 0;                 ///< selective: step that they must allow [s]; 0: as long as other voxels allow
 };
 
-/// What stiffens the hourglass modes, in which one-point quadrature sees no strain.
+/// How the hourglass modes, which one-point quadrature leaves without stiffness, are stiffened.
 enum class HourglassControl : std::uint8_t
 {
   scalar,         ///< one stiffness per voxel, proportional to Young's modulus: cheap
@@ -76,7 +76,7 @@ enum class Precision : std::uint8_t
 enum class TimeStepEstimate : std::uint8_t
 {
   element,   ///< bounded at nodes from the stiffness of their voxels: always safe
-  assembled  ///< of the assembled model, by power iteration; repeated as it stiffens; longer if few voxels are stiff
+  assembled  ///< by power iteration on the assembled model, repeated as it stiffens; longer if few voxels are stiff
 };
 
 }  // namespace frontalis

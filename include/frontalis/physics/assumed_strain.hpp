@@ -35,7 +35,7 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
   return { bending, nu * bending, mu * tissue_volume, twice * (N::of(1) + nu) * N::of(1.0 / 3) };
 }
 
-/// Hourglass modes in the order that pairs them with axes: yz, xz, xy, xyz (indices of transformed displacements).
+/// Index of the hourglass mode yz, xz, xy or xyz (pair 0 to 3) among the transformed displacements.
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
 /// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it,
@@ -56,14 +56,14 @@ FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* we
   if (!(weight[axis] < other))
     return { k.bending, k.coupling };
   const S ratio = weight[axis] / other;
-  // a SIMD lane without a voxel has no stiffness
+  // the bound avoids 0 / 0 in a SIMD lane without a voxel
   const T n = T(ratio * ratio) * k.coupling / N::max(k.bending, N::of(1e-30));
   // E times tissue volume is three times the warping stiffness
   const T own = N::of(3) * k.warping / (N::of(1) - n * n);
   return { own, n * own };
 }
 
-/// Forces conjugate to pulled-back modes r[pair][axis], in the same order. weight[i] = 1 / (4 sqrt(3) h_i): products of
+/// Forces conjugate to the pulled-back modes r[pair][axis], indexed alike. weight[i] = 1 / (4 sqrt(3) h_i): products of
 /// two weights are the volume integrals of mode derivatives, for modes of amplitude 8.
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
@@ -106,7 +106,7 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const T& scalar, 
     }
 }
 
-/// Energy of the modes q[axis][mode] before they are replaced [J].
+/// Energy of the hourglass modes of the transformed displacements q[axis][mode] [J].
 template <class T, class S>
 FRONTALIS_LAW T hourglass_energy(const AssumedStrain<T>& k, const T& scalar, const S* weight, const Matrix3<T>& F,
                                  const T (&q)[3][8])

@@ -3,6 +3,8 @@
 #include "frontalis/physics/field_spline.hpp"
 #include "frontalis/physics/sliding.hpp"
 
+#include <cstdint>
+
 namespace frontalis
 {
 namespace physics
@@ -19,7 +21,21 @@ constexpr double contact_stiffness = 3.5;
 /// Stiffness along the surface of a point that sticks, over that along the normal.
 constexpr double sticking_stiffness = 0.5;
 
-/// What friction knows of a point between two steps.
+/// A field is at most this much steeper than the distance: each component of a spline's gradient is a mean of slopes.
+constexpr double steepest_field = 1.7320508;
+
+/// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+constexpr double forgotten_depth = 1e-9;
+
+/// Whether a point touches a body.
+enum class Touching : std::uint8_t
+{
+  no,
+  yes,
+  let_go  ///< in this step
+};
+
+/// State of friction at a point, kept from step to step.
 template <class T>
 struct Grip
 {
@@ -28,24 +44,24 @@ struct Grip
   T along;         ///< force along the surface [N]
 };
 
-/// A point that touches a body.
+/// Contact of one point with a body.
 template <class T>
 struct Touch
 {
   Vec3<T> force;  ///< on the point, in the body's frame [N]
   Grip<T> grip;
   T stored;  ///< by the stiffness of contact [J]
-  T lost;    ///< to friction since the step before [J]
+  T lost;    ///< dissipated by friction in this step [J]
 };
 
-/// Contact and Coulomb friction of a point that is inside of a body: field.value < 0. `x`: its place in the body's
-/// frame [m]; `grip`: what this function returned in the step before, or, in the first, x and what let_go() left;
-/// `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(), because
+/// Contact and Coulomb friction of a point inside a body (field.value < 0). `x`: position in the body's frame [m];
+/// `grip`: the one returned in the previous step, or, when contact begins, an anchor at x with the forces that let_go()
+/// left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(), because
 /// friction that follows the normal force at once makes elastic bodies flutter where they slide.
 ///
-/// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction
-/// is the tangential stiffness times the way from the anchor, returned to Coulomb's cone (Simo & Laursen, An augmented
-/// Lagrangian treatment of contact problems involving friction, Computers & Structures 42(1), 1992).
+/// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction is
+/// the tangential stiffness times the displacement from the anchor, returned to Coulomb's cone (Simo & Laursen, An
+/// augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42(1), 1992).
 template <class T>
 FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const Grip<T>& grip, const T& stiffness,
                              const T& friction, const T& response)
@@ -73,8 +89,8 @@ FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const
            N::of(0.5) * (grip.along + kept * trial) * (length - kept * length) };
 }
 
-/// The grip of a point that has left the body loses its force along the surface, and the normal force that friction
-/// follows fades. Returns what is lost to friction [J].
+/// Updates the grip of a point that is outside the body: friction drops to zero, and the delayed normal force decays.
+/// Returns the stored energy that is lost with friction [J].
 template <class T>
 FRONTALIS_LAW T let_go(Grip<T>& grip, const T& stiffness, const T& response)
 {

@@ -10,13 +10,13 @@ namespace frontalis
 namespace physics
 {
 
-/// Signed distance from a surface [m], positive on the side of its outward normals, in the surface's frame: that of a
-/// sphere, or samples on a lattice. Samples are the coefficients of a quadratic B-spline (de Boor, A Practical Guide to
-/// Splines, 1978), which is smooth: its gradient has no kinks, and it rounds the surface's edges within about one
-/// spacing. Plain pointers, so that the same code runs on host and GPU.
+/// Signed distance from a surface [m], positive on the side of its outward normals, in the surface's frame. The surface
+/// is a sphere, or its distance is sampled on a lattice. Samples are the coefficients of a quadratic B-spline (de Boor,
+/// A Practical Guide to Splines, 1978), which is smooth: its gradient has no kinks, and it rounds the surface's edges
+/// within about one spacing. Plain pointers, so that the same code runs on host and GPU.
 ///
-/// Samples are stored in bricks of 8 x 8 x 8 cells where nodes may come, and each cell belongs to the sample in its
-/// middle. A brick repeats one layer of its neighbours' samples, so that a cell finds its 3 x 3 x 3 samples in its own.
+/// A cell is the cube around one sample. Only cells that nodes may reach are stored, in bricks of 8 x 8 x 8. A brick
+/// repeats one layer of its neighbours' samples, so that it has the 3 x 3 x 3 samples around each of its cells.
 struct DistanceField
 {
   static constexpr std::int32_t brick_edge = 8;              ///< [cells]
@@ -26,11 +26,11 @@ struct DistanceField
   double origin[3] = { 0, 0, 0 };        ///< of sample (0,0,0), or centre of the sphere [m]
   double spacing = 1;                    ///< of samples [m]
   double radius = 0;                     ///< of the sphere [m]; 0: sampled
-  std::int32_t bricks[3] = { 0, 0, 0 };  ///< of the table along x, y, z
+  std::int32_t bricks[3] = { 0, 0, 0 };  ///< number of bricks in the table along x, y, z
   const std::int32_t* table = nullptr;   ///< index of each brick's samples, x fastest; negative: there are none
   const float* samples = nullptr;        ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
 
-  /// The first of the 3 x 3 x 3 samples around a cell; null where none are stored.
+  /// The first of the 3 x 3 x 3 samples around a cell; null if none are stored.
   FRONTALIS_LAW const float* around(const std::int32_t (&cell)[3]) const
   {
     std::int32_t brick = 0, first = 0;
@@ -47,8 +47,8 @@ struct DistanceField
   }
 };
 
-/// A point as a cell of a field and the offset from the sample in its middle [m], which may be longer than a cell.
-/// While a node moves, the cell of its rest position stays and the offset grows: float resolves it to nanometres.
+/// A point as a cell of a field and the offset from the sample in the cell's centre [m], which may be longer than a
+/// cell. While a node moves, the cell of its rest position stays and the offset grows: float resolves it to nanometres.
 template <class T>
 struct FieldPoint
 {
@@ -56,7 +56,7 @@ struct FieldPoint
   Vec3<T> offset;
 };
 
-/// The point p [m] of the surface's frame. The cell of a sphere is (0,0,0), at its centre.
+/// Converts the point p [m] in the surface's frame. The cell of a sphere is (0,0,0), at its centre.
 FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const Vec3<double>& p)
 {
   FieldPoint<double> point{ { 0, 0, 0 }, p - Vec3<double>{ field.origin[0], field.origin[1], field.origin[2] } };
@@ -66,7 +66,7 @@ FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const V
   for (int axis = 0; axis < 3; ++axis)
   {
     const double whole = std::floor(*offset[axis] / field.spacing + 0.5);
-    // false where a motion has diverged
+    // false if the motion has diverged, or on NaN
     const bool sound = whole > -1e9 && whole < 1e9;
     point.cell[axis] = sound ? static_cast<std::int32_t>(whole) : -1000000000;
     *offset[axis] = sound ? *offset[axis] - whole * field.spacing : 0;
@@ -74,7 +74,7 @@ FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const V
   return point;
 }
 
-/// The samples of a cell from the first of them, as around() returns it.
+/// Loads the samples around a cell; `first` is what around() returned.
 FRONTALIS_LAW FieldSamples gather(const float* first)
 {
   FieldSamples samples;
@@ -98,22 +98,44 @@ FRONTALIS_LAW Vec3<T> enter_cell(const T& inverse_spacing, const Vec3<T>& offset
   return { x[0], x[1], x[2] };
 }
 
-/// The field at a point, which `value` receives. Returns false, and leaves it as it is, where no samples are stored.
+/// Finds the field at a point. Returns false, and leaves `value` unchanged, if no samples are stored there.
+/// inverse_spacing: 1 / field.spacing.
 template <class T>
-FRONTALIS_LAW bool sample(const DistanceField& field, FieldPoint<T> point, FieldValue<T>& value)
+FRONTALIS_LAW bool sample(const DistanceField& field, const T& inverse_spacing, FieldPoint<T> point,
+                          FieldValue<T>& value)
 {
   if (field.radius > 0)
   {
     value = sphere_value(static_cast<T>(field.radius), point.offset);
     return true;
   }
-  const T inverse_spacing = static_cast<T>(1 / field.spacing);
   const Vec3<T> place = enter_cell(inverse_spacing, point.offset, point.cell);
   const float* const first = field.around(point.cell);
   if (first == nullptr)
     return false;
   value = spline(gather(first), inverse_spacing, place);
   return true;
+}
+template <class T>
+FRONTALIS_LAW bool sample(const DistanceField& field, const FieldPoint<T>& point, FieldValue<T>& value)
+{
+  return sample(field, static_cast<T>(1 / field.spacing), point, value);
+}
+
+/// At most the distance of a point that has no samples around it from the surface, in whose frame p is [m]. reach: of
+/// the samples from the surface [m].
+FRONTALIS_LAW double distance_without_samples(const DistanceField& field, double reach, const Vec3<double>& p)
+{
+  const double at[3] = { p.x, p.y, p.z };
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double begin = field.origin[axis] - 0.5 * field.spacing;
+    const double end = begin + field.bricks[axis] * DistanceField::brick_edge * field.spacing;
+    const double outside = at[axis] < begin ? begin - at[axis] : at[axis] > end ? at[axis] - end : 0;
+    squared += outside * outside;
+  }
+  return Number<double>::max(0.5 * reach, Number<double>::sqrt(squared));
 }
 
 }  // namespace physics

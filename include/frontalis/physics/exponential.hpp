@@ -5,7 +5,7 @@
 namespace frontalis::physics
 {
 
-/// Above this argument the exponentials of laws continue along their tangent: stiff, but finite in single precision.
+/// Above this argument exponentials of laws continue along their tangent: stiff, but finite in single precision.
 constexpr double exponent_limit = 20;
 
 /// e^x up to the limit, and its tangent beyond: finite, with continuous slope.

@@ -7,18 +7,17 @@ namespace frontalis
 namespace physics
 {
 
-/// What a field has at a point.
+/// A distance field and its derivatives at one point.
 template <class T>
 struct FieldValue
 {
   T value;           ///< [m]
   Vec3<T> gradient;  ///< about a unit vector, shorter on ridges and in furrows
   T curvature;       ///< Frobenius norm of the Hessian [1/m]
-  T reach;           ///< way along which a plane may rely on that curvature [m]; see level_plane()
+  T reach;           ///< distance over which `curvature` describes the field well enough for a tangent plane [m]
 };
 
-/// Largest error of a tangent plane that replaces a level set: small, because each change of plane excites vibrations
-/// [m].
+/// Largest error [m] of a tangent plane that replaces a level set: small, because changes of plane excite vibrations.
 constexpr double plane_error = 0.5e-6;
 
 /// The samples of a cell, x fastest [m].
@@ -27,14 +26,14 @@ struct FieldSamples
   float value[27];
 };
 
-/// The spline at a place in a cell that enter_cell() returned. Its second derivatives may jump at the cell's faces, but
+/// The spline at `place` in a cell, both from enter_cell(). Its second derivatives may jump at the cell's faces, but
 /// are at most 2 / spacing, because distances of neighbouring samples differ by at most the spacing.
 template <class T>
 FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
 {
   using N = Number<T>;
   const T x[3] = { place.x, place.y, place.z };
-  // weights of value and slope; those of the second derivative are 1, -2, 1
+  // weights of value and first derivative; those of the second derivative are 1, -2, 1
   T w[3][3], d[3][3];
   for (int axis = 0; axis < 3; ++axis)
   {

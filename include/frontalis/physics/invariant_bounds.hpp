@@ -24,7 +24,7 @@ FRONTALIS_LAW T second_invariant(const Matrix3<T>& C)
          C.a[1][2] * C.a[1][2] - C.a[2][0] * C.a[2][0];
 }
 
-/// Derivatives of an isochoric invariant g w with respect to F, for the time step.
+/// Derivatives of an isochoric invariant g w with respect to F, for the bound of the time step.
 template <class T>
 struct InvariantDerivatives
 {

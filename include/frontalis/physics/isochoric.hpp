@@ -6,7 +6,7 @@
 namespace frontalis::physics
 {
 
-/// Below this J the isochoric laws are continued; above it they hold exactly.
+/// Below this J the isochoric laws are replaced by a smooth continuation; above it they hold exactly.
 constexpr double continuation_jacobian = 0.2;
 
 /// g(J) = J^(-2/3) and its derivative for J >= J0. Below J0 it continues along its tangent, so that it is finite at J

@@ -9,7 +9,7 @@ namespace physics
 
 /// Constants of the tension-length relation (Blemker, Pinsky & Delp 2005, J. Biomech. 38:657), optimal fibre stretch 1.
 constexpr double fibre_optimal_stretch = 1.0;
-constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear beyond it
+constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear above it
 constexpr double fibre_p1 = 0.05;
 constexpr double fibre_p2 = 6.6;
 

@@ -23,12 +23,11 @@ namespace frontalis
 namespace physics
 {
 
-/// What a law needs of its number type beyond + - * / and comparisons. This version is for scalars; the CPU backend
-/// specialises it for SIMD batches.
+/// The functions that a law needs of its number type beyond + - * / and comparisons. This version is for scalars; the
+/// CPU backend specialises it for SIMD batches.
 template <class T>
 struct Number
 {
-  /// The value as a number of this type.
   static FRONTALIS_LAW T of(double value) { return static_cast<T>(value); }
   /// `yes` if the condition holds, else `no`. Both are evaluated.
   static FRONTALIS_LAW T select(bool condition, T yes, T no) { return condition ? yes : no; }

@@ -8,8 +8,8 @@ namespace frontalis
 namespace physics
 {
 
-/// Gradients shorter than this have no direction that a node could follow: it is in the middle of a furrow narrower
-/// than its distance, or of a ridge. It keeps the plane it has, as it does where no samples are stored.
+/// A node cannot follow a gradient shorter than this: it is on a ridge, or in the middle of a furrow narrow compared
+/// with its distance from the surface. It keeps its latest tangent plane, as it does if no samples are stored there.
 constexpr double least_gradient = 0.05;
 
 /// Tangent plane of a level set near a point: a node moves by -distance * normal to be on it.
@@ -17,12 +17,12 @@ template <class T>
 struct LevelPlane
 {
   Vec3<T> normal;  ///< unit vector towards larger distances from the surface
-  T distance;      ///< of the point from the level set, to first order [m]
-  T slip;          ///< way along which the plane stays within plane_error of the level set, to second order [m]
+  T distance;      ///< of the point from the level set along the normal, to first order [m]
+  T slip;          ///< how far the node may move before the plane's error exceeds plane_error, to second order [m]
 };
 
-/// Plane of the set on which the field is `level` [m], from the field at a point. Returns false, and leaves `plane` as
-/// it is, where the gradient is too short.
+/// Finds the tangent plane of the set on which the field is `level` [m], from the field at a point. Returns false, and
+/// leaves `plane` unchanged, if the gradient is too short.
 template <class T>
 FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, LevelPlane<T>& plane)
 {
@@ -37,15 +37,14 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   return true;
 }
 
-/// A sliding node off its plane moves back by half of the error per step; of an error above twice this value, all but
-/// this value is removed [m]. The error arises suddenly when the tangent plane of a node is replaced. Removing it
-/// within one step would add half the stiffness of the tissue times the squared error to the energy and excite
-/// vibrations.
+/// A sliding node off its plane moves back by half of the error per step. An error above twice this value is reduced to
+/// this value at once [m]. It arises suddenly when the tangent plane of a node is replaced. Removing it within one step
+/// would add half the stiffness of the tissue times its square to the energy and excite vibrations.
 constexpr double error_left = 4.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
-/// 2019) and most of the distance from the plane. Returns the removed normal velocity. Multiplied by the node's mass it
-/// is the impulse of the constraint in this step, without the jumps at a change of plane.
+/// 2019) and most of the distance from the plane. Returns the removed normal velocity; times the node's mass it is the
+/// impulse of the constraint in this step, without the correction of the distance.
 template <class T>
 FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T>& v)
 {
@@ -58,9 +57,9 @@ FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T
   return speed;
 }
 
-/// Turns the velocity of a node with the normal when its tangent plane on a smooth surface is replaced, so that the
-/// node keeps its speed; a projection would brake it. If the normals differ by more than 0.3 rad the surface has an
-/// edge, and nothing is turned.
+/// When the tangent plane of a node on a smooth surface is replaced, turns the node's velocity with the normal, so that
+/// the node keeps its speed; a projection would brake it. If the normals differ by more than 0.3 rad the surface has an
+/// edge there, and the velocity is not changed.
 template <class T>
 FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to, const Vec3<T>& v)
 {

@@ -62,7 +62,7 @@ FRONTALIS_LAW void take_relaxed(const Kinematics<T>& k, const Symmetric3<T>& H, 
   }
 }
 
-/// H : E with the Green-Lagrange strain E = (F^T F - 1) / 2.
+/// H : E, where E = (F^T F - 1) / 2 is the Green-Lagrange strain.
 template <class T>
 FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
 {
@@ -78,8 +78,8 @@ FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
 }
 
 /// Change of H : E, at constant strain, when the relaxed stress H changes from `before` to `after` at the end of a
-/// step. The rest of the change of H : E is the work of the body against H, the sum of H : dE. A stress works along the
-/// mean of the motions before and after it, so the strain here is the mean of those at the start and end of the step.
+/// step; the rest of the change of H : E is the work against H, the sum of H : dE. A stress works along the mean of the
+/// motions before and after it, so the strain is the mean of those at the start and end of the step.
 template <class T>
 FRONTALIS_LAW T relaxation_work(const Kinematics<T>& begin, const Kinematics<T>& end, const Symmetric3<T>& before,
                                 const Symmetric3<T>& after)

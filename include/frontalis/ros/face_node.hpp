@@ -30,7 +30,7 @@ namespace frontalis
 
 /// The ROS interface of one simulated face (doc/ros.md): the topics, services, transforms and diagnostics of a Runner.
 /// A thread of its own bakes or reads the model. Bad parameters and failed bakes are logged once and shown in
-/// /diagnostics, and the services still answer then. Several threads may run its callbacks at the same time.
+/// /diagnostics; the services then answer with a failure. Several threads may run the callbacks at the same time.
 class FaceNode
 {
 public:
@@ -77,7 +77,7 @@ private:
   void play_demo(double time);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  /// The runner, or null as long as there is no model; then `reason` is set.
+  /// The runner; null while there is no model, and then the reason is written to `reason`.
   std::shared_ptr<Runner> runner(std::string* reason = nullptr) const;
 
   ros::NodeHandle handle_, private_handle_;

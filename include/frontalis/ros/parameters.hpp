@@ -18,7 +18,7 @@ struct FaceParameters
   RunnerSettings runner;  ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
   SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
   std::string face_id;                       ///< the face frame is face_<id>; empty: the model's
-  std::string parent_frame = "map";          ///< of the face frame; empty: no static transform
+  std::string parent_frame = "map";          ///< parent of the face frame; empty: no static transform
   bool demo = false;                         ///< whether to play the model's demo
   double real_time_factor_warning = 0.5;     ///< diagnostics warn below this, at pace real_time
 };

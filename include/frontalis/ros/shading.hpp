@@ -10,19 +10,19 @@
 namespace frontalis
 {
 
-/// The share of each skin vertex that the hair of a painted eyebrow covers, 0..1. The brow of a side is a band, 8 mm
+/// The fraction of each skin vertex that the hair of a painted eyebrow covers, 0..1. The brow of a side is a band, 8 mm
 /// wide at its inner end, along the line through the landmarks whose names begin with "brow" and end with "_left" or
 /// "_right", and about 1 cm longer at both ends. A side with fewer than two such landmarks has no brow. Brows show in
 /// pictures how the skin moves; they have no effect on the tissue.
 std::vector<float> brow_cover(const Model& model);
 
 /// Computes the colours of a lit skin, one per vertex. rviz does not light a marker that has colours, and its own
-/// normals are those of flat triangles, so that the light must be in the colours. A warm main light comes from above, a
+/// normals are those of flat triangles, so the colours must include the light. A warm main light comes from above, a
 /// cool one from the side, with a soft highlight. Hollows get less light, so that furrows can be seen.
 class SkinShading
 {
 public:
-  /// `hair` is the share of each vertex that hair covers, 0..1 (see brow_cover); empty: no hair.
+  /// `hair`: the fraction of each vertex that hair covers, 0..1 (see brow_cover); empty: no hair.
   explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
 
   /// Fills `out` with one red, green and blue value per vertex, 0..1, as displays take them (gamma 2.2). The skin is in

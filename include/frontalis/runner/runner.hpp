@@ -23,11 +23,11 @@ struct Frame
   std::int64_t steps = 0;       ///< solver steps since the latest reset
   std::uint64_t sequence = 0;   ///< number of the frame
   SkinState skin;
-  std::vector<float> field;       ///< what RunnerSettings::wanted_field asked for, per skin vertex; empty if nothing
+  std::vector<float> field;       ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   GuardCounts guard;              ///< since the runner started
-  bool failed = false;            ///< true: the motion was stopped as wrong, and the skin is the last good one
+  bool failed = false;            ///< true: the motion was stopped; the skin is the last good one
   std::string failure;            ///< the reason, in one sentence
 };
 
@@ -43,9 +43,9 @@ struct RunnerSettings
   SolverSettings solver;
   Pace pace = Pace::real_time;
   double frame_rate = 0;  ///< frames per second of wall time, 0.1 to 1000; 0: the model's
-  std::optional<GuardSettings> guard = GuardSettings{};  ///< none: the motion is not checked
-  /// Called once per frame in the runner's thread: which field of the skin to compute. If the function is not set or
-  /// returns nothing, no field is computed.
+  std::optional<GuardSettings> guard = GuardSettings{};  ///< empty: the motion is not checked
+  /// Called once per frame in the runner's thread; returns the field of the skin to compute. If the function is not set
+  /// or returns nothing, no field is computed.
   std::function<std::optional<SkinField>()> wanted_field{};
 };
 
@@ -82,10 +82,10 @@ public:
 
   void pause(bool paused);
   bool paused() const;
-  /// Puts the tissue and the bones back to rest and sets all activations and the time to 0. Clears a failure and ends a
-  /// step under way. Returns once that is done; throws an Error if the solver fails to reset.
+  /// Puts the tissue and the bones back to rest and sets all activations and the time to 0. Clears a failure, and ends
+  /// a call of step() that is under way. Returns once that is done; throws an Error if the solver fails to reset.
   void reset();
-  /// Ends a step under way, whose caller gets an Error.
+  /// Ends a call of step() that is under way; its caller gets an Error.
   void cancel_step();
   /// Pauses the face, advances it by exactly `seconds` of simulated time and returns the frame reached. Activations and
   /// bones move linearly to what was set last. Throws an Error if the motion fails, if the step is ended early, or if

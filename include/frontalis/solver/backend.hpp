@@ -9,8 +9,8 @@
 namespace frontalis
 {
 
-/// Description of a backend. A backend NAME defines `BackendDescription NAME_backend()` and is in the list `backends`
-/// of CMakeLists.txt, from which registered_backends() is made; nothing else names it.
+/// Description of a backend. A backend NAME defines `BackendDescription NAME_backend()` and is listed in `backends` of
+/// CMakeLists.txt, from which registered_backends() is generated.
 struct BackendDescription
 {
   std::string name;

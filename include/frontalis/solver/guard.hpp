@@ -11,28 +11,28 @@
 namespace frontalis
 {
 
-/// Findings of a check of the motion, in the order of words_for().
+/// Findings of a check of the motion.
 enum class Instability
 {
   none,
   not_finite,  ///< a displacement is NaN or Inf
   energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
-  hourglass,   ///< the same in hourglass modes only
+  hourglass,   ///< the same, in hourglass modes only
   inverted,    ///< more voxels are inverted than allowed
   time_step,   ///< steps were longer than critical
   past_rim     ///< a sliding node is far past the rim of its surface's field
 };
 
-/// The rest of a sentence that begins with "the motion is unstable: ".
+/// The finding in words that complete the sentence "the motion is unstable: ".
 std::string words_for(Instability instability);
 
 struct GuardSettings
 {
   int interval = 0;              ///< steps between two checks; 0: Solver::steps_per_check
-  double slower = 0.5;           ///< factor on the time step after a finding, and again for each further try
+  double slower = 0.5;           ///< factor on the time step after a finding, applied once per try
   int recovery = 4;              ///< checks without a finding before the full time step is used again
-  int tries = 3;                 ///< consecutive tries before the motion is stopped
-  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), unless more were before
+  int tries = 3;                 ///< failed tries in a row after which the motion is stopped
+  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), or as at the last good check
   bool ledger = false;           ///< judges energy by the ledger's imbalance; needs SolverSettings::ledger
 };
 
@@ -50,7 +50,7 @@ struct InstabilityReport
 {
   Instability kind = Instability::none;
   double time = 0;                    ///< simulated time of the finding [s]
-  std::int32_t voxel = -1;            ///< the worst
+  std::int32_t voxel = -1;            ///< the worst voxel
   double jacobian = 1;                ///< its J
   std::array<double, 3> scene{};      ///< its centre at rest, scene frame [m]
   std::array<double, 3> face{};       ///< the same in the face frame [m]
@@ -58,7 +58,7 @@ struct InstabilityReport
   std::vector<std::string> muscle;    ///< muscles with fibres in it, the one with the highest tension first
   std::string effect;                 ///< name of the effect that is most likely the cause
   std::string advice;                 ///< what to change
-  std::string text() const;           ///< all of it, in two or three sentences
+  std::string text() const;           ///< the whole report in two or three sentences
 };
 
 /// The motion was stopped. The solver is at the latest good state, or at the previous one if the latest failed too.
@@ -69,16 +69,16 @@ public:
   InstabilityReport report;
 };
 
-/// Watches a solver's motion. Every so many steps it looks for signs of instability. If there are none it keeps a
-/// snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
+/// Watches a solver's motion. At a fixed interval of steps it looks for signs of instability. If there are none it
+/// keeps a snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
 ///
-/// Energy is judged by a bound if there is no ledger: t after the last good check, where the kinetic, internal and
-/// hourglass energy was E, it may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f is gravity and
-/// surface loads on a node of mass m, and W is the sum of
+/// Energy is judged by a bound if there is no ledger. Let E be the kinetic, internal and hourglass energy at the last
+/// good check. After a further time t it may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f is
+/// gravity and surface loads on a node of mass m, and W is the sum of
 /// - the energy of a strain of 1e-4 everywhere;
 /// - what fibres can give: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive too;
-/// - what bones and prescribed nodes can have brought, whose paths since then have length d: d^2 times four times the
-///   bound of the stiffness of the voxels at them;
+/// - what bones and prescribed nodes can have brought: with d the length of their paths in that time, d^2 times four
+///   times the bound of the stiffness of the voxels at them;
 /// - what viscous stresses can give back.
 class Guard
 {
@@ -89,21 +89,20 @@ public:
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// Like Solver::advance, in parts, so that checks happen in time. After a rollback, controls change linearly from
-  /// those of the snapshot to `target`. Throws Error as Solver::advance does; throws Unstable when `tries` consecutive
-  /// tries have failed, with a good state restored.
+  /// Like Solver::advance, but in parts with checks between them. After a rollback, controls change linearly from those
+  /// of the snapshot to `target`. Throws Error as Solver::advance does; throws Unstable, with a good state restored,
+  /// when `tries` tries in a row have failed.
   void advance(double seconds, const Controls& target);
-  /// Checks the present state. After a finding it goes back to a good state, or throws Unstable.
+  /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
-  /// Like Solver::settle, with checks as in advance(), except for the ledger, which starts anew afterwards. Throws as
-  /// both do.
+  /// Like Solver::settle, with checks as in advance() except that of the ledger, which starts anew. Throws as both do.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
-  /// Takes the present state as good. To be called after reset(), or after displacements were set.
+  /// Accepts the present state as good without a check. Call it after reset(), or after displacements were set.
   void restart();
 
   const GuardCounts& counts() const;
-  const Monitor& latest() const;  ///< at the latest check without a finding
+  const Monitor& latest() const;  ///< values at the latest check without a finding
 
 private:
   struct Implementation;

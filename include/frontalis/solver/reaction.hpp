@@ -5,11 +5,11 @@
 namespace frontalis
 {
 
-/// What tissue does to a rigid body that it touches, local axes.
+/// Force and moment of the tissue on a rigid body that touches it, local axes.
 struct Reaction
 {
   std::array<double, 3> force{};   ///< [N]
-  std::array<double, 3> moment{};  ///< [N m] about the origin of the local frame where the body has carried it
+  std::array<double, 3> moment{};  ///< [N m] about the origin of the local frame, carried along by the body
 };
 
 }  // namespace frontalis

@@ -8,7 +8,7 @@ namespace frontalis
 /// Whether all numbers are finite and the rotation is proper (no reflection, no scaling), to within 1e-6.
 bool is_rigid_motion(const RigidTransform& pose);
 
-/// The pose at a fraction of the way between two poses, by rotation vector and translation.
+/// The pose at a fraction (0..1) between two poses: their relative rotation vector and translation are scaled.
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction);
 
 /// The map that applies `first`, then `then`.
@@ -21,7 +21,7 @@ RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::ar
 /// Largest distance [m] that a corner of the box between the origin and `corner` [m] moves between two poses.
 double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
-/// Length [m] of a path along interpolate() at a constant speed, that of the fastest corner at any time.
+/// Bound [m] of the path of any corner along interpolate(): its highest speed times the duration.
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
 }  // namespace frontalis

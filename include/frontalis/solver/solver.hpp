@@ -25,18 +25,18 @@ using Backend = std::string;
 
 /// The values of SolverSettings::backend in this build, "auto" first.
 std::vector<Backend> backend_names();
-/// Returns the name; throws Error if it is not in backend_names().
+/// Checks and returns the name. Throws Error if it is not in backend_names().
 Backend backend_from_name(const std::string& name);
 /// The backends that can run on this machine, in the order of preference of "auto".
 std::vector<Backend> available_backends();
-SkinField skin_field_from_name(const std::string& name);  ///< "strain" or "stress"; throws Error naming them
+SkinField skin_field_from_name(const std::string& name);  ///< throws Error unless it is "strain" or "stress"
 
 struct SolverSettings
 {
   Backend backend = "auto";
   int threads = 0;       ///< CPU threads; 0: one per core
   double time_step = 0;  ///< [s]; 0: chosen by the solver. Steps above the critical time step are refused
-  bool ledger = false;   ///< keeps account of energies (Solver::ledger); makes steps slower
+  bool ledger = false;   ///< keeps an account of energies (Solver::ledger); makes steps slower
 };
 
 /// External inputs of the model.
@@ -46,7 +46,7 @@ struct Controls
   std::vector<RigidTransform> bone;  ///< one per bone: motion from its rest pose, in the local frame
 };
 
-/// Controls at a fraction of the way between two; bones rotate about the shortest axis.
+/// Controls at a fraction (0..1) between two; bones rotate about the shortest axis.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
 
 /// The complete state of a motion at one moment. Only the solver that made it can read it.
@@ -56,7 +56,7 @@ public:
   virtual ~Snapshot() = default;
 };
 
-/// The motion is no longer finite.
+/// Thrown when the motion is no longer finite.
 class Diverged : public Error
 {
 public:
@@ -78,7 +78,7 @@ public:
   /// only reset() and restore() help.
   virtual void advance(double seconds, const Controls& target) = 0;
 
-  /// Throws Error if advance() would: after divergence, or for an invalid duration or target.
+  /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;
 
   /// Dynamic relaxation (Underwood 1983): controls go to `target` at once, and damping is critical for the lowest
@@ -94,11 +94,11 @@ public:
   /// Restores a snapshot of this solver; the motion then continues with the same bits. Throws Error on a snapshot of
   /// another solver.
   virtual void restore(const Snapshot& snapshot) = 0;
-  /// The same as bytes, for a solver of an equal model in another process, on the same machine and with the same
+  /// save() as bytes, for a solver of an equal model in another process, on the same machine and with the same
   /// settings. unpack() throws Error on anything else, and leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Number of steps that take about a hundred times as long as monitor() and save().
+  /// Steps between two checks of the guard: they take about a hundred times as long as monitor() and save() together.
   virtual int steps_per_check() const = 0;
   /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;
@@ -111,21 +111,21 @@ public:
 
   /// The effects of the model that are switched on. reset() does not change them.
   virtual EffectSet effects() const = 0;
-  /// An effect that is off takes no time and keeps its memory. One that is switched on again has lost its history
-  /// (viscous stresses, friction). Time step and ledger start anew. Throws Error if the model does not have the effect,
+  /// An effect that is off takes no time and keeps its memory. When it is switched on again, its history (viscous
+  /// stresses, friction) is lost. Time step and ledger start anew. Throws Error if the model does not have the effect,
   /// if another effect needs it, or if it cannot be switched while running.
   virtual void switch_effect(Effect effect, bool on) = 0;
   /// Memory of the solver's arrays, without the model.
   virtual std::vector<Allocation> allocations() const = 0;
 
   virtual void skin(SkinState& out) = 0;
-  /// One number per vertex of the skin, from the centres of voxels by way of means at nodes. Memory is allocated on
-  /// first use. Throws Error if the scene switched output fields off.
+  /// One number per vertex of the skin, interpolated from the centres of voxels through means at nodes. Memory is
+  /// allocated on first use. Throws Error if the scene switched output fields off.
   virtual void skin_field(SkinField field, std::vector<float>& out) = 0;
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
-  /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
+  /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
   virtual Profile profile() const = 0;
 
@@ -133,7 +133,7 @@ public:
   virtual void displacements(std::vector<std::array<double, 3>>& out) const = 0;
   /// Sets the displacements and zeroes the velocities; for tests and studies.
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Nodal velocities [m/s]; for tests and studies.
+  /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
   /// Internal forces [N] at the present displacements (elastic, hourglass, fibres), before constraints.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;

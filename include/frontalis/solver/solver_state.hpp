@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace frontalis
@@ -33,36 +34,39 @@ struct Monitor
   std::int64_t inverted = 0;         ///< voxels with J <= 0
   double critical_time_step = 0;     ///< present value, bounded at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
-  double step_share = 0;             ///< latest time step over the present critical step, by the model's estimate
+  double step_share = 0;             ///< latest time step over the present critical one (model's TimeStepEstimate)
   std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
-  std::int32_t lost_node = -1;       ///< one that is more than 2 mm past it
+  std::int32_t lost_node = -1;       ///< a node that is more than 2 mm past the rim; -1: none
   bool finite = true;
+};
+
+/// One term of the energy ledger [J].
+struct EnergyTerm
+{
+  enum class Kind : std::uint8_t
+  {
+    stored,  ///< present value
+    lost,    ///< dissipated since the ledger was opened
+    work     ///< done on the tissue since the ledger was opened
+  };
+  std::string name;
+  Kind kind = Kind::stored;
+  double value = 0;
 };
 
 /// Present energies and their sources [J], since reset or since displacements or velocities were set.
 struct EnergyLedger
 {
-  double initial = 0;  ///< kinetic, internal and hourglass energy and that of contact at the start
-  double kinetic = 0;  ///< 1/2 m v(n - 1/2) . v(n + 1/2), which central differences conserve
-  double internal = 0;
-  double hourglass = 0;
-  double viscous = 0;         ///< absorbed by viscous stresses
-  double damping = 0;         ///< lost
-  double friction = 0;        ///< lost
-  double muscle = 0;          ///< work done by fibres, active and passive
-  double load = 0;            ///< work done by surface loads
-  double gravity = 0;         ///< work done
-  double contact = 0;         ///< work done by the motion of bodies that tissue touches
-  double contact_stored = 0;  ///< stored by the stiffness of contact
-  double constraint = 0;      ///< work done by bones, prescribed motion and sliding surfaces, without friction
-  double largest = 0;         ///< largest magnitude of the terms above so far
+  double initial = 0;             ///< stored energy when the ledger was opened
+  std::vector<EnergyTerm> terms;  ///< those of empty_ledger(), where they are documented
+  double largest = 0;             ///< largest magnitude of the terms and of `initial` so far
+
+  /// Value of a term. Throws Error if there is none of this name.
+  double& operator[](const std::string& name);
+  double operator[](const std::string& name) const { return const_cast<EnergyLedger&>(*this)[name]; }
 
   /// Energy that the terms do not explain; it tends to 0 with the time step.
-  double imbalance() const
-  {
-    return kinetic + internal + hourglass + contact_stored + viscous + damping + friction - muscle - load - gravity -
-           contact - constraint - initial;
-  }
+  double imbalance() const;
 };
 
 /// Result of a search for equilibrium.

@@ -46,7 +46,6 @@ struct Spread
 Spread spread_of(std::vector<double> values);
 /// Spread of the differences between two columns, turn by turn.
 Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less);
-/// Spread of one column.
 Spread spread_of(const StepTimes& times, std::size_t column);
 
 // Reference speeds of the machine. Figures of the solver from the same run are compared with them.

@@ -152,16 +152,8 @@ public:
     const auto& n = model_.nodes[rigid.node];
     const Vector3d p = frame_.grid_point(model_, n[0], n[1], n[2]);
     Candidate best;
-    ClosestPoint nearest;
-    for (const std::string& name : scene_.constraints[rigid.constraint].surfaces)
-    {
-      const PreparedSurface& surface = named_surface(surfaces_, name, scene_.file);
-      const ClosestPoint closest = surface.tree().closest(p);
-      if (best.surface != nullptr && closest.distance >= nearest.distance)
-        continue;
-      best.surface = &surface;
-      nearest = closest;
-    }
+    const auto [surface, nearest] = nearest_surface(rigid.constraint, p);
+    best.surface = surface;
     best.node = { rigid.node, 0, 0, rigid.bone, -1, rigid.constraint };
     const double outwards = best.surface->signed_distance(p, nearest);
     best.side = side_at(*best.surface, outwards);
@@ -186,7 +178,8 @@ public:
       return std::nullopt;
     Candidate found;
     found.node = { sliding.node, 0, 0, -1, sliding.surface, sliding.constraint };
-    found.surface = &named_surface(surfaces_, surface.name, scene_.file);
+    const auto& n = model_.nodes[sliding.node];
+    found.surface = nearest_surface(sliding.constraint, frame_.grid_point(model_, n[0], n[1], n[2])).first;
     found.side = side_at(*found.surface, value.value);
     found.distance = found.side * value.value;
     const Vector3d gradient(value.gradient.x, value.gradient.y, value.gradient.z);
@@ -197,6 +190,20 @@ public:
   }
 
 private:
+  /// The nearest surface of a constraint, and the closest point on it.
+  std::pair<const PreparedSurface*, ClosestPoint> nearest_surface(std::int32_t constraint, const Vector3d& p) const
+  {
+    std::pair<const PreparedSurface*, ClosestPoint> nearest{ nullptr, {} };
+    for (const std::string& name : scene_.constraints[constraint].surfaces)
+    {
+      const PreparedSurface& surface = named_surface(surfaces_, name, scene_.file);
+      const ClosestPoint closest = surface.tree().closest(p);
+      if (nearest.first == nullptr || closest.distance < nearest.second.distance)
+        nearest = { &surface, closest };
+    }
+    return nearest;
+  }
+
   /// The tissue's side; where it is on both, the side of a node at the distance `outwards`.
   double side_at(const PreparedSurface& surface, double outwards)
   {

@@ -61,8 +61,8 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
                      { parallel_for(monitor, count, 1, body); });
 }
 
-// The part of a surface in a box, its triangles halved until no edge is longer than `longest` [m]: only vertices touch.
-// Vertices of halved triangles may lie on edges of others, which changes neither area nor shape.
+// The part of a surface in a box, with its triangles halved until no edge is longer than `longest` [m], because contact
+// is found at vertices only. New vertices may be on edges of other triangles, which changes neither area nor shape.
 TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
 {
   TriangleMesh mesh;
@@ -113,7 +113,7 @@ std::int32_t bone_of(const std::string& name, Model& model)
   return bone;
 }
 
-// Refuses tissue that lies in a body at rest, which would throw it out.
+// Throws Error if tissue is in a body at rest, because contact would throw the tissue out.
 void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
                    const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
 {

@@ -6,7 +6,7 @@ namespace frontalis
 {
 
 /// Fills the contacts of the model: the distance from each body, and the points of the tissue that may touch it. Throws
-/// Error for a body that is open, for a surface of which nothing can be bound, and where the two overlap at rest.
+/// Error if a body is open, if nothing of a surface can be bound, or if the two overlap at rest.
 void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 

@@ -129,7 +129,7 @@ void remove_islands(Model& model, BakeMonitor& monitor)
     stays[c] = c == largest || (held[c] && 100 * sizes[c] >= sizes[largest]);
     if (stays[c])
       continue;
-    (held[c] ? crumbs : islands) += 1;  // crumb: a small component with restricted nodes
+    (held[c] ? crumbs : islands) += 1;  // `crumbs`: small components with restricted nodes
     voxels += sizes[c];
   }
   if (voxels == 0)

@@ -31,7 +31,7 @@ public:
   Distances find(const PreparedSurface& surface, double within, const Region& crop)
   {
     const double reach = reach_of(within);
-    const double side = side_of(surface);
+    const double side = tissue_side(surface);
     const double bound = std::max(reach, side == 0 ? 0 : 2 * edge_);
     const Box box = to_box(crop);
     Distances distances(positions_.size(), std::nan(""));
@@ -55,26 +55,27 @@ public:
   double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
   double edge() const { return edge_; }
 
-  /// The part of a surface that nodes may slide on.
-  const PreparedSurface& sheet_of(const PreparedSurface& surface)
+  /// The part of a surface that nodes may slide on. `others`: surfaces that restrict nodes too; see tissue_sheet().
+  const PreparedSurface& sheet_of(const PreparedSurface& surface, std::vector<const PreparedSurface*> others)
   {
     auto& sheet = sheet_[&surface];
+    others.erase(std::remove(others.begin(), others.end(), &surface), others.end());
     if (!sheet)
-      sheet =
-          std::make_unique<PreparedSurface>(surface.name(), tissue_sheet(surface, side_of(surface), frame_, model_));
+      sheet = std::make_unique<PreparedSurface>(surface.name(),
+                                                tissue_sheet(surface, tissue_side(surface), others, frame_, model_));
     return *sheet;
   }
 
-private:
-  /// tissue_side(), found once per surface
-  double side_of(const PreparedSurface& surface)
+  /// tissue_side() of tissue_sheet.hpp, found once per surface
+  double tissue_side(const PreparedSurface& surface)
   {
     const auto known = side_.find(&surface);
     if (known != side_.end())
       return known->second;
-    return side_[&surface] = tissue_side(surface, frame_, model_);
+    return side_[&surface] = frontalis::tissue_side(surface, frame_, model_);
   }
 
+private:
   const LocalFrame& frame_;
   const Model& model_;
   BakeMonitor& monitor_;
@@ -118,6 +119,11 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     double distance = 0;  // from the surface of a sliding node [m]
   };
   std::vector<Restriction> restrictions(nodes);
+  std::vector<const PreparedSurface*> bones;  // surfaces that restrict nodes
+  for (const SceneConstraint& constraint : scene.constraints)
+    if (constraint.kind != SceneConstraint::Kind::contact)
+      for (const std::string& name : constraint.surfaces)
+        bones.push_back(&named_surface(surfaces, name, place_in_scene(scene, "constraint", constraint)));
   // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; of surfaces
   // to slide on, it is the sheet that faces tissue
   const auto for_each_node = [&](const std::string& place, const std::vector<std::string>& names, const auto& part,
@@ -127,7 +133,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     for (const std::string& name : names)
     {
       const PreparedSurface& whole = named_surface(surfaces, name, place);
-      const PreparedSurface& surface = slides ? finder.sheet_of(whole) : whole;
+      const PreparedSurface& surface = slides ? finder.sheet_of(whole, bones) : whole;
       const Distances distances = finder.find(surface, part.within, part.crop);
       for (std::size_t n = 0; n < nodes; ++n)
       {
@@ -173,33 +179,47 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                   });
   }
 
-  // surface and sheet of each of the model's constraint surfaces
-  std::vector<std::pair<const PreparedSurface*, const PreparedSurface*>> sheets;
+  // For each field of the model, its surfaces. Surfaces that move alike and have tissue on the same side share a field,
+  // so that nodes can slide from one to the next; a sphere has a field of its own.
+  std::vector<std::vector<SlidingSurface>> sheets;
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
   {
     const SceneConstraint& constraint = scene.constraints[c];
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    // index of a sheet among the model's surfaces, which it becomes one of
+    // finds or adds the field for a sheet; returns its index among the model's surfaces
     const auto index_of = [&](const PreparedSurface& sheet)
     {
       auto& list = model.constraint_surfaces;
-      const auto same = [&](const ConstraintSurface& other)
-      { return other.name == sheet.name() && other.bone == bone && other.friction == constraint.friction; };
-      const auto index = static_cast<std::size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
+      const PreparedSurface& whole = named_surface(surfaces, sheet.name(), "");
+      std::size_t index = 0;
+      for (; index < list.size(); ++index)
+      {
+        const PreparedSurface& first = *sheets[index].front().whole;
+        const bool moves_alike = list[index].bone == bone && list[index].friction == constraint.friction;
+        const bool joins =
+            !is_sphere(first) && !is_sphere(whole) && finder.tissue_side(first) == finder.tissue_side(whole);
+        if (moves_alike && (&first == &whole || joins))
+          break;
+      }
       if (index == list.size())
       {
-        list.push_back({ sheet.name(), bone, constraint.friction, {} });
-        sheets.emplace_back(&named_surface(surfaces, sheet.name(), ""), &sheet);
+        list.push_back({ {}, bone, constraint.friction, {} });
+        sheets.emplace_back();
       }
+      list[index].name += (sheets[index].empty() ? "" : ", ") + sheet.name();
+      sheets[index].push_back({ &whole, &sheet });
       return static_cast<std::int32_t>(index);
     };
+    std::map<const PreparedSurface*, std::int32_t> indices;
     for_each_node(
         place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
         [&](std::size_t n, double d, const PreparedSurface& sheet)
         {
-          const std::int32_t index = index_of(sheet);
+          std::int32_t& index = indices.try_emplace(&sheet, -1).first->second;
+          if (index < 0)
+            index = index_of(sheet);
           const Restriction& known = restrictions[n];
           if (known.kind < Kind::sliding || (known.kind == Kind::sliding && std::abs(d) < std::abs(known.distance)))
             restrictions[n] = { Kind::sliding, index, static_cast<std::int32_t>(c), d };
@@ -207,21 +227,21 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
         true);
   }
 
-  std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes whose distance from each counts
+  std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes that slide on each
   for (std::size_t n = 0; n < nodes; ++n)
     if (restrictions[n].kind == Kind::sliding)
       rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
-  // masters of attached nodes too, which attach_nodes() finds later
+  // the masters of attached nodes too, which attach_nodes() finds later
   for (std::size_t s = 0; s < sheets.size() && scene.accuracy.boundary == "true"; ++s)
-  {
-    const Distances distances = finder.find(*sheets[s].second, 3.5 * finder.edge(), Region());
-    for (std::size_t n = 0; n < nodes; ++n)
-      if (!std::isnan(distances[n]))
-        rest[s].push_back(rest_position(model, static_cast<std::int32_t>(n)));
-  }
+    for (const SlidingSurface& surface : sheets[s])
+    {
+      const Distances distances = finder.find(*surface.sheet, 3.5 * finder.edge(), Region());
+      for (std::size_t n = 0; n < nodes; ++n)
+        if (!std::isnan(distances[n]))
+          rest[s].push_back(rest_position(model, static_cast<std::int32_t>(n)));
+    }
   for (std::size_t s = 0; s < sheets.size(); ++s)
-    model.constraint_surfaces[s].field =
-        distance_field(*sheets[s].first, *sheets[s].second, rest[s], frame, model, monitor);
+    model.constraint_surfaces[s].field = distance_field(sheets[s], rest[s], frame, model, monitor);
 
   for (std::size_t n = 0; n < nodes; ++n)
   {

@@ -20,12 +20,12 @@ namespace frontalis
 namespace
 {
 
-/// How far nodes may slide beyond the places where nodes rest: more than skin moves [m].
+/// How far nodes may slide beyond the area in which nodes rest [m]: farther than skin moves.
 constexpr double travel = 20e-3;
 
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
 
-/// Whether `ask` is true at a point of a triangle, of points at most `spacing` apart.
+/// Whether `ask` is true at any point of a triangle; tries points at most `spacing` [m] apart.
 template <class Ask>
 bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
 {
@@ -41,9 +41,11 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
   return false;
 }
 
-/// Extends a selection of triangles over their edges up to `travel` farther, where the surface does not turn away by
-/// more than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it.
-void grow(const TriangleMesh& mesh, std::vector<bool>& selected)
+/// Extends a selection of triangles across their edges by up to `travel`, as long as the surface does not turn by more
+/// than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it. Enters only
+/// triangles for which enters(triangle) is true.
+template <class Enters>
+void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& enters)
 {
   constexpr double least_cosine = 0.2;
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::size_t>> at_edge;
@@ -83,7 +85,7 @@ void grow(const TriangleMesh& mesh, std::vector<bool>& selected)
   {
     const Entry entry = entries.top();
     entries.pop();
-    if (selected[entry.triangle])
+    if (selected[entry.triangle] || !enters(entry.triangle))
       continue;
     selected[entry.triangle] = true;
     leave(entry.triangle, entry.way, &entry.at, entry.normal);
@@ -142,6 +144,89 @@ std::vector<std::array<bool, 7>> rim_features(const TriangleMesh& mesh)
   return features;
 }
 
+/// Whether a triangle faces one of the other surfaces within `gap` [m], or overlaps it by less than that.
+bool faces(const std::vector<const PreparedSurface*>& others, const std::array<Vector3d, 3>& triangle, double gap)
+{
+  const Vector3d middle = (triangle[0] + triangle[1] + triangle[2]) / 3, normal = normal_of(triangle);
+  return std::any_of(others.begin(), others.end(),
+                     [&](const PreparedSurface* other)
+                     {
+                       const ClosestPoint closest = other->tree().closest(middle, gap);
+                       return closest.triangle >= 0 && other->pseudonormal(closest).dot(normal) < 0;
+                     });
+}
+
+/// Distance of points from one sheet of a field.
+class SheetDistance
+{
+public:
+  explicit SheetDistance(const SlidingSurface& of) : of_(of), on_rim_(rim_features(of.sheet->mesh())) {}
+
+  /// The closest point of the sheet within `bound` [m]. `hint`: triangle found for a neighbouring point, or -1;
+  /// replaced by the one found here.
+  ClosestPoint closest(const Vector3d& p, double bound, std::int32_t& hint) const
+  {
+    const auto triangles = static_cast<std::int32_t>(of_.sheet->mesh().triangles.size());
+    const ClosestPoint closest = of_.sheet->tree().closest(p, bound, hint < triangles ? hint : -1);
+    hint = closest.triangle;
+    return closest;
+  }
+
+  const Vector3d& normal(const ClosestPoint& closest) const { return of_.sheet->pseudonormal(closest); }
+
+  SurfaceDistance at(const Vector3d& p, const ClosestPoint& closest) const
+  {
+    const Vector3d away = p - closest.point;
+    const double height = away.dot(normal(closest));
+    const bool at_rim = on_rim_[closest.triangle][closest.feature];
+    // a point inside a closed surface is not above its sheet, even if the sheet alone suggests it
+    if (height > 0 && of_.whole->closed() &&
+        of_.whole->signed_distance(p, of_.whole->tree().closest(p, closest.distance + 1e-9)) < 0)
+      return -closest.distance;
+    if (at_rim)
+      return { height, (away - height * normal(closest)).norm() };
+    return std::copysign(closest.distance, height);
+  }
+
+private:
+  SlidingSurface of_;
+  std::vector<std::array<bool, 7>> on_rim_;
+};
+
+/// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have
+/// more weight the nearer they are and the more they are parallel to the nearest. So a node can pass from one bone to
+/// the next across a gap between their sheets, and sheets that face each other stay separate.
+SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Vector3d& p)
+{
+  constexpr double hardly_farther = 1e-3;  // [m]
+  // start each search at the triangles found last, because successive samples are neighbours
+  thread_local std::vector<std::int32_t> hint;
+  hint.resize(sheets.size(), -1);
+  std::vector<ClosestPoint> closest;
+  std::size_t nearest = 0;
+  for (std::size_t s = 0; s < sheets.size(); ++s)
+  {
+    const double bound = s == 0 ? 1e300 : closest[nearest].distance + hardly_farther;
+    closest.push_back(sheets[s].closest(p, bound, hint[s]));
+    if (closest[s].triangle >= 0 && closest[s].distance < closest[nearest].distance)
+      nearest = s;
+  }
+  const Vector3d& normal = sheets[nearest].normal(closest[nearest]);
+  SurfaceDistance sum = sheets[nearest].at(p, closest[nearest]);
+  double weights = 1;
+  for (std::size_t s = 0; s < sheets.size(); ++s)
+  {
+    const double farther = closest[s].distance - closest[nearest].distance;
+    if (s == nearest || closest[s].triangle < 0 || farther >= hardly_farther)
+      continue;
+    const double share = (1 - farther / hardly_farther) * std::max(0.0, normal.dot(sheets[s].normal(closest[s])));
+    sum.value += share * share * sheets[s].at(p, closest[s]).value;
+    weights += share * share;
+  }
+  // a point between two sheets is not past their rims
+  return { sum.value / weights, weights > 1 ? 0 : sum.past_rim };
+}
+
 }  // namespace
 
 double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, const Model& model)
@@ -174,7 +259,10 @@ double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, cons
   return std::abs(surplus) < 0.4 * all || all == 0 ? 0 : (surplus > 0 ? 1 : -1);
 }
 
-TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const LocalFrame& frame, const Model& model)
+bool is_sphere(const PreparedSurface& surface) { return sphere_of(surface).has_value(); }
+
+TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std::vector<const PreparedSurface*>& bones,
+                          const LocalFrame& frame, const Model& model)
 {
   const TriangleMesh& mesh = surface.mesh();
   if (sphere_of(surface))
@@ -189,9 +277,13 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const Loc
     return tissue.find({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
                            static_cast<std::int32_t>(cell[2]) } }) >= 0;
   };
-  std::vector<bool> facing(mesh.triangles.size());
+  std::vector<bool> facing(mesh.triangles.size(), false);
+  const auto is_wall = [&](std::size_t t)
+  { return faces(bones, corners(mesh, mesh.triangles[t]), spacing.maxCoeff()); };
   for (std::size_t t = 0; t < facing.size(); ++t)
   {
+    if (is_wall(t))
+      continue;
     const auto v = corners(mesh, mesh.triangles[t]);
     const Vector3d ahead = spacing.maxCoeff() * normal_of(v);
     facing[t] = any_point(v, spacing.minCoeff(),
@@ -201,38 +293,18 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const Loc
   // tissue thinner than a voxel
   if (std::find(facing.begin(), facing.end(), true) == facing.end())
     return mesh;
-  grow(mesh, facing);
+  grow(mesh, facing, [&](std::size_t t) { return !is_wall(t); });
   return keep_triangles(mesh, facing);
 }
 
-SampledField distance_field(const PreparedSurface& surface, const PreparedSurface& sheet,
-                            const std::vector<std::array<double, 3>>& rest, const LocalFrame& frame, const Model& model,
-                            BakeMonitor& monitor)
+SampledField distance_field(const std::vector<SlidingSurface>& surfaces, const std::vector<std::array<double, 3>>& rest,
+                            const LocalFrame& frame, const Model& model, BakeMonitor& monitor)
 {
-  if (const auto sphere = sphere_of(surface))
+  if (const auto sphere = sphere_of(*surfaces.front().whole))
     return sphere_field(to_array(frame.to_local(sphere->first)), sphere->second);
-  const std::vector<std::array<bool, 7>> on_rim = rim_features(sheet.mesh());
+  const std::vector<SheetDistance> sheets(surfaces.begin(), surfaces.end());
   const auto distance = [&](const std::array<double, 3>& local)
-  {
-    // neighbouring samples are asked for one after the other
-    thread_local std::int32_t hint = -1;
-    const Vector3d p = frame.to_scene(to_vector(local));
-    const auto triangles = static_cast<std::int32_t>(sheet.mesh().triangles.size());
-    const ClosestPoint closest = sheet.tree().closest(p, 1e300, hint < triangles ? hint : -1);
-    hint = closest.triangle;
-    const double signed_distance = sheet.signed_distance(p, closest);
-    const bool at_rim = on_rim[closest.triangle][closest.feature];
-    if (!at_rim && signed_distance < 0)
-      return SurfaceDistance(signed_distance);
-    // Nothing in a closed surface lies above its sheet, though the sheet alone may seem to say so.
-    if (surface.closed() && surface.signed_distance(p, surface.tree().closest(p, closest.distance + 1e-9)) < 0)
-      return SurfaceDistance(-closest.distance);
-    if (!at_rim)
-      return SurfaceDistance(signed_distance);
-    const Vector3d away = p - closest.point, &normal = sheet.pseudonormal(closest);
-    const double height = away.dot(normal);
-    return SurfaceDistance(height, (away - height * normal).norm());
-  };
+  { return distance_from(sheets, frame.to_scene(to_vector(local))); };
   constexpr std::size_t grain = 64;
   return sample_field(rest, distance, std::min(0.5e-3, 0.5 * to_vector(model.spacing).minCoeff()), travel,
                       [&](std::size_t count, const std::function<void(std::size_t)>& body)

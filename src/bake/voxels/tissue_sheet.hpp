@@ -7,17 +7,30 @@
 namespace frontalis
 {
 
+/// Whether a surface is stored as centre and radius.
+bool is_sphere(const PreparedSurface& surface);
+
 /// +1: the tissue within two voxels of a surface lies on the side of its outward normals, -1: on the other, 0: on both.
 double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, const Model& model);
 
-/// The part of a surface that tissue faces, and what nodes that slide may reach beyond it: such as the outer table of
-/// a bone, without the inner one. A closed sphere is returned whole. side: tissue_side().
-TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const LocalFrame& frame, const Model& model);
+/// The part of a surface that faces tissue, extended by the distance that sliding nodes may move beyond it: the outer
+/// table of a bone, for example, without the inner one. A closed sphere is returned unchanged. side: tissue_side().
+/// bones: other surfaces that restrict nodes;
+/// parts that face one of them within a voxel, such as the wall of a suture, are left out.
+TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std::vector<const PreparedSurface*>& bones,
+                          const LocalFrame& frame, const Model& model);
 
-/// Field of the distance from a surface's sheet (see SampledField) around nodes at `rest`, in local coordinates. Closed
-/// spheres get their closed form.
-SampledField distance_field(const PreparedSurface& surface, const PreparedSurface& sheet,
-                            const std::vector<std::array<double, 3>>& rest, const LocalFrame& frame, const Model& model,
-                            BakeMonitor& monitor);
+/// A surface that nodes slide on, and its sheet.
+struct SlidingSurface
+{
+  const PreparedSurface* whole;
+  const PreparedSurface* sheet;
+};
+
+/// Field of the distance from the sheets of surfaces that move alike (see SampledField), around nodes at `rest` in
+/// local coordinates. It is smooth where one sheet continues another. A closed sphere has a field of its own, in closed
+/// form.
+SampledField distance_field(const std::vector<SlidingSurface>& surfaces, const std::vector<std::array<double, 3>>& rest,
+                            const LocalFrame& frame, const Model& model, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -39,7 +39,7 @@ public:
     std::optional<std::size_t> closed_by;  ///< body
     std::vector<std::size_t> inside;       ///< bodies
     std::vector<std::size_t> outside;      ///< bodies: those of `outside`, then those of `without`
-    std::size_t hiding = 0;                ///< number of the first bodies of `outside`, which hide points behind them
+    std::size_t hiding = 0;                ///< so many bodies at the start of `outside` hide points behind them
     std::optional<std::size_t> within;     ///< depth field
     int material = -1;                     ///< index; -1: none
     int muscle = -1;                       ///< index; -1: none

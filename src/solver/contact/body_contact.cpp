@@ -1,6 +1,7 @@
 #include "solver/contact/body_contact.hpp"
 
 #include "frontalis/model/sample_field.hpp"
+#include "solver/contact/contact_stiffness.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <cmath>
@@ -14,19 +15,18 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
-constexpr double forgotten_depth = 1e-9;
-
-// Runs of bound nodes are joined over this many others.
+// Runs of bound nodes are merged if at most this many other nodes are between them.
 constexpr std::int32_t largest_gap = 8;
 
-// More than rounding errors take from a way that is found in single precision.
+// Factor on distances found in single precision that outweighs their rounding errors.
 constexpr double rounding = 1.00001;
 
 }  // namespace
 
-BodyContact::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
+template <class Real>
+BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
 {
+  const auto* const stiffness = discretisation.find_added<ContactStiffness>();
   for (std::size_t c = 0; c < model.contacts.size(); ++c)
   {
     const Contact& contact = model.contacts[c];
@@ -34,7 +34,7 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       if (contact.area[p] > 0)
         points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
-                            static_cast<float>(discretisation.contact.of(c, p)), vector(contact.points[p]) });
+                            static_cast<float>(stiffness->of(c, p)), vector(contact.points[p]) });
   }
   if (points_.empty())
     return;
@@ -71,14 +71,16 @@ BodyContact::BodyContact(const Model& model, const Discretisation& discretisatio
   reset();
 }
 
-void BodyContact::run(EffectSet running)
+template <class Real>
+void BodyContact<Real>::run(EffectSet running)
 {
   runs_ = running.has(Effect::contact);
   if (!runs_)
     reset();
 }
 
-void BodyContact::reset()
+template <class Real>
+void BodyContact<Real>::reset()
 {
   if (points_.empty())
     return;
@@ -96,7 +98,8 @@ void BodyContact::reset()
   opened_.assign(1, {});
 }
 
-void BodyContact::list_arrays(ArrayList& list)
+template <class Real>
+void BodyContact<Real>::list_arrays(ArrayList& list)
 {
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
@@ -118,7 +121,7 @@ void BodyContact::list_arrays(ArrayList& list)
 }
 
 template <class Real>
-Vector BodyContact::place(const Point& point, const Real* const u[3]) const
+Vector BodyContact<Real>::place(const Point& point, const Real* const u[3]) const
 {
   const auto& c = point.coordinates;
   const auto& nodes = model_.voxel_nodes[point.voxel];
@@ -130,13 +133,15 @@ Vector BodyContact::place(const Point& point, const Real* const u[3]) const
   return p;
 }
 
-RigidTransform BodyContact::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
+template <class Real>
+RigidTransform BodyContact<Real>::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
 {
   const std::int32_t bone = model_.contacts[body].bone;
   return bone < 0 ? RigidTransform() : bones[bone];
 }
 
-std::vector<BodyContact::BodyState> BodyContact::next(const ConstraintStep& step) const
+template <class Real>
+std::vector<typename BodyContact<Real>::BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 {
   std::vector<BodyState> now;
   double way = 0;
@@ -151,24 +156,8 @@ std::vector<BodyContact::BodyState> BodyContact::next(const ConstraintStep& step
   return now;
 }
 
-// Distance from a body of a point that has no samples around it, or less.
-double BodyContact::slack(const Contact& contact, const Vector& x) const
-{
-  const SampledField& field = contact.field;
-  const double p[3] = { x.x, x.y, x.z };
-  double squared = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    const double begin = field.origin[axis] - 0.5 * field.spacing;
-    const double end = begin + field.bricks[axis] * physics::DistanceField::brick_edge * field.spacing;
-    const double outside = std::max({ begin - p[axis], p[axis] - end, 0.0 });
-    squared += outside * outside;
-  }
-  return std::max(0.5 * contact.reach, std::sqrt(squared));
-}
-
 template <class Real>
-void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
@@ -190,20 +179,22 @@ void BodyContact::look_at(std::size_t p, const Real* const u[3], const BodyState
   }
   forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
   touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
-  if (contact.friction > 0 && grip.normal > stiffness * forgotten_depth)
+  if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
-  // the gradient of a spline of distances is not longer than sqrt(3)
+  // the distance is at least this
   if (touches_[p] == Touching::no)
-    due_[p] = body.way + (sampled ? value.value / std::sqrt(3.0) : slack(contact, x));
+    due_[p] = body.way + (sampled ? value.value / physics::steepest_field
+                                  : physics::distance_without_samples(field, contact.reach, x));
 }
 
 template <class Real>
-void BodyContact::look(int thread, int threads, const Real* const u[3], const ConstraintStep& step)
+void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step)
 {
   const std::vector<BodyState> now = next(step);
   const double response = physics::friction_response(step.dt);
-  const std::size_t begin = chunks_.size() * thread / threads, end = chunks_.size() * (thread + 1) / threads;
+  const std::size_t begin = chunks_.size() * share.thread / share.threads;
+  const std::size_t end = chunks_.size() * (share.thread + 1) / share.threads;
   for (std::size_t c = begin; c < end; ++c)
   {
     Chunk& chunk = chunks_[c];
@@ -219,14 +210,50 @@ void BodyContact::look(int thread, int threads, const Real* const u[3], const Co
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }
   }
-  if (thread != 0)
-    return;
+  if (share.thread == 0)
+    go_on_to(now);
+}
+
+template <class Real>
+void BodyContact<Real>::go_on_to(const std::vector<BodyState>& now)
+{
   for (std::size_t b = 0; b < now.size(); ++b)
     motion_[b] = bodies_[b].dt > 0 ? motion_between(bodies_[b].pose, now[b].pose) : BodyMotion{};
   next_ = now;
 }
 
-void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
+template <class Real>
+void BodyContact<Real>::follow(const std::vector<Found>& found, const ConstraintStep& step)
+{
+  for (std::size_t p = 0; p < points_.size(); ++p)
+  {
+    forces_[p] = found[p].force;
+    grips_[p] = found[p].grip;
+    touches_[p] = found[p].touching;
+  }
+  for (Chunk& chunk : chunks_)
+    chunk.touches = 1;
+  go_on_to(next(step));
+  add_up(0, 0, model_.size[2]);
+}
+
+template <class Real>
+void BodyContact<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
+{
+  const auto first = share.first_plane, last = share.end_plane;
+  each_touching(plane_points_[std::max(first - 1, 0)], plane_points_[last],
+                [&](std::int32_t p)
+                {
+                  push_point(points_[p], forces_[p].force, first, last,
+                             [&](std::int32_t node, const Vector& part) {
+                               sink(node, { part.x, part.y, part.z });
+                             });
+                });
+  add_up(share.thread, first, last);
+}
+
+template <class Real>
+void BodyContact<Real>::add_up(int thread, std::int32_t first, std::int32_t last)
 {
   if (thread == 0)
     bodies_ = next_;
@@ -251,11 +278,11 @@ void BodyContact::add_up(int thread, std::int32_t first, std::int32_t last)
 }
 
 template <class Real>
-void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3])
+void BodyContact<Real>::after_step(const NodeShare& share, const Real* const before[3], const Real* const after[3])
 {
-  for (auto k = first; k < last; ++k)
+  for (auto k = share.first_plane; k < share.end_plane; ++k)
   {
-    // squares, in lanes that the compiler makes vectors of
+    // squared lengths, in lanes that the compiler can vectorise
     constexpr std::int32_t width = 8;
     Real longest[width] = {};
     const auto compare = [&](std::int32_t lane, std::int32_t n)
@@ -278,7 +305,8 @@ void BodyContact::moved(std::int32_t first, std::int32_t last, const Real* const
   }
 }
 
-std::vector<Reaction> BodyContact::reactions() const
+template <class Real>
+std::vector<Reaction> BodyContact<Real>::reactions() const
 {
   std::vector<Reaction> total(model_.contacts.size());
   for (std::size_t s = 0; s < sums_.size(); ++s)
@@ -292,18 +320,17 @@ std::vector<Reaction> BodyContact::reactions() const
 }
 
 template <class Real>
-ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
-                                  std::vector<std::array<double, 3>>& forces)
+typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* const u[3],
+                                                                 const std::vector<RigidTransform>& bones,
+                                                                 std::vector<std::array<double, 3>>& forces) const
 {
-  ContactEnergy energy;
-  if (idle())
-    return energy;
+  Energy energy;
   for (const PlaneSum& sum : sums_)
   {
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums end at the start of the latest step. The rest is what the next step will add.
+  // The sums end at the start of the latest step: add what the next step will add.
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
@@ -333,19 +360,22 @@ ContactEnergy BodyContact::energy(const Real* const u[3], const std::vector<Rigi
   for (std::size_t b = 0; b < now.size(); ++b)
     if (bodies_[b].dt > 0)
       energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, body_pose(b, bones)));
-  if (open)
-    opened_[0] = energy;
-  energy.work -= opened_[0].work;
-  energy.lost -= opened_[0].lost;
   return energy;
 }
 
-#define FRONTALIS_BODY_CONTACT(Real)                                                                         \
-  template void BodyContact::look(int, int, const Real* const[3], const ConstraintStep&);                    \
-  template void BodyContact::moved(std::int32_t, std::int32_t, const Real* const[3], const Real* const[3]);  \
-  template ContactEnergy BodyContact::energy(const Real* const[3], const std::vector<RigidTransform>&, bool, \
-                                             std::vector<std::array<double, 3>>&);
-FRONTALIS_BODY_CONTACT(float)
-FRONTALIS_BODY_CONTACT(double)
+template <class Real>
+void BodyContact<Real>::add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger)
+{
+  const Energy now = energy_now(u, bones, forces);
+  if (open)
+    opened_[0] = now;
+  ledger["contact"] += now.work - opened_[0].work;
+  ledger["contact_stored"] += now.stored;
+  ledger["friction"] += now.lost - opened_[0].lost;
+}
+
+template class BodyContact<float>;
+template class BodyContact<double>;
 
 }  // namespace frontalis

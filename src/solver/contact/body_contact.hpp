@@ -5,9 +5,7 @@
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
-#include "solver/stepping/array_list.hpp"
-#include "solver/stepping/constraint_step.hpp"
-#include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/node_part.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,21 +14,14 @@
 namespace frontalis
 {
 
-/// Energies of contact [J].
-struct ContactEnergy
-{
-  double stored = 0;  ///< now
-  double work = 0;    ///< done by the motion of bodies
-  double lost = 0;    ///< to friction
-};
-
-/// Contact of bound surfaces with rigid bodies. In each step threads first share the points: look() finds their forces.
-/// After a barrier each thread adds those on nodes of its planes: add(). At the end of the step, moved() notes how far
-/// the nodes have come. Points are sorted by voxel, so that each node's forces are added in the same order for any
-/// number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on points, which are
+/// divided among all threads. After a barrier, add_forces() adds those on the nodes of the thread's planes, and sums
+/// the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points are
+/// sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
-/// A point that is `d` from a body is not looked at again before nodes and body together have moved by that much.
-class BodyContact : public EffectPart
+/// A point at a distance from all bodies is not evaluated again before nodes and body together have moved that far.
+template <class Real>
+class BodyContact : public NodePart<Real>
 {
 public:
   BodyContact(const Model& model, const Discretisation& discretisation);
@@ -38,76 +29,70 @@ public:
   void run(EffectSet running) override;
   void reset() override;
   void list_arrays(ArrayList& list) override;
-  bool idle() const { return !runs_ || points_.empty(); }
+  bool idle() const override { return !runs_ || points_.empty(); }
+  bool pushes() const override { return true; }
+  void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override;
+  void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
+  void after_step(const NodeShare& share, const Real* const before[3], const Real* const after[3]) override;
+  void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                    std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
 
-  /// Finds the forces at part `thread` of `threads` of the points, from displacements at the start of the step.
-  template <class Real>
-  void look(int thread, int threads, const Real* const u[3], const ConstraintStep& step);
+  // For a backend that has the points in a memory of its own, finds their forces there, and leaves the account here.
 
-  /// Calls push(node, force [N]) for the points' forces on nodes in planes [first, last), and adds up the reactions of
-  /// points in voxels of these planes.
-  template <class Push>
-  void add(int thread, std::int32_t first, std::int32_t last, const Push& push)
-  {
-    each_touching(plane_points_[std::max(first - 1, 0)], plane_points_[last],
-                  [&](std::int32_t p) { push_point(points_[p], forces_[p].force, first, last, push); });
-    add_up(thread, first, last);
-  }
-
-  /// After the step: u before and after it.
-  template <class Real>
-  void moved(std::int32_t first, std::int32_t last, const Real* const before[3], const Real* const after[3]);
-
-  /// Sum of the points' forces in the latest step, one per contact of the model.
-  std::vector<Reaction> reactions() const;
-
-  /// Energies since the account was opened, up to the present displacements. `open`: opens it now. Adds the present
-  /// forces on nodes [N] to `forces`, if it is not empty. `bones`: present poses.
-  template <class Real>
-  ContactEnergy energy(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
-                       std::vector<std::array<double, 3>>& forces);
-
-private:
   using Vector = physics::Vec3<double>;
-
   struct Point
   {
     std::int32_t voxel, body;
     std::array<float, 3> coordinates;
-    float stiffness;  // [N/m]
+    float stiffness;  ///< [N/m]
     Vector rest;
   };
   struct PointForce
   {
-    Vector force, arm;  // on the point [N]; from the origin of the body's frame [m]
-    double lost;        // to friction in this step [J]
+    Vector force, arm;  ///< force on the point [N]; arm from the origin of the body's frame [m]
+    double lost;        ///< dissipated by friction in this step [J]
   };
-  enum class Touching : std::uint8_t
+  /// What a step has found for a point.
+  struct Found
   {
-    no,
-    yes,
-    let_go  // in this step
+    PointForce force;
+    physics::Grip<double> grip;
+    physics::Touching touching;
   };
+  /// Sorted by voxel.
+  const std::vector<Point>& points() const { return points_; }
+  /// Takes over what a step has found, one entry per point, and adds up the reactions and energies.
+  void follow(const std::vector<Found>& found, const ConstraintStep& step);
+
+private:
+  using Touching = physics::Touching;
   struct BodyState
   {
     RigidTransform pose;  // at the start of the latest step
-    double way;           // by which a point and any body can have come closer to each other [m]
+    double way;           // bound of how far any point and body have approached each other so far [m]
     double dt;            // length of the latest step [s]; 0: there was none
   };
-  // of a body in a plane of voxels
+  struct Energy
+  {
+    double stored = 0;  // present [J]
+    double work = 0;    // done by the motion of bodies [J]
+    double lost = 0;    // dissipated by friction [J]
+  };
+  // sums for one body in one plane of voxels
   struct PlaneSum
   {
     Reaction reaction;
     double work, lost;
   };
-  // Points are looked at in chunks of this many.
+  // number of points that are skipped together
   static constexpr std::int32_t chunk_size = 64;
   struct Chunk
   {
-    double due = 0;            // the earliest of its points
-    std::int64_t touches = 0;  // whether one does
+    double due = 0;            // BodyState::way at which the first of its points is due
+    std::int64_t touches = 0;  // not 0: one of its points touches
   };
-  // nodes [first, last), among which bound ones are not far apart
+  // nodes [first, last), of which nearly all are bound
   struct Run
   {
     std::int32_t first, last;
@@ -135,42 +120,43 @@ private:
       if (plane + (b >> 2) >= first && plane + (b >> 2) < last)
         push(nodes[b], weight[b] * force);
   }
-  template <class Real>
   Vector place(const Point& point, const Real* const u[3]) const;
   RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
+  /// Energies up to the present displacements.
+  Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
+                    std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
-  template <class Real>
   void look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
     const auto& grip = grips_[p];
     return touches_[p] == Touching::yes ? grip : physics::Grip<double>{ x, grip.normal, 0 };
   }
-  double slack(const Contact& contact, const Vector& x) const;
+  void go_on_to(const std::vector<BodyState>& now);
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;
   bool runs_ = true;
-  double spread_ = 1;                       // by which factor a point may move more than the nodes of its voxel
+  double spread_ = 1;                       // largest ratio of a point's motion to that of the nodes of its voxel
   std::vector<Point> points_;               // sorted by voxel
-  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, twice more their number
-  std::vector<Run> runs_of_nodes_;          // that hold all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;    // first of them in each plane of nodes, and their number
+  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
+  std::vector<Run> runs_of_nodes_;          // runs that contain all bound nodes, ascending
+  std::vector<std::int32_t> plane_runs_;    // first run in each plane of nodes, then twice the number of runs
   std::vector<physics::DistanceField> fields_;
-  // of the step under way
-  std::vector<PointForce> forces_;  // of points that touch
+  // values of the present step
+  std::vector<PointForce> forces_;  // one per point
   std::vector<BodyState> next_;
-  std::vector<BodyMotion> motion_;  // since the step before
+  std::vector<BodyMotion> motion_;  // motion of each body since the previous step
 
   // state
-  std::vector<physics::Grip<double>> grips_;  // of points that touch or did lately
-  std::vector<double> due_;                   // BodyState::way at which a point is looked at again
+  std::vector<physics::Grip<double>> grips_;  // one per point
+  std::vector<double> due_;                   // BodyState::way at which a point must be evaluated again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
   std::vector<BodyState> bodies_;
-  std::vector<double> node_way_;       // longest way of a bound node in the latest step, one per plane of nodes [m]
-  std::vector<PlaneSum> sums_;         // one per plane of voxels and body
-  std::vector<ContactEnergy> opened_;  // what they came to when the account was opened; one entry
+  std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
+  std::vector<PlaneSum> sums_;    // one per plane of voxels and body
+  std::vector<Energy> opened_;    // energies when the account was opened; one entry
 };
 
 }  // namespace frontalis

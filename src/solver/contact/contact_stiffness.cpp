@@ -29,8 +29,6 @@ double young_modulus(const VoxelProperties& voxel)
 
 ContactStiffness::ContactStiffness(const Model& model, const Discretisation& discretisation)
 {
-  if (model.contacts.empty())
-    return;
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
   // Of each node: the bound of the stiffness of its voxels, and the stiffness of contact if it were on a flat side of
   // whole voxels, whose four at the node carry a quarter of an edge^2 each.

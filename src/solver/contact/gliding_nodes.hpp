@@ -20,9 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone or has friction, processed one by one in double precision, in the
-/// frame of the bone. Their planes are found anew in each step, because friction follows the reaction of the surface,
-/// which jumps where a plane that was kept for several steps is replaced.
+/// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
+/// precision, in the frame of the bone. Their planes are found anew in each step, because friction follows the reaction
+/// of the surface, which jumps where a plane that was kept for several steps is replaced.
 template <class Real>
 class GlidingNodes
 {
@@ -31,29 +31,29 @@ public:
   struct Node
   {
     std::int32_t node;
-    std::int32_t bone;  // -1: the surface is fixed
+    std::int32_t bone;  // -1: the surface stands still
     double friction;
     Point rest;
     KeptLevel level;
   };
   struct State
   {
-    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: there is none yet
+    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: no plane yet
     double height = 0;
-    double pressing = 0;  // reaction per mass, delayed as friction needs it [m/s2]
+    double pressing = 0;  // reaction per mass with the delay of friction [m/s2]
     // values of the latest step
     Point outward{ 0, 0, 0 };           // the normal in the scene's frame
     Point surface_velocity{ 0, 0, 0 };  // [m/s]
   };
   using States = std::vector<State>;
 
-  /// Nodes must be added in their order.
+  /// Adds a node. Add nodes in ascending order.
   void add(const Node& node) { nodes_.push_back(node); }
   std::size_t size() const { return nodes_.size(); }
   /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
-  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::apply.
+  /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::constrain.
   void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step,
              States& states) const;
   /// See RestrictedNodes::friction_loss.

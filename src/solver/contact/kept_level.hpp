@@ -6,14 +6,14 @@
 namespace frontalis
 {
 
-/// The level set of a field that a sliding node keeps to.
+/// The level set of a field on which a sliding node stays.
 struct KeptLevel
 {
   const physics::DistanceField* field;
   double level;  ///< [m]
 
-  /// Tangent plane near p, in the surface's frame. Returns false, and leaves `plane` as it is, where the field ends or
-  /// has no direction: the node keeps the plane that it has.
+  /// Finds the tangent plane near p, in the surface's frame. Returns false, and leaves `plane` unchanged, where no
+  /// samples are stored or the gradient is too short: the node then keeps its latest plane.
   bool plane_at(const physics::Vec3<double>& p, physics::LevelPlane<double>& plane) const
   {
     physics::FieldValue<double> value;

@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// What gives a voxel stiffness against deformations other than constant strain.
+/// What gives a voxel stiffness against hourglass modes.
 enum class Stabilisation
 {
   scalar,
@@ -35,14 +35,14 @@ struct CpuElement
   static_assert(Tile::width % lanes == 0, "a tile is a whole number of batches");
 
   /// A batch of voxels in the form that physics/element/ reads. Functions for rare kinds of voxel are not inlined, so
-  /// that the others need not spill registers for them.
+  /// that common voxels do not need to spill registers for them.
   struct Voxels
   {
     const Arguments& g;
     const Tile* tile;
     std::int32_t index;  ///< of the tile
     int offset;          ///< first lane
-    bool owned;          ///< false for the plane that a slab computes only for its upper nodes
+    bool owned;          ///< false in the plane below a slab, computed here only for its upper nodes
     bool look;           ///< whether stiffness bounds are computed
     double* work;        ///< sum of the work of fibres [J]; null without a ledger
 
@@ -175,7 +175,7 @@ struct CpuElement
     }
   };
 
-  /// The same with a stabilisation known at compile time.
+  /// Voxels with a stabilisation known at compile time.
   template <Stabilisation Form>
   struct VoxelsOf : Voxels
   {
@@ -225,7 +225,7 @@ struct CpuElement
   static __attribute__((noinline)) void relax(const Voxels& at, double* work)
   {
     const Kinematics k = kinematics(at, at.g.u);
-    // the other buffer holds the displacements before the step
+    // `next` still holds the displacements before the step
     const Kinematics k_before = work == nullptr ? k : kinematics(at, at.g.next);
     physics::relax_voxel(at, Batch(at.g.viscous_elapsed), k,
                          [&](const Relaxed& before, const Relaxed& after)
@@ -268,7 +268,7 @@ struct CpuElement
       }
     for (int c = 0; c < 3; ++c)
     {
-      // one component after the other, so that each stays in registers
+      // one component at a time, so that each stays in registers
       if (Form == Stabilisation::scalar)
         physics::scalar_hourglass(hourglass, mode[c]);
       physics::stress_forces(at, P, c, mode[c]);

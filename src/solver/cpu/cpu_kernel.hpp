@@ -14,9 +14,9 @@ struct FibreMemory
   float stress[Tile::width];   ///< fibre stress times weight [N m]
 };
 
-/// One time step over planes of nodes, or a part of it. Plain pointers only: the kernels are compiled once per
-/// instruction set, and nothing that they instantiate may be shared with other translation units. Real is the number
-/// type of the state; parameters are floats.
+/// Arguments of one time step over planes of nodes, or of a part of it. Plain pointers only: the kernels are compiled
+/// once per instruction set, and nothing that they instantiate may be shared with other translation units. Real is the
+/// number type of the state; parameters are floats.
 template <class Real>
 struct CpuKernelArguments : physics::Kick<Real>
 {
@@ -33,7 +33,7 @@ struct CpuKernelArguments : physics::Kick<Real>
   const TileStiffness* stiffness;
   const TileStabilisation* stabilisation;  ///< null: scalar hourglass control
   bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
-  const FibreSlot* fibres;                 ///< null: fibres are switched off
+  const FibreSlot* fibres;                 ///< null: effect switched off
   const LawSlot* laws;
   const ViscousSlot* viscous;
   float* relaxed;  ///< relaxed stress times volume [N m], relaxed_tensors() * 6 * Tile::width per ViscousSlot

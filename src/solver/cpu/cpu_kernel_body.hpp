@@ -33,7 +33,7 @@ struct CpuKernelBody
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // One maximum per lane, so that the loop is vectorised. The sums of differences show a NaN.
+    // one maximum per lane, so that the loop is vectorised; `odd` becomes NaN if a stiffness is
     Real most[lanes] = {}, odd[lanes] = {};
     const auto take = [&](std::int32_t n, int lane)
     {

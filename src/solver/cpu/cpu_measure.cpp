@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-// Threads process their slabs, and planes are added up in order.
+// Threads process their slabs; the sums of planes are then added in order.
 template <class Real>
 Monitor CpuSolver<Real>::monitor()
 {
@@ -60,7 +60,7 @@ Monitor CpuSolver<Real>::monitor()
         const std::int32_t first = slab_[t], last = slab_[t + 1];
         choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
         team_.barrier();
-        // the displacements are no longer needed, so their memory takes the sums
+        // the displacements in wide_ are no longer needed: use its memory for the sums
         bounds[t] =
             bound_of_nodes(discretisation_, *model_, stiffness.data(), { first_voxel(first - 1), first_voxel(last) },
                            { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());

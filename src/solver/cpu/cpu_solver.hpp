@@ -32,9 +32,8 @@ public:
 
 private:
   using Base = HostBackend<Real, float>;
-  using Base::account_, Base::attached_, Base::conditions_, Base::contact_, Base::discretisation_, Base::loads_, Base::model_,
-      Base::relaxed_;
-  using Base::restricted_, Base::runs, Base::u_, Base::v_;
+  using Base::account_, Base::conditions_, Base::discretisation_, Base::model_, Base::relaxed_, Base::runs, Base::u_,
+      Base::v_;
   using typename Base::Components;
   using Arguments = CpuKernelArguments<Real>;
 
@@ -44,9 +43,6 @@ private:
   void kick(Arguments& g, double seconds) const;
   void run_on_all(const Arguments& g, KernelTask task);
   void choose_passive();
-  void add_load(std::int32_t n, const physics::Vec3<double>& force, const Arguments& g);
-  void add_loads(std::int32_t first, std::int32_t last, const Arguments& g);
-  void account(int thread, const Arguments& g);
 
   VoxelRows rows_;
   std::vector<float> inverse_mass_, mobility_, with_length_, with_passive_;

@@ -87,7 +87,7 @@ Work CpuSolver<Real>::work(bool open)
 {
   if (open)
     account_->open();
-  // Fibres store their work in the latest step. When the account is opened they store only stress and stretch.
+  // In the latest step, fibres store their work. When the account is opened, they store only stress and stretch.
   Arguments g = arguments(0, conditions_.activation.data());
   if (open)
     g.muscle_work = nullptr;
@@ -95,43 +95,6 @@ Work CpuSolver<Real>::work(bool open)
   if (!open && relaxed_.relax())
     run_on_all(arguments(0, nullptr), KernelTask::relax);
   return account_->work();
-}
-
-// The update is linear in the force, so loads may be added after it.
-template <class Real>
-void CpuSolver<Real>::add_load(std::int32_t n, const physics::Vec3<double>& force, const Arguments& g)
-{
-  const double components[3] = { force.x, force.y, force.z };
-  for (int axis = 0; axis < 3; ++axis)
-    physics::add_load(g.gain * inverse_mass_[n], g.dt, static_cast<Real>(components[axis]), g.next[axis][n],
-                      g.v[axis][n]);
-}
-
-template <class Real>
-void CpuSolver<Real>::add_loads(std::int32_t first, std::int32_t last, const Arguments& g)
-{
-  const auto& nodes = loads_.nodes();
-  for (auto l = std::lower_bound(nodes.begin(), nodes.end(), first) - nodes.begin();
-       l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < last; ++l)
-  {
-    const auto& force = loads_.forces()[l];
-    add_load(nodes[l], { force[0], force[1], force[2] }, g);
-  }
-}
-
-// Accounts for the work of a step in a thread's planes.
-template <class Real>
-void CpuSolver<Real>::account(int thread, const Arguments& g)
-{
-  account_->after(slab_[thread], slab_[thread + 1], g.u, g.next, g.v, conditions_.damping, double(g.dt),
-                  double(g.kick));
-  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
-    account_->friction(k, restricted_, g.v);
-  const auto& nodes = loads_.nodes();
-  for (std::int32_t k = slab_[thread]; k < slab_[thread + 1]; ++k)
-    for (auto l = std::lower_bound(nodes.begin(), nodes.end(), rows_.plane_nodes[k]) - nodes.begin();
-         l < static_cast<std::ptrdiff_t>(nodes.size()) && nodes[l] < rows_.plane_nodes[k + 1]; ++l)
-      account_->load(k, nodes[l], loads_.surface_forces()[l], g.v, double(g.kick));
 }
 
 template <class Real>
@@ -145,6 +108,9 @@ double CpuSolver<Real>::run(const StepPlan& plan)
     plan.activation(step, activation.data() + step * muscles);
     constraint_steps.push_back(plan.constraint_step(step));
   }
+  const std::vector<NodePart<Real>*> parts = this->active_parts();
+  const bool pushed = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->pushes(); });
+  const bool grouped = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->groups(); });
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
@@ -154,6 +120,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
         const FlushDenormals flush;
         Arguments g = first;
         const std::int32_t begin = rows_.plane_nodes[slab_[t]], end = rows_.plane_nodes[slab_[t + 1]];
+        const NodeShare share{ t, team_.size(), slab_[t], slab_[t + 1], begin, end };
         Real* const buffer = buffers_[t].data();
         for (int step = 0; step < plan.steps; ++step)
         {
@@ -162,37 +129,36 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           g.activation = activation.data() + step * muscles;
           if (account_)
             account_->before(begin, end, g.v);
-          if (!contact_.idle())
-            contact_.look(t, team_.size(), g.u, constraint_steps[step]);
-          if (!loads_.idle() && t == 0)
-            loads_.update(plan.time + step * plan.dt, g.u);
-          if (!loads_.idle() || !contact_.idle())
+          for (NodePart<Real>* const part : parts)
+            part->before_step(share, g.u, constraint_steps[step]);
+          if (pushed)
             team_.barrier();
           const auto task =
               plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
           if (!(frequency_squared <= seen[t]))
             seen[t] = frequency_squared;
-          if (!loads_.idle())
-            add_loads(begin, end, g);
-          if (!contact_.idle())
-            contact_.add(t, slab_[t], slab_[t + 1],
-                         [&](std::int32_t n, const physics::Vec3<double>& force) { add_load(n, force, g); });
+          for (NodePart<Real>* const part : parts)
+            part->add_forces(share, { g.gain, g.dt, inverse_mass_.data(), g.next, g.v });
           if (account_)
             account_->unconstrained(begin, end, g.v);
-          if (!restricted_.idle())
-            restricted_.apply(begin, end, g.next, g.v, g.u, constraint_steps[step]);
-          // nodes of a group may belong to several threads
-          if (!attached_.idle())
+          for (NodePart<Real>* const part : parts)
+            part->constrain(share, g.next, g.v, g.u, constraint_steps[step]);
+          if (grouped)
           {
             team_.barrier();
-            attached_.apply(begin, end, g.next, g.v, constraint_steps[step]);
+            for (NodePart<Real>* const part : parts)
+              part->constrain_groups(share, g.next, g.v, constraint_steps[step]);
             team_.barrier();
           }
-          if (!contact_.idle())
-            contact_.moved(slab_[t], slab_[t + 1], g.u, g.next);
+          for (NodePart<Real>* const part : parts)
+            part->after_step(share, g.u, g.next);
           if (account_)
-            account(t, g);
+            account_->after(slab_[t], slab_[t + 1], g.u, g.next, g.v, conditions_.damping, double(g.dt),
+                            double(g.kick));
+          for (NodePart<Real>* const part : parts)
+            if (account_)
+              part->account(share, *account_, g.v, double(g.kick));
           team_.barrier();
           for (int axis = 0; axis < 3; ++axis)
           {

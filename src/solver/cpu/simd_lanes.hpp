@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip` lanes
-/// that lie apart in memory.
+/// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip`
+/// lanes; strips need not be contiguous in memory.
 template <class Architecture, class Real, int Strip>
 struct SimdLanes
 {
@@ -46,7 +46,7 @@ struct SimdLanes
     }
   }
 
-  /// Loads the lanes of one strip, or of two.
+  /// Loads a batch from one strip, or from two.
   static FRONTALIS_LAW Batch load(const Real* first, [[maybe_unused]] const Real* second)
   {
 #if defined(__AVX512F__)

@@ -5,8 +5,7 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes and the planes normal . u = offset of those that slide; zero normals for the
-/// others.
+/// Up to `width` neighbouring nodes, with the planes normal . u = offset of those that slide; zero normals for others.
 template <class Real>
 struct SlidingBlock
 {
@@ -14,7 +13,7 @@ struct SlidingBlock
 
   Real normal[3][width];
   Real offset[width];
-  Real reference[3][width];  ///< displacement at the latest closest point
+  Real reference[3][width];  ///< displacement at which the plane was found
   Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: no plane yet
 };
 
@@ -34,7 +33,7 @@ struct SlideArguments
 template <class Real>
 using SlideKernel = void (*)(const SlideArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 
-/// The same without SIMD, in any precision.
+/// The kernel without SIMD, in any precision.
 template <class Real>
 void slide_plainly(const SlideArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 

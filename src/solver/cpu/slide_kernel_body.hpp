@@ -72,7 +72,7 @@ struct SlideKernelBody
         slide(g, block, u, v);
         continue;
       }
-      // the next nodes belong to another thread, so the block is copied
+      // nodes beyond the block belong to another thread, so use a padded copy
       float copy[6][Block::width] = {};
       float* const u_copy[3] = { copy[0], copy[1], copy[2] };
       float* const v_copy[3] = { copy[3], copy[4], copy[5] };

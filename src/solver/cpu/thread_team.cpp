@@ -15,7 +15,7 @@ namespace frontalis
 namespace
 {
 
-constexpr int spins_before_yield = 4000;  // polls within which threads of equal work meet, without a system call
+constexpr int spins_before_yield = 4000;  // polls; threads with equal work usually meet within them
 constexpr int most_threads = 1024;        // upper limit, to reject typing errors
 
 void relax()

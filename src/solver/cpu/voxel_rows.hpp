@@ -46,7 +46,7 @@ struct TileStabilisation
   float bending[Tile::width], coupling[Tile::width], torsion[Tile::width], warping[Tile::width];
 };
 
-/// The fibres of one muscle in a tile; 0 where a voxel has none.
+/// The fibres of one muscle in a tile; weight 0 in lanes of voxels without them.
 struct FibreSlot
 {
   float weight[Tile::width];  ///< fraction of the voxel times its tissue volume times the stress reference [N m]
@@ -54,7 +54,7 @@ struct FibreSlot
   std::int32_t muscle;
 };
 
-/// A law other than neo-Hookean in a tile; weight 0 where a voxel does not have it.
+/// A law other than neo-Hookean in a tile; weight 0 in lanes of voxels without it.
 struct LawSlot
 {
   Law law;
@@ -79,7 +79,7 @@ struct VoxelRows
   VoxelRows(const Model& model, const Discretisation& discretisation);
   /// Computes the stiffness bounds again after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
-  /// `of_fibres`: the effect to which fibres are attributed.
+  /// Lists the arrays; those of fibres are attributed to the effect `of_fibres`.
   void list_arrays(Effect of_fibres, ArrayList& list) const;
 
   std::int32_t planes = 0;  ///< number of node planes

@@ -14,7 +14,7 @@ struct Work
   double muscle = 0;      ///< done by fibres, active and passive
   double load = 0;        ///< done by surface loads
   double constraint = 0;  ///< done by rigid, prescribed and sliding nodes, friction included
-  double friction = 0;    ///< the part of it lost to friction, not negative
+  double friction = 0;    ///< lost to friction, not negative; included in `constraint`
   double damping = 0;     ///< lost to mass-proportional damping, not negative
   double viscous = 0;     ///< absorbed by viscous stresses
 };
@@ -47,7 +47,7 @@ public:
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
     planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
-  /// Adds the work of a force on a node of a plane during the step. To be called after after(), with the same `kick`.
+  /// Adds the work of a force on a node of a plane during the step. Call it after after(), with the same `kick`.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double kick);
   Work work() const;
@@ -64,7 +64,7 @@ private:
   const std::vector<double>& mass_;
   std::vector<std::int32_t> plane_nodes_;
   std::vector<Work> planes_;
-  std::array<std::vector<double>, 3> beside_;  // displacement by constraints in the latest step beside dt v [m]
+  std::array<std::vector<double>, 3> beside_;  // displacement by constraints in the latest step in addition to dt v [m]
   Field before_, free_;
 };
 

@@ -16,7 +16,7 @@ namespace
 constexpr double margin = 2;             // safety factor for what the bound neglects
 constexpr double active_stretch = 1.2;   // range of stretch in which a fibre pulls: 0.4 to 1.6
 constexpr double passive_stretch = 0.3;  // energy of passive fibres at a stretch of 1.6, over tension times volume
-constexpr double small_strain = 1e-4;    // strain everywhere below which an energy may come from rounding errors
+constexpr double small_strain = 1e-4;    // strain whose energy may come from rounding errors alone
 
 }  // namespace
 
@@ -25,19 +25,9 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   const Discretisation discretisation(model);
   viscous_ = discretisation.viscous_terms > 0;
 
-  // What drives each node: the index of a bone, or the number of bones plus the index of a load.
+  // index of the bone, or the number of bones plus the index of the load, that drives each node
   const auto bones = static_cast<std::int32_t>(model.bones.size());
-  std::vector<std::int32_t> driver(model.nodes.size(), -1);
-  for (const Contact& contact : model.contacts)
-    for (const auto voxel : contact.binding.voxel)
-      for (const auto node : model.voxel_nodes[voxel])
-        driver[node] = std::max(driver[node], contact.bone);
-  for (const auto& node : model.sliding)
-    driver[node.node] = model.constraint_surfaces[node.surface].bone;
-  for (const auto& node : model.rigid)
-    driver[node.node] = node.bone;
-  for (const auto& node : model.attached)
-    driver[node.node] = node.surface < 0 ? node.bone : model.constraint_surfaces[node.surface].bone;
+  std::vector<std::int32_t> driver = moving_bones(model);
   for (const auto& node : model.prescribed)
     driver[node.node] = bones + node.load;
   std::vector<double> stiffness(model.bones.size() + model.loads.size(), 0);
@@ -72,7 +62,7 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
     const double share = discretisation.weight_share.empty() ? 1.0 : double(discretisation.weight_share[n]);
     squared += 0.5 * discretisation.node_mass[n] * share * share * pull;
   }
-  NodalLoads loads(model, discretisation);
+  NodalLoads<double> loads(model, discretisation);
   const std::vector<double> rest(model.nodes.size(), 0);
   const double* const u[3] = { rest.data(), rest.data(), rest.data() };
   loads.update(1e300, u);

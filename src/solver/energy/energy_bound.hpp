@@ -14,7 +14,7 @@ class EnergyBound
 public:
   explicit EnergyBound(const Model& model);
 
-  /// A part of the motion, and what may have driven it.
+  /// A part of the motion, and the inputs that may have driven it.
   struct Interval
   {
     double energy = 0;              ///< at its start [J]
@@ -35,7 +35,7 @@ private:
   };
 
   const Model& model_;
-  double push_ = 0;  // root of the sum of f^2 / (2 m) [W / sqrt(J)]
+  double push_ = 0;  // root of the sum of f^2 / (2 m) [sqrt(J)/s]
   double floor_ = 0;
   bool viscous_ = false;
   std::vector<double> fibres_;  // one per muscle: tension times volume [J]

@@ -1,10 +1,50 @@
 #include "solver/energy/energy_ledger_keeper.hpp"
 
+#include "solver/stepping/effect_parts.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace frontalis
 {
+
+double& EnergyLedger::operator[](const std::string& name)
+{
+  for (EnergyTerm& term : terms)
+    if (term.name == name)
+      return term.value;
+  throw Error("no energy is called '" + name + "'");
+}
+
+double EnergyLedger::imbalance() const
+{
+  using Kind = EnergyTerm::Kind;
+  double sum = 0;
+  for (const Kind kind : { Kind::stored, Kind::lost, Kind::work })
+    for (const EnergyTerm& term : terms)
+      if (term.kind == kind)
+        sum += kind == Kind::work ? -term.value : term.value;
+  return sum - initial;
+}
+
+EnergyLedger empty_ledger()
+{
+  using Kind = EnergyTerm::Kind;
+  EnergyLedger ledger;
+  ledger.terms = {
+    { "kinetic", Kind::stored },   // 1/2 m v(n - 1/2) . v(n + 1/2), which central differences conserve
+    { "internal", Kind::stored },  // elastic energy of the materials
+    { "hourglass", Kind::stored }, { "viscous", Kind::lost },  // absorbed by viscous stresses
+    { "damping", Kind::lost },     { "friction", Kind::lost },
+    { "muscle", Kind::work },  // of fibres, active and passive
+    { "load", Kind::work },    // of surface loads
+    { "gravity", Kind::work },
+  };
+  for (const EnergyTerm& term : energy_terms_of_effects())
+    ledger.terms.push_back(term);
+  ledger.terms.push_back({ "constraint", Kind::work });  // of bones, paths and sliding surfaces, without friction
+  return ledger;
+}
 
 EnergyLedgerKeeper::EnergyLedgerKeeper(const Model& model, const Discretisation& discretisation,
                                        const Conditions& conditions, StepBackend& backend)
@@ -13,7 +53,8 @@ EnergyLedgerKeeper::EnergyLedgerKeeper(const Model& model, const Discretisation&
       conditions_(conditions),
       backend_(backend),
       loads_(model, discretisation),
-      driven_(model.nodes.size(), { { false, false, false } })
+      driven_(model.nodes.size(), { { false, false, false } }),
+      ledger_(empty_ledger())
 {
   for (const auto& prescribed : model.prescribed)
     for (int axis = 0; axis < 3; ++axis)
@@ -26,30 +67,34 @@ void EnergyLedgerKeeper::open(double time, double dt)
 {
   backend_.work(true);
   NodalVectors none;
-  backend_.contact_energy(true, none);
-  ledger_ = {};
+  ledger_ = empty_ledger();
+  backend_.add_energies(true, none, ledger_);
   const EnergyLedger now = balance(time, dt);
-  ledger_.initial =
-      now.kinetic + now.internal + now.hourglass + now.contact_stored - now.gravity - now.load - now.constraint;
+  for (const EnergyTerm& term : now.terms)
+    ledger_.initial += term.kind == EnergyTerm::Kind::stored ? term.value : 0;
+  // the ledger starts at the displacements, half a step after the velocities: subtract the work in between
+  ledger_.initial = ledger_.initial - now["gravity"] - now["load"] - now["constraint"];
 }
 
 EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
 {
   EnergyLedger& l = ledger_;
-  const Work latest = latest_half_step(time, dt);
+  for (EnergyTerm& term : l.terms)
+    term.value = 0;
+  add_latest_half_step(time, dt);
   const Monitor stored = backend_.monitor();
   const Work noted = backend_.work(false);
-  l.internal = stored.internal;
-  l.hourglass = stored.hourglass;
-  l.viscous = noted.viscous;
-  l.damping = noted.damping;
-  l.friction = noted.friction + latest.friction;
-  l.muscle = noted.muscle;
-  l.load = noted.load + latest.load;
-  l.constraint = noted.constraint + noted.friction + latest.constraint;
-  for (const double term : { l.initial, l.kinetic, l.internal, l.hourglass, l.viscous, l.damping, l.friction, l.muscle,
-                             l.load, l.gravity, l.contact, l.contact_stored, l.constraint })
-    l.largest = std::max(l.largest, std::abs(term));
+  l["internal"] = stored.internal;
+  l["hourglass"] = stored.hourglass;
+  l["viscous"] = noted.viscous;
+  l["damping"] = noted.damping;
+  l["friction"] += noted.friction;
+  l["muscle"] = noted.muscle;
+  l["load"] += noted.load;
+  l["constraint"] += noted.constraint + noted.friction;
+  l.largest = std::max(l.largest, std::abs(l.initial));
+  for (const EnergyTerm& term : l.terms)
+    l.largest = std::max(l.largest, std::abs(term.value));
   return l;
 }
 
@@ -70,25 +115,21 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends half a step before the displacements, at the time of the velocities. The work since then is that of
-// the present forces. Nodes that do not follow the forces keep their velocity, by what constraints add to it.
-Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
+// The account ends at the time of the velocities, half a step before the displacements. The work of that half step is
+// that of the present forces. Nodes that do not follow the forces keep their velocity, at the expense of constraints.
+void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
 {
-  EnergyLedger& l = ledger_;
   NodalVectors u, v, internal;
   backend_.get(NodalField::displacements, u);
   backend_.get(NodalField::velocities, v);
   backend_.internal_forces(nullptr, internal);
   NodalVectors touching(u.size());
-  const ContactEnergy contact = backend_.contact_energy(false, touching);
+  backend_.add_energies(false, touching, ledger_);
   const NodalVectors external = external_forces(time, u);
   const physics::Kick<double> kick = conditions_.kick<double>(dt);
   const bool weighs = conditions_.running.has(Effect::gravity);
-  Work work;
-  work.friction = contact.lost;
-  l.contact = contact.work;
-  l.contact_stored = contact.stored;
-  l.kinetic = l.gravity = 0;
+  double &kinetic = ledger_["kinetic"], &gravity = ledger_["gravity"], &load = ledger_["load"],
+         &constraint = ledger_["constraint"];
   for (std::size_t n = 0; n < u.size(); ++n)
   {
     const double mass = discretisation_.node_mass[n];
@@ -97,16 +138,15 @@ Work EnergyLedgerKeeper::latest_half_step(double time, double dt)
     {
       const double next = physics::kicked(kick, axis, v[n][axis], kick.gain / mass,
                                           internal[n][axis] - external[n][axis] - touching[n][axis]);
-      l.kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
+      kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
-      l.gravity += weight * pull * u[n][axis];
-      // without the correction for mass scaling
+      gravity += weight * pull * u[n][axis];
+      // surface loads alone, without the correction for mass scaling
       const double force = external[n][axis] - weight * pull + mass * conditions_.gravity[axis];
-      work.load += 0.5 * dt * force * v[n][axis];
-      work.constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;
+      load += 0.5 * dt * force * v[n][axis];
+      constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;
     }
   }
-  return work;
 }
 
 }  // namespace frontalis

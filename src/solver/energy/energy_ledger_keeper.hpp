@@ -6,6 +6,9 @@
 namespace frontalis
 {
 
+/// An open ledger that has all its terms, with values 0.
+EnergyLedger empty_ledger();
+
 /// Keeps the energy ledger of a backend's motion: present stored energies, and the work that the backend recorded.
 class EnergyLedgerKeeper
 {
@@ -26,13 +29,13 @@ public:
 
 private:
   NodalVectors external_forces(double time, const NodalVectors& u);
-  Work latest_half_step(double time, double dt);
+  void add_latest_half_step(double time, double dt);
 
   const Model& model_;
   const Discretisation& discretisation_;
   const Conditions& conditions_;
   StepBackend& backend_;
-  NodalLoads loads_;
+  NodalLoads<double> loads_;
   std::vector<std::array<bool, 3>> driven_;  // axes along which a node does not follow the forces
   EnergyLedger ledger_;
 };

@@ -19,7 +19,7 @@ struct PlaneMonitor
     return { 0, look.internal, look.hourglass, look.jacobian, look.jacobian <= 0 ? 1 : 0, voxel };
   }
 
-  /// Parts must be added in the order of their voxels. Values that are not finite count as the worst.
+  /// Adds a part. Add parts in the order of their voxels; values that are not finite count as the worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
   {
     kinetic += part.kinetic;

@@ -18,14 +18,14 @@ namespace frontalis
 namespace
 {
 
-// Latest step over the critical one: the controller renews its bound only every few dozen steps, and the bound is on
-// the safe side.
+// Allowed ratio of the latest step to the critical one. It may exceed 1, because the controller renews its bound only
+// every few dozen steps, and the bound is conservative.
 constexpr double step_share_allowed = 1.1;
-// Change of the ledger's imbalance from check to check, over its largest term. Stable random scenes leave less than 0.1
-// unexplained (test/study/property_test.cpp).
+// Allowed change of the ledger's imbalance between two checks, over its largest term. In stable random scenes the
+// imbalance is below 0.1 of it (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
-// J below which a voxel is reported as the origin of the instability, and fraction of the last good state's critical
-// step below which the stiffest voxel is.
+// A voxel with a J below `crushed` is reported as the origin of the instability. So is the stiffest voxel if the
+// critical step falls below the fraction `stiffened` of the last good state's.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 
@@ -43,7 +43,7 @@ struct Guard::Implementation
     std::vector<RigidTransform> bone;
     std::vector<float> since;  // largest activation of each muscle since the previous good state
     double largest_internal = 0;
-    bool there = false;  // false: the snapshot is only memory for reuse
+    bool there = false;  // false: there is no such state, and the snapshot is only memory for reuse
   };
 
   Solver& solver;
@@ -53,7 +53,7 @@ struct Guard::Implementation
   Good good, before;              // the latest good state, and the previous one
   std::vector<float> activation;  // largest activation of each muscle since `good`
   std::vector<double> bone_way;   // length of each bone's path since `good` [m]
-  std::int64_t checked_at = 0;    // steps
+  std::int64_t checked_at = 0;    // solver steps at the latest check
   int good_checks = 0;            // since the latest rollback
   int tries = 0;
   bool settling = false;
@@ -176,8 +176,8 @@ std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
   return static_cast<std::int32_t>(std::find_if(all.begin(), all.end(), has) - all.begin());
 }
 
-// Finds where the motion goes wrong. Numbers that are not finite spread at once over many voxels, so the motion is
-// repeated step by step from the good state, to see the voxel where they begin.
+// Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps, so the motion is
+// repeated step by step from the good state until the first voxel has them.
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
 {
   std::vector<bool> moved;
@@ -213,7 +213,7 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
         break;
     }
   }
-  // a voxel that is crushed or not finite, or else one that is stretched until it is the stiffest
+  // a voxel that is crushed or not finite, else the stiffest, which is then the most stretched
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   if (finding == Instability::past_rim)
@@ -309,7 +309,7 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   Equilibrium result;
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
-    // muscles adopt their activations at once
+    // in settle(), muscles respond to the target without delay
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
     for (std::size_t b = 0; b < target.bone.size(); ++b)

@@ -23,7 +23,7 @@ struct ViscousVoxel : ModelVoxel
   physics::Symmetric3<double> relaxed(int n) const { return stresses[n]; }
   void keep_relaxed(int n, const physics::Symmetric3<double>& H) const
   {
-    // the sum of the stresses is not stored
+    // tensor 2 is the sum of the others, which only other backends store
     if (n < 2)
       stresses[n] = H;
   }

@@ -89,7 +89,7 @@ Work ReferenceSolver::work(bool open)
 {
   if (open)
     account_->open();
-  // records the work of fibres in the latest step
+  // makes forces() record the work of fibres in the latest step
   accounting_ = true;
   forces(u_, conditions_.activation);
   if (open)
@@ -104,7 +104,10 @@ double ReferenceSolver::run(const StepPlan& plan)
   std::vector<float> activation(model_->muscles.size(), 0);
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
+  double* const f[3] = { f_[0].data(), f_[1].data(), f_[2].data() };
   const auto count = static_cast<std::int32_t>(model_->nodes.size());
+  const NodeShare share{ 0, 1, 0, model_->size[2] + 1, 0, count };
+  const std::vector<NodePart<double>*> parts = active_parts();
   double worst = 0;
   for (int step = 0; step < plan.steps; ++step)
   {
@@ -113,21 +116,11 @@ double ReferenceSolver::run(const StepPlan& plan)
     plan.activation(step, activation.data());
     accounting_ = account_ != nullptr;
     forces(u_, activation);
-    loads_.update(plan.time + step * plan.dt, pointers(u_).data());
-    for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-      for (int axis = 0; axis < 3; ++axis)
-        f_[axis][loads_.nodes()[l]] -= loads_.forces()[l][axis];
-    if (!contact_.idle())
-    {
-      contact_.look(0, 1, pointers(u_).data(), plan.constraint_step(step));
-      contact_.add(0, 0, model_->size[2] + 1,
-                   [&](std::int32_t n, const physics::Vec3<double>& force)
-                   {
-                     f_[0][n] -= force.x;
-                     f_[1][n] -= force.y;
-                     f_[2][n] -= force.z;
-                   });
-    }
+    const ConstraintStep constraint_step = plan.constraint_step(step);
+    for (NodePart<double>* const part : parts)
+      part->before_step(share, pointers(u_).data(), constraint_step);
+    for (NodePart<double>* const part : parts)
+      part->add_forces(share, ForceSink<double>(f));
     const Components before = u_;
     if (plan.bound_every_step || step + 1 == plan.steps)
       worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
@@ -143,18 +136,17 @@ double ReferenceSolver::run(const StepPlan& plan)
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
     if (account_)
       account_->unconstrained(0, count, v);
-    restricted_.apply(0, count, u, v, old, plan.constraint_step(step));
-    attached_.apply(0, count, u, v, plan.constraint_step(step));
-    if (!contact_.idle())
-      contact_.moved(0, model_->size[2] + 1, old, u);
+    for (NodePart<double>* const part : parts)
+      part->constrain(share, u, v, old, constraint_step);
+    for (NodePart<double>* const part : parts)
+      part->constrain_groups(share, u, v, constraint_step);
+    for (NodePart<double>* const part : parts)
+      part->after_step(share, old, u);
     if (account_)
-    {
       account_->after(0, model_->size[2] + 1, old, u, v, conditions_.damping, plan.dt, kick);
-      for (std::int32_t k = 0; k <= model_->size[2]; ++k)
-        account_->friction(k, restricted_, v);
-      for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
-        account_->load(model_->nodes[loads_.nodes()[l]][2], loads_.nodes()[l], loads_.surface_forces()[l], v, kick);
-    }
+    for (NodePart<double>* const part : parts)
+      if (account_)
+        part->account(share, *account_, v, kick);
     if (relaxed_.relax() && plan.relaxation[step] > 0)
       relax(plan.relaxation[step], before);
   }

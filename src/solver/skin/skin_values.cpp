@@ -34,7 +34,7 @@ double principal_strain(const Kinematics<double>& k)
   return *std::max_element(eigen.value, eigen.value + 3);
 }
 
-// Of the Cauchy stress P F^T / J. The divisor has a lower limit.
+// Von Mises stress of the Cauchy stress P F^T / J. The divisor has a lower limit.
 double von_mises(const Matrix3<double>& P, const Kinematics<double>& k)
 {
   double s[3][3] = {};

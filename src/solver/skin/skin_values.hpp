@@ -26,9 +26,9 @@ public:
 private:
   const Model& model_;
   const Discretisation& discretisation_;
-  std::vector<std::int32_t> nodes_;                  // of the voxels to which vertices are bound, ascending
-  std::vector<std::int32_t> voxels_;                 // that have one of these nodes, ascending
-  std::vector<std::array<std::int32_t, 8>> corner_;  // of each voxel: index into nodes_, -1 if not there
+  std::vector<std::int32_t> nodes_;                  // nodes of the voxels to which vertices are bound, ascending
+  std::vector<std::int32_t> voxels_;                 // voxels with one of these nodes, ascending
+  std::vector<std::array<std::int32_t, 8>> corner_;  // per voxel: index into nodes_ of each corner, -1 if not there
   std::vector<double> sum_, weight_;                 // one per node
 };
 

@@ -8,9 +8,9 @@
 namespace frontalis
 {
 
-/// The arrays of a solver that are not empty: which effect each of them serves, and which of them hold the state of the
-/// motion; all other values are constant or computed anew in each step. The one list serves Solver::allocations() and
-/// snapshots. Arrays without an effect are those that every model has: they are attributed to elasticity.
+/// The arrays of a solver that are not empty, with the effect that each of them serves, and whether it is state of the
+/// motion; all other values are constant or computed anew in each step. Solver::allocations() and snapshots both use
+/// this list. Arrays that every model has, whatever its effects, are attributed to elasticity.
 class ArrayList
 {
 public:
@@ -75,10 +75,10 @@ class EffectPart
 public:
   virtual ~EffectPart() = default;
   virtual void list_arrays(ArrayList& list) = 0;
-  /// Follows a change of the running effects. An effect that is off has the state of rest, so that it comes back
-  /// without a history.
+  /// Follows a change of the running effects. An effect that is switched off is set to its state at rest, so that it
+  /// starts without a history when it is switched on again.
   virtual void run(EffectSet running) = 0;
-  /// Brings its state to rest.
+  /// Sets its state to that at rest.
   virtual void reset() = 0;
 
 protected:

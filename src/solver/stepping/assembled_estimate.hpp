@@ -9,20 +9,21 @@
 namespace frontalis
 {
 
-/// Ratio of the assembled model's highest frequency to its bound at nodes, and when it has to be found again.
+/// Ratio of the assembled model's squared highest frequency to its bound at nodes, and when to compute it again.
 class AssembledEstimate
 {
 public:
-  /// Estimate of the squared highest frequency for this bound at nodes. It does not fall with the bound: the node that
-  /// sets the bound may soften while the rest of the model does not.
+  /// Estimate of the squared highest frequency, given the present bound at nodes. It does not fall when the bound does:
+  /// the node that sets the bound may soften while the rest of the model does not.
   double frequency_squared(double bound) const;
   /// Ratio of squared frequency to bound; 1 if it is unknown.
   double share() const { return share_; }
   void steps_taken(int steps) { steps_ += steps; }
-  /// Finds the ratio again if it is due. `search` computes the squared highest frequency in a number of iterations.
+  /// Computes the ratio again if it is due. `asked`: commanded activations; `search` returns the squared highest
+  /// frequency after at most the given number of iterations.
   void renew(const std::vector<float>& activation, const std::vector<float>& asked, double bound,
              const std::function<double(int most_iterations)>& search);
-  /// To be called when displacements were set from outside.
+  /// Call it when displacements were set from outside.
   void discard();
   void archive(ByteArchive& archive) { archive(share_)(bound_)(steps_)(steps_valid_)(activation_); }
 

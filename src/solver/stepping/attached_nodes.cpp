@@ -196,14 +196,6 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
 }
 
 template <class Real>
-void AttachedNodes<Real>::run(EffectSet running)
-{
-  slides_ = running.has(Effect::sliding);
-  if (!slides_)
-    reset();
-}
-
-template <class Real>
 void AttachedNodes<Real>::reset()
 {
   std::fill(planes_.begin(), planes_.end(), Plane());
@@ -212,19 +204,19 @@ void AttachedNodes<Real>::reset()
 template <class Real>
 void AttachedNodes<Real>::list_arrays(ArrayList& list)
 {
-  list.add(Effect::rigid_nodes, "masters of attached nodes", groups_);
-  list.add(Effect::rigid_nodes, "attached nodes", held_);
-  list.add(Effect::rigid_nodes, "attached nodes", ties_);
-  list.add_state(Effect::sliding, "tangent planes", planes_);
+  list.add(Effect::attachment, "masters of attached nodes", groups_);
+  list.add(Effect::attachment, "attached nodes", held_);
+  list.add(Effect::attachment, "attached nodes", ties_);
+  list.add_state(Effect::attachment, "tangent planes", planes_);
 }
 
 template <class Real>
-void AttachedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
-                                const ConstraintStep& step)
+void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
+                                           const ConstraintStep& step)
 {
   const auto before = [](const Group& group, std::int32_t node) { return group.master < node; };
-  const auto begin = std::lower_bound(groups_.begin(), groups_.end(), first, before),
-             end = std::lower_bound(begin, groups_.end(), last, before);
+  const auto begin = std::lower_bound(groups_.begin(), groups_.end(), share.first_node, before),
+             end = std::lower_bound(begin, groups_.end(), share.end_node, before);
   const Bones bones(step);
   for (auto group = begin; group != end; ++group)
     if (group->still)
@@ -295,7 +287,6 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     renew(at, tie.surface, p);
     return Relative{ pose.turned(at.gradient), bones.velocity(tie.bone, p), at.level_at(p) };
   };
-  const auto skips = [this](const Tie& tie) { return tie.surface >= 0 && !slides_; };
 
   Balance balance;
   balance.add(mass_[m], v_m);
@@ -304,8 +295,6 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     const Tie& tie = ties_[t];
     const double r = tie.ratio;
     const Point v_s = point_of(v, tie.node);
-    if (skips(tie))
-      continue;
     if (tie.surface < 0)
     {
       // r times its velocity apart from the bone's is the master's
@@ -333,8 +322,6 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
   {
     const Tie& tie = ties_[t];
     const double r = tie.ratio;
-    if (skips(tie))
-      continue;
     if (tie.surface < 0)
     {
       put(bones.velocity(tie.bone, tie.rest) + r * (now - bones.velocity(tie.bone, rest)), v, tie.node);

@@ -2,8 +2,7 @@
 
 #include "frontalis/model/model.hpp"
 #include "frontalis/physics/distance_field.hpp"
-#include "solver/stepping/array_list.hpp"
-#include "solver/stepping/constraint_step.hpp"
+#include "solver/stepping/node_part.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -18,18 +17,19 @@ namespace frontalis
 /// quotients: the bounds of the time step hold as they are. Each group of a master and its nodes is computed by itself,
 /// in a fixed order.
 template <class Real>
-class AttachedNodes : public EffectPart
+class AttachedNodes : public NodePart<Real>
 {
 public:
   /// `mass`: of every node [kg]; it and the model must outlive this object.
   AttachedNodes(const Model& model, const std::vector<double>& mass);
 
-  bool idle() const { return groups_.empty(); }
-  /// Applies the constraints of the groups whose masters are in [first, last), when all other motion of the step is
-  /// done. Their nodes may lie elsewhere, and are in no other group.
-  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const ConstraintStep& step);
+  bool idle() const override { return groups_.empty(); }
+  bool groups() const override { return true; }
+  /// Applies the constraints of the groups whose masters are in the share. Their other nodes are in no other group.
+  void constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
+                        const ConstraintStep& step) override;
 
-  void run(EffectSet running) override;
+  void run(EffectSet) override {}
   void reset() override;
   void list_arrays(ArrayList& list) override;
 
@@ -81,7 +81,6 @@ private:
   std::vector<Held> held_;
   std::vector<Tie> ties_;
   std::vector<Plane> planes_;
-  bool slides_ = true;
 };
 
 }  // namespace frontalis

@@ -12,8 +12,8 @@ namespace
 {
 
 constexpr double way_per_step = 0.1;             // limit of a bone's path per step, in shortest voxel edges
-constexpr double velocity_jump_allowed = 0.005;  // change of a bone's path per step, in shortest voxel edges
-constexpr double straight_share = 1.0 / 64;      // fraction of a motion in which a bone's path counts as straight
+constexpr double velocity_jump_allowed = 0.005;  // change of the path per step, in shortest voxel edges
+constexpr double straight_share = 1.0 / 64;      // fraction of a motion in which a bone's path is taken as straight
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Limits that the motion of bones sets to the time step.
+/// Limits of the time step because of moving bones.
 class BoneMotionLimits
 {
 public:
@@ -20,7 +20,7 @@ public:
   /// attached to it before the time step adapts.
   double longest_step(const Poses& from, const Poses& to, double seconds) const;
   /// Whether a bone's velocity changes suddenly at the start of this motion, by more than 0.5 % of a voxel per step.
-  /// That is about a hundredth of the speed of sound, at which waves cross about half a voxel in a safe step.
+  /// That is about 1 % of the speed of sound: waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Records a motion that has started, for comparison with the next.
   void moved(const Poses& from, double seconds);

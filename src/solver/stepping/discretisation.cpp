@@ -5,6 +5,7 @@
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
+#include "solver/stepping/effect_parts.hpp"
 #include "solver/stepping/mass_factors.hpp"
 #include "solver/material_laws.hpp"
 #include "solver/stepping/step_bound.hpp"
@@ -50,7 +51,7 @@ physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, co
   return parameters;
 }
 
-// Adds a material to the part of its law.
+// Adds a material to the voxel's part with its law.
 void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
@@ -88,8 +89,8 @@ double shear_at_rest(const Material& material)
                                           : law_stiffness(material.law, material.parameters.data(), at_rest());
 }
 
-// Rigid nodes, and nodes whose displacement is prescribed in every direction. Empty if this includes all nodes, so that
-// a model that cannot move has a time step too.
+// Rigid nodes, and nodes with a prescribed displacement in every direction. Empty if these are all nodes, so that a
+// model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
   std::vector<int> directions(model.nodes.size(), 0);
@@ -158,7 +159,7 @@ Discretisation::Discretisation(const Model& model)
         const double time = material.viscous_time[term];
         viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
       }
-  contact = ContactStiffness(model, *this);
+  added = added_stiffness(model, *this);
   const MassScalingSettings& scaling = model.mass_scaling;
   VoxelProperties v;
   if (scaling.kind == MassScalingSettings::Kind::uniform && scaling.factor != 1)
@@ -234,8 +235,9 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   else if (selective_reduced)
     out.hourglass = 0;
   out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
-                                           h[0], h[1], h[2]) +
-                  contact.in_voxel(e);
+                                           h[0], h[1], h[2]);
+  for (const auto& stiffness : added)
+    out.stiffness += stiffness->in_voxel(e);
   if (viscous_terms > 0)
     mix_viscosity(model, e, out);
 }

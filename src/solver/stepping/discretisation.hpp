@@ -2,10 +2,11 @@
 
 #include "frontalis/model/effects.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
-#include "solver/contact/contact_stiffness.hpp"
+#include "solver/stepping/added_stiffness.hpp"
 #include "solver/stepping/array_list.hpp"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace frontalis
@@ -40,8 +41,8 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
-/// What every backend needs of a model, in double precision. The properties of a voxel are computed on request and not
-/// stored, because each backend keeps its own form of them.
+/// The properties of a model that every backend needs, in double precision. The properties of a voxel are computed on
+/// request and not stored, because each backend stores them in its own form.
 class Discretisation
 {
 public:
@@ -49,9 +50,18 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// Includes the fibre effects of this set in the stiffness bounds. Masses do not change.
+  /// Includes the running fibre effects in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
   void list_arrays(ArrayList& list) const;
+  /// The added stiffness of type `Stiffness`; null if the model has none.
+  template <class Stiffness>
+  const Stiffness* find_added() const
+  {
+    for (const auto& stiffness : added)
+      if (const auto* const found = dynamic_cast<const Stiffness*>(stiffness.get()))
+        return found;
+    return nullptr;
+  }
 
   double volume = 0;                         ///< of a whole voxel [m3]
   bool assumed_strain = false;               ///< hourglass control by assumed strain
@@ -65,8 +75,8 @@ public:
   std::vector<double> node_mass;             ///< lumped [kg]
   std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
-  ContactStiffness contact;                  ///< part of the bounds, whether a point touches or not
-  double frequency_squared_max = 0;          ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
+  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
+  double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:
   void mix(std::size_t index, VoxelProperties& out) const;

@@ -10,8 +10,8 @@ namespace
 {
 
 constexpr double clear_change = 1e-4;  // relative change of displacements that exceeds rounding errors
-constexpr double slow_share = 0.05;    // of the fastest speed; below it rounding errors mask the frequency
-constexpr double getting_going = 4;    // radians of the slowest motion before it is evaluated
+constexpr double slow_share = 0.05;    // of the highest speed so far; below it rounding errors mask the frequency
+constexpr double getting_going = 4;    // phase [rad] of the slowest motion before which the residual is not trusted
 constexpr int enough_windows = 4;      // number of consecutive windows within the tolerance
 
 }  // namespace
@@ -48,7 +48,7 @@ void DynamicRelaxation::look(double time, NodalVectors& u, const Forces& forces,
     lowest_ = lowest_ > 0 ? std::min(lowest_, squared) : squared;
     damping_ = std::min(2 * std::sqrt(lowest_), most_damping);
   }
-  // what is left creeps by lowest_ / damping_ of itself per second
+  // the remaining motion decays at the rate lowest_ / damping_ [1/s]
   if (lowest_ > 0)
     result_.residual = speed * damping_ / lowest_ / moved;
   else if (change == 0)
@@ -71,7 +71,7 @@ double DynamicRelaxation::distance(const NodalVectors& a, const NodalVectors& b)
   return std::sqrt(sum);
 }
 
-// of the change since the window began: the frequency squared [1/s2] of the motion
+// squared frequency [1/s2] of the motion since the window began
 double DynamicRelaxation::rayleigh_quotient(const NodalVectors& u_now, const NodalVectors& f_now, double change) const
 {
   double stiffness = 0;

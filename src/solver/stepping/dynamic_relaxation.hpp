@@ -7,9 +7,9 @@
 namespace frontalis
 {
 
-/// Finds the damping with which a motion comes to rest fastest, and how far it still is from there (Underwood 1983).
+/// Finds the damping with which a motion comes to rest fastest, and its remaining distance from rest (Underwood 1983).
 /// Mass-proportional damping is critical for the lowest frequency that the motion shows: the Rayleigh quotient of its
-/// change of displacements, over windows that last until that change is clear of rounding errors.
+/// change of displacements, over windows that last until that change exceeds rounding errors.
 class DynamicRelaxation
 {
 public:
@@ -17,15 +17,15 @@ public:
   struct Settings
   {
     double tolerance;    ///< remaining motion over displacement, in mass-weighted norms
-    double damping;      ///< until a frequency has been found [1/s]
-    int longest_window;  ///< in looks
+    double damping;      ///< initial damping, until a frequency has been found [1/s]
+    int longest_window;  ///< in calls of look()
   };
 
   /// Starts at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive it.
   DynamicRelaxation(const Settings& settings, const std::vector<double>& mass, double time, NodalVectors u,
                     NodalVectors f);
 
-  /// Evaluates the motion at displacements u, which it takes over. `forces` computes the internal forces there if they
+  /// Evaluates the motion at displacements u, which are moved from. `forces` computes the internal forces there if they
   /// are needed. `last`: the motion ends here. Damping stays below `most_damping` [1/s].
   void look(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last);
 
@@ -39,12 +39,12 @@ private:
   Settings settings_;
   const std::vector<double>& mass_;
   double begin_, window_begin_;  // [s]
-  NodalVectors u_, f_, f_now_;   // at the start of the window; at its end
-  int looks_ = 0;                // in this window
+  NodalVectors u_, f_, f_now_;   // at the start of the window; forces at its end
+  int looks_ = 0;                // calls of look() in this window
   double damping_;
   double lowest_ = 0;     // lowest squared frequency found [1/s2]
-  double fastest_ = 0;    // fastest speed found
-  int good_windows_ = 0;  // consecutive
+  double fastest_ = 0;    // highest speed so far
+  int good_windows_ = 0;  // consecutive windows within the tolerance
   Equilibrium result_;
 };
 

@@ -15,8 +15,8 @@ public:
   explicit EffectSwitches(const Model& model) : model_(model), running_(effects_of(model)) {}
 
   EffectSet running() const { return running_; }
-  /// Returns false if nothing changes. Throws Error if the model does not have the effect, if another effect needs it,
-  /// or if it cannot be switched while running.
+  /// Switches an effect; returns false if nothing changes. Throws Error if the model does not have the effect, if
+  /// another effect needs it, or if it cannot be switched while running.
   bool change(Effect effect, bool on);
   /// Acceleration [m/s2] for the scaled masses: uniform mass scaling does not change weight.
   std::array<double, 3> gravity() const;
@@ -28,7 +28,7 @@ private:
   EffectSet running_;
 };
 
-/// Effects of fibres on a voxel: they stiffen it and contract it.
+/// Whether an effect is one of fibres: they stiffen a voxel and contract it.
 inline bool is_of_fibres(Effect effect) { return effect == Effect::contraction || effect == Effect::fibre_stiffness; }
 /// The effect to which memory of fibres is attributed: contraction if the model has it.
 Effect effect_of_fibres(const Model& model);

@@ -8,7 +8,7 @@ namespace frontalis
 namespace
 {
 
-// of a mode: its length, and the largest displacement of a node's component in it
+// length of a mode, and the largest displacement of a node along an axis in it
 struct ModeSize
 {
   double squared_length = 0, largest = 0;
@@ -41,7 +41,7 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
                                  int most_iterations, NodalVectors& mode)
 {
-  std::vector<double> root;  // of the inverse mass; 0: held
+  std::vector<double> root;  // root of the inverse mass of each node; 0: held
   for (const double mass : discretisation.node_mass)
     root.push_back(1 / std::sqrt(mass));
   for (const auto n : discretisation.held)

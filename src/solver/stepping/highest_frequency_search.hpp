@@ -9,9 +9,9 @@ namespace frontalis
 {
 
 /// Largest eigenvalue of a matrix by power iteration. `multiply(step)` replaces a mode by its product with the matrix
-/// and returns the ratio of their lengths. The product is a difference of forces for a displacement by `step` [m] along
-/// the mode. The sign of `step` alternates, so that errors from the curvature of the laws cancel. Stops early if the
-/// eigenvalue has settled or is not finite.
+/// and returns the ratio of their lengths. It computes the product as a difference of forces for a displacement by
+/// `step` [m] along the mode. The sign of `step` alternates, so that errors from the curvature of the laws cancel.
+/// Stops early if the eigenvalue has settled or is not finite.
 template <class Multiply>
 double largest_eigenvalue(int most_iterations, double step, const Multiply& multiply)
 {
@@ -30,8 +30,8 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
   return eigenvalue;
 }
 
-/// A random start mode, and the displacement for a product [m]: large enough for single precision, small against the
-/// curvature of the laws.
+/// A random start mode; and the step for largest_eigenvalue() [m], resolved in single precision and small against the
+/// laws' curvature.
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 

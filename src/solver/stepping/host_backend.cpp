@@ -27,11 +27,7 @@ struct HostState : BackendState
 
 template <class Real, class Relaxed>
 HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide)
-    : StepBackend(input),
-      restricted_(*model_, slide),
-      attached_(*model_, discretisation_.node_mass),
-      loads_(*model_, discretisation_),
-      contact_(*model_, discretisation_)
+    : StepBackend(input), parts_(node_parts<Real>(*model_, discretisation_, slide))
 {
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
@@ -46,7 +42,8 @@ void HostBackend<Real, Relaxed>::rest()
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
       std::fill(component.begin(), component.end(), Real(0));
-  for (EffectPart* const part : parts())
+  relaxed_.reset();
+  for (const auto& part : parts_)
     part->reset();
 }
 
@@ -56,7 +53,8 @@ void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
       list.add_state("motion", component);
-  for (EffectPart* const part : parts())
+  relaxed_.list_arrays(list);
+  for (const auto& part : parts_)
     part->list_arrays(list);
   if (account_)
     account_->list_arrays(list);
@@ -65,8 +63,36 @@ void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
 template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::effects_switched()
 {
-  for (EffectPart* const part : parts())
+  relaxed_.run(conditions_.running);
+  for (const auto& part : parts_)
     part->run(conditions_.running);
+}
+
+template <class Real, class Relaxed>
+std::vector<NodePart<Real>*> HostBackend<Real, Relaxed>::active_parts() const
+{
+  std::vector<NodePart<Real>*> active;
+  for (const auto& part : parts_)
+    if (!part->idle())
+      active.push_back(part.get());
+  return active;
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger)
+{
+  for (NodePart<Real>* const part : active_parts())
+    part->add_energies(pointers(u_).data(), conditions_.bone, open, forces, ledger);
+}
+
+template <class Real, class Relaxed>
+std::vector<Reaction> HostBackend<Real, Relaxed>::reactions() const
+{
+  std::vector<Reaction> all;
+  for (const auto& part : parts_)
+    for (const Reaction& reaction : part->reactions())
+      all.push_back(reaction);
+  return all;
 }
 
 template <class Real, class Relaxed>

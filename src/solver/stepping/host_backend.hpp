@@ -1,8 +1,6 @@
 #pragma once
 
-#include "solver/stepping/attached_nodes.hpp"
-#include "solver/stepping/nodal_loads.hpp"
-#include "solver/stepping/restricted_nodes.hpp"
+#include "solver/stepping/effect_parts.hpp"
 #include "solver/stepping/step_backend.hpp"
 
 #include <algorithm>
@@ -10,14 +8,14 @@
 namespace frontalis
 {
 
-/// Stresses that viscous voxels have relaxed, in the order of a backend.
+/// Relaxed part of the stresses of viscous voxels, in the order of a backend.
 template <class T>
 class RelaxedStresses : public EffectPart
 {
 public:
   std::vector<T> values;
 
-  bool relax() const { return runs_ && !values.empty(); }  ///< whether there is anything to relax
+  bool relax() const { return runs_ && !values.empty(); }  ///< whether there are stresses to relax
   void list_arrays(ArrayList& list) override { list.add_state(Effect::viscosity, "relaxed stresses", values); }
   void run(EffectSet running) override
   {
@@ -31,8 +29,8 @@ private:
   bool runs_ = true;
 };
 
-/// What the backends in host memory share: nodal motion, loads, constraints, the account of energies and snapshots.
-/// Real is the number type of the motion, Relaxed that of RelaxedStresses.
+/// Base of the backends in host memory: nodal motion, loads, constraints, the account of energies and snapshots. Real
+/// is the number type of the motion, Relaxed that of RelaxedStresses.
 template <class Real, class Relaxed>
 class HostBackend : public StepBackend
 {
@@ -43,11 +41,8 @@ public:
   void set(NodalField field, const NodalVectors& in) override;
   void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
-  ContactEnergy contact_energy(bool open, NodalVectors& forces) override
-  {
-    return contact_.energy(pointers(u_).data(), conditions_.bone, open, forces);
-  }
-  std::vector<Reaction> reactions() const override { return contact_.reactions(); }
+  void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
+  std::vector<Reaction> reactions() const override;
   void skin(SkinState& out) override;
 
 protected:
@@ -62,19 +57,18 @@ protected:
     return { { c[0].data(), c[1].data(), c[2].data() } };
   }
   void interleave(const Components& in, NodalVectors& out) const;
-  /// The same back; components may have more entries.
+  /// Inverse of interleave(); components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
+
+  /// The parts that are not idle.
+  std::vector<NodePart<Real>*> active_parts() const;
 
   Components u_, v_;
   RelaxedStresses<Relaxed> relaxed_;
-  RestrictedNodes<Real> restricted_;
-  AttachedNodes<Real> attached_;
-  NodalLoads loads_;
-  BodyContact contact_;
-  std::unique_ptr<EnergyAccount<Real>> account_;  // if a ledger was asked for
+  std::unique_ptr<EnergyAccount<Real>> account_;  // null without a ledger
 
 private:
-  std::array<EffectPart*, 5> parts() { return { { &relaxed_, &restricted_, &attached_, &loads_, &contact_ } }; }
+  std::vector<std::unique_ptr<NodePart<Real>>> parts_;
 };
 
 }  // namespace frontalis

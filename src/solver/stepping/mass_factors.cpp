@@ -7,8 +7,8 @@ namespace frontalis
 namespace
 {
 
-// Squared frequency bound of the voxels that are not chosen, as if there were no others [1/s2]. Held nodes count only
-// if all of these voxels' nodes are held.
+// Squared frequency bound of a model of only the voxels that are not chosen [1/s2]. Held nodes count only if all of
+// these voxels' nodes are held.
 double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
                          const std::vector<std::int32_t>& held)
 {

@@ -12,7 +12,7 @@ struct TimeStepper::MotionSnapshot : Snapshot
   const TimeStepper* owner;
   Motion motion;
   TimeStepController::State time_step;
-  EnergyLedger ledger;
+  EnergyLedger ledger = empty_ledger();
   EffectSet running;
   std::unique_ptr<BackendState> backend;
 
@@ -20,7 +20,10 @@ struct TimeStepper::MotionSnapshot : Snapshot
   {
     motion.archive(archive);
     time_step.archive(archive);
-    archive(ledger)(running);
+    archive(ledger.initial);
+    for (EnergyTerm& term : ledger.terms)
+      archive(term.value);
+    archive(ledger.largest)(running);
     backend->archive(archive);
   }
 };
@@ -52,7 +55,7 @@ void TimeStepper::restore(const Snapshot& snapshot)
     ledger_->restore(saved->ledger);
   backend_->restore(*saved->backend);
   renew_conditions();
-  // effects stay as they are now
+  // the running effects are not restored: adapt the restored state to them
   std::vector<Effect> switched;
   for (const Effect effect : every_effect())
     if (saved->running.has(effect) != effects_.running().has(effect))
@@ -61,7 +64,7 @@ void TimeStepper::restore(const Snapshot& snapshot)
     effects_switched(switched);
 }
 
-// A motion as bytes begins with what it is a motion of.
+// The bytes begin with an identification of the model and the settings, which unpack() checks.
 std::string TimeStepper::pack()
 {
   std::unique_ptr<Snapshot> snapshot;
@@ -86,7 +89,7 @@ void TimeStepper::unpack(const std::string& bytes)
       throw Error("they are of " + whose + "; allowed is one of " + owner());
     static_cast<MotionSnapshot&>(*snapshot).archive(archive);
     if (!archive.ended())
-      throw Error("more than a motion");
+      throw Error("they do not end with the motion");
   }
   catch (const Error& error)
   {

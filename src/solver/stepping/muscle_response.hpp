@@ -9,9 +9,8 @@
 namespace frontalis
 {
 
-/// First-order response of muscles to the requested activations, which change linearly over `seconds`: da/dt = (asked -
-/// a) / time, with the muscle's rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), limited by the model's
-/// slew rate.
+/// First-order response of muscles to commanded activations, which change linearly over `seconds`: da/dt = (asked - a)
+/// / time, with the rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), limited by the model's slew rate.
 inline void respond(const Model& model, const std::vector<float>& asked_from, const std::vector<float>& asked_to,
                     double seconds, std::vector<float>& activation)
 {

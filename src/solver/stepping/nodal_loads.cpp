@@ -55,7 +55,8 @@ std::array<double, 3> gravity_relief(const Model& model, const Discretisation& d
   return { { excess * model.gravity[0], excess * model.gravity[1], excess * model.gravity[2] } };
 }
 
-NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation) : model_(model)
+template <class Real>
+NodalLoads<Real>::NodalLoads(const Model& model, const Discretisation& discretisation) : model_(model)
 {
   nodes_ = relieved_nodes(model, discretisation);
   const bool relieved = !nodes_.empty();
@@ -101,7 +102,8 @@ NodalLoads::NodalLoads(const Model& model, const Discretisation& discretisation)
   }
 }
 
-void NodalLoads::run(EffectSet running)
+template <class Real>
+void NodalLoads<Real>::run(EffectSet running)
 {
   runs_ = running.has(Effect::surface_loads);
   relieves_ = running.has(Effect::gravity);
@@ -109,7 +111,8 @@ void NodalLoads::run(EffectSet running)
     std::fill(forces->begin(), forces->end(), std::array<double, 3>{});
 }
 
-void NodalLoads::list_arrays(ArrayList& list)
+template <class Real>
+void NodalLoads<Real>::list_arrays(ArrayList& list)
 {
   const Effect effect = surfaces_.empty() ? Effect::gravity : Effect::surface_loads;
   list.add(effect, "loaded nodes", nodes_);
@@ -126,7 +129,7 @@ void NodalLoads::list_arrays(ArrayList& list)
 }
 
 template <class Real>
-void NodalLoads::update(double time, const Real* const u[3])
+void NodalLoads<Real>::update(double time, const Real* const u[3])
 {
   std::fill(surface_forces_.begin(), surface_forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
   for (auto& surface : surfaces_)
@@ -154,7 +157,29 @@ void NodalLoads::update(double time, const Real* const u[3])
       forces_[rank][axis] += relief_[rank][axis];
 }
 
-template void NodalLoads::update(double, const float* const[3]);
-template void NodalLoads::update(double, const double* const[3]);
+template <class Real>
+template <class Visit>
+void NodalLoads<Real>::each(const NodeShare& share, const Visit& visit) const
+{
+  const auto first = std::lower_bound(nodes_.begin(), nodes_.end(), share.first_node) - nodes_.begin();
+  for (auto l = static_cast<std::size_t>(first); l < nodes_.size() && nodes_[l] < share.end_node; ++l)
+    visit(l);
+}
+
+template <class Real>
+void NodalLoads<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
+{
+  each(share, [&](std::size_t l) { sink(nodes_[l], forces_[l]); });
+}
+
+template <class Real>
+void NodalLoads<Real>::account(const NodeShare& share, EnergyAccount<Real>& account, const Real* const v[3],
+                               double kick)
+{
+  each(share, [&](std::size_t l) { account.load(model_.nodes[nodes_[l]][2], nodes_[l], surface_forces_[l], v, kick); });
+}
+
+template class NodalLoads<float>;
+template class NodalLoads<double>;
 
 }  // namespace frontalis

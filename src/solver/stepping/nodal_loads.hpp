@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/node_part.hpp"
 
 #include <array>
 #include <vector>
@@ -8,14 +8,15 @@
 namespace frontalis
 {
 
-/// Nodes with selectively scaled mass, on which gravity is too large.
+/// Nodes with selectively scaled mass, whose weight would be too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// Force that corrects gravity on such a node [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
 /// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding and summed in a
 /// fixed order; and the correction of gravity for selective mass scaling.
-class NodalLoads : public EffectPart
+template <class Real>
+class NodalLoads : public NodePart<Real>
 {
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
@@ -24,7 +25,15 @@ public:
   void run(EffectSet running) override;
   void reset() override {}
   void list_arrays(ArrayList& list) override;
-  bool idle() const
+  bool pushes() const override { return true; }
+  void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override
+  {
+    if (share.thread == 0)
+      update(step.time_before, u);
+  }
+  void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
+  void account(const NodeShare& share, EnergyAccount<Real>& account, const Real* const v[3], double kick) override;
+  bool idle() const override
   {
     const bool loaded = runs_ && !surfaces_.empty();
     return !loaded && !(relieves_ && !relief_.empty());
@@ -32,11 +41,10 @@ public:
   const std::vector<std::int32_t>& nodes() const { return nodes_; }             ///< loaded nodes, ascending
   const std::vector<std::array<double, 3>>& forces() const { return forces_; }  ///< [N], one per loaded node
 
-  /// The same without the correction of gravity.
+  /// The forces without the correction of gravity.
   const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
   /// Computes the forces at a time from the present nodal displacements.
-  template <class Real>
   void update(double time, const Real* const u[3]);
 
 private:
@@ -53,6 +61,10 @@ private:
     std::vector<std::array<double, 3>> vertex_force;
     std::vector<std::array<double, 3>> vertices;
   };
+
+  /// Calls visit(l) for the loaded nodes of a share.
+  template <class Visit>
+  void each(const NodeShare& share, const Visit& visit) const;
 
   const Model& model_;
   std::vector<std::int32_t> nodes_;

@@ -48,12 +48,13 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   sort_by_node(prescribed_);
   auto sliding = model.sliding;
   sort_by_node(sliding);
-  const auto plain = std::stable_partition(sliding.begin(), sliding.end(),
-                                           [&](const SlidingNode& node)
-                                           {
-                                             const auto& surface = model.constraint_surfaces[node.surface];
-                                             return surface.bone >= 0 || surface.friction > 0;
-                                           });
+  // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
+  // plane: friction also follows the jolts of nodes without friction, and would dissipate several percent too much.
+  const auto& surfaces = model.constraint_surfaces;
+  const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
+  const auto plain =
+      std::stable_partition(sliding.begin(), sliding.end(),
+                            [&](const SlidingNode& node) { return rough || surfaces[node.surface].bone >= 0; });
   for (auto node = sliding.begin(); node != plain; ++node)
   {
     const auto& surface = model.constraint_surfaces[node->surface];
@@ -67,7 +68,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// A block starts at the first sliding node that is in no block yet, or earlier to stay within the node plane.
+// Collects sliding nodes in blocks. A block starts at the first sliding node that is in no block yet, or earlier so
+// that it ends within the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -140,7 +142,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   const auto index = nodes.block_sliding_[block][lane];
-  // a node that does not slide gets here if its displacement is NaN
+  // the kernel calls this also for a node that does not slide, if its displacement is NaN
   if (index < 0)
     return;
   const Sliding& s = nodes.sliding_[index];
@@ -164,9 +166,10 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 }
 
 template <class Real>
-void RestrictedNodes<Real>::apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
-                                  const Real* const before[3], const ConstraintStep& step)
+void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], Real* const v[3],
+                                      const Real* const before[3], const ConstraintStep& step)
 {
+  const std::int32_t first = share.first_node, last = share.end_node;
   const auto block_of = [&](std::int32_t node)
   {
     return static_cast<std::int32_t>(std::lower_bound(block_node_.begin(), block_node_.end(), node) -

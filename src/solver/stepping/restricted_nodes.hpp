@@ -3,6 +3,7 @@
 #include "frontalis/model/model.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 #include "solver/cpu/slide_kernel.hpp"
+#include "solver/stepping/node_part.hpp"
 
 #include <vector>
 
@@ -12,25 +13,28 @@ namespace frontalis
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
 /// may process disjoint ranges of node planes. Real is the backend's number type.
 template <class Real>
-class RestrictedNodes : public EffectPart
+class RestrictedNodes : public NodePart<Real>
 {
 public:
   using Block = SlidingBlock<Real>;
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    typename GlidingNodes<Real>::States gliding;  ///< of those whose surface moves with a bone or has friction
-    std::vector<Block> blocks;                    ///< of the others
+    typename GlidingNodes<Real>::States gliding;  ///< of nodes on moving surfaces; of all nodes if any has friction
+    std::vector<Block> blocks;                    ///< of the other nodes
   };
 
   /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset() override;
-  /// Applies the constraints to nodes in [first, last), which must be whole node planes. `u`: displacements after the
-  /// update of the step; `before`: displacements before it.
-  void apply(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3], const Real* const before[3],
-             const ConstraintStep& step);
+  void constrain(const NodeShare& share, Real* const u[3], Real* const v[3], const Real* const before[3],
+                 const ConstraintStep& step) override;
+  void account(const NodeShare& share, EnergyAccount<Real>& account, const Real* const v[3], double) override
+  {
+    for (auto k = share.first_plane; k < share.end_plane; ++k)
+      account.friction(k, *this, v);
+  }
   /// Energy [J] that friction dissipated at nodes [first, last) in the latest step: -I . (mean of v- and v+ - velocity
   /// of the surface), with I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints, v+: after
   /// it [m/s]. Mass [kg] and velocities are those of all nodes. Nodes are summed in order.
@@ -41,7 +45,7 @@ public:
   }
   void run(EffectSet running) override;
   void list_arrays(ArrayList& list) override;
-  bool idle() const { return rigid_.empty() && prescribed_.empty() && !(slides_ && !model_.sliding.empty()); }
+  bool idle() const override { return rigid_.empty() && prescribed_.empty() && !(slides_ && !model_.sliding.empty()); }
 
 private:
   struct Sliding

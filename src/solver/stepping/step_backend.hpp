@@ -1,7 +1,6 @@
 #pragma once
 
 #include "frontalis/byte_archive.hpp"
-#include "solver/contact/body_contact.hpp"
 #include "solver/energy/energy_account.hpp"
 #include "solver/stepping/array_list.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -23,7 +22,7 @@ enum class NodalField
   velocities      ///< [m/s], half a step before the displacements
 };
 
-/// The state of a motion between two plans, in a form of the backend's own.
+/// The state of a motion between two plans, in the backend's own form.
 struct BackendState
 {
   virtual ~BackendState() = default;
@@ -38,7 +37,7 @@ struct BackendTraits
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
-  int steps_per_look = 32;    ///< between two looks at all displacements during dynamic relaxation
+  int steps_per_look = 32;    ///< steps between two looks at all displacements during dynamic relaxation
   int steps_per_check = 512;  ///< Solver::steps_per_check
 };
 
@@ -51,7 +50,7 @@ struct BackendInput
   const SolverSettings& settings;  ///< the other three outlive the backend, this one does not
 };
 
-/// Makes time steps, with nodes and voxels in its own memory. It starts at rest. TimeStepper makes a Solver of it.
+/// Makes time steps, with nodes and voxels in its own memory; TimeStepper makes a Solver of it. Initially at rest.
 class StepBackend
 {
 public:
@@ -63,12 +62,11 @@ public:
   /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
   /// are not finite. If the plan allows it, this may be the bound of the previous plan.
   virtual double run(const StepPlan& plan) = 0;
-  /// To be called after Conditions::running and the discretisation's bounds have changed. An effect that comes back has
-  /// no history.
+  /// Called when Conditions::running and bounds have changed. Effects that are switched on again have no history.
   virtual void effects_switched() = 0;
 
   virtual void get(NodalField field, NodalVectors& out) const = 0;
-  /// Setting displacements brings everything else to rest. An empty list stands for zeros.
+  /// Sets a field of all nodes; an empty list stands for zeros. Setting displacements resets all other state to rest.
   virtual void set(NodalField field, const NodalVectors& in) = 0;
   /// `to` may hold an earlier state of this backend, whose memory is used again.
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
@@ -80,10 +78,10 @@ public:
   /// can search for it faster than internal_forces() allows.
   virtual std::optional<double> highest_frequency_squared(int /*most_iterations*/) { return std::nullopt; }
   virtual Monitor monitor() = 0;
-  /// Work since the account was opened; `open`: opens it now. Only called where SolverSettings::ledger was asked for.
+  /// Work since the account was opened; `open`: opens it now. Called only if SolverSettings::ledger is set.
   virtual Work work(bool open) = 0;
-  /// Energies of contact since its account was opened, as BodyContact::energy() has them.
-  virtual ContactEnergy contact_energy(bool /*open*/, NodalVectors& /*forces*/) { return {}; }
+  /// See NodePart::add_energies.
+  virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
   virtual void skin(SkinState& out) = 0;
 

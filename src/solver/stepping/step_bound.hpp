@@ -11,7 +11,7 @@ struct StepBound
   double frequency_squared = 0;  ///< [1/s2]; NaN if the stiffness of a voxel is NaN
   std::int32_t node = -1;
 
-  /// Parts must be added in the order of their nodes.
+  /// Adds a part. Add parts in the order of their nodes.
   void add(const StepBound& part)
   {
     if (!(part.frequency_squared <= frequency_squared) && frequency_squared == frequency_squared)

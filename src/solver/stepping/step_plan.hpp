@@ -8,14 +8,14 @@
 namespace frontalis
 {
 
-/// What acts on the tissue besides bones. The time stepper changes it between two plans; backends read it.
+/// Inputs of steps other than a plan's. The time stepper changes them between two plans; backends read them.
 struct Conditions
 {
   EffectSet running;
-  std::array<double, 3> gravity{};   ///< [m/s2] on the masses as they are scaled; 0 where the effect is off
+  std::array<double, 3> gravity{};   ///< [m/s2] for the scaled masses; 0 if the effect is off
   double damping = 0;                ///< mass-proportional [1/s]
-  std::vector<float> activation;     ///< of each muscle now, as its fibres feel it: 0 where contraction is off
-  std::vector<RigidTransform> bone;  ///< poses now
+  std::vector<float> activation;     ///< present activation of each muscle in its fibres; 0 if contraction is off
+  std::vector<RigidTransform> bone;  ///< present poses
 
   template <class Real>
   physics::Kick<Real> kick(double seconds) const
@@ -24,18 +24,18 @@ struct Conditions
   }
 };
 
-/// Part of a motion in equal steps, over which activations and bone poses go linearly from begin to end.
+/// A part of a motion, in equal steps, over which activations and bone poses change linearly from begin to end.
 struct StepPlan
 {
   int steps = 0;
   double dt = 0;  ///< [s]
-  /// For how long forces change velocities in the first step [s]. It differs from dt where the step before had another
-  /// length, because velocities stand half a step before displacements.
+  /// Duration for which forces change velocities in the first step [s]. It differs from dt if the previous step had
+  /// another length, because velocities are those half a step before the displacements.
   double first_kick = 0;
   double time = 0;                        ///< at its begin [s]
-  bool bound_every_step = false;          ///< the frequency bound is found in every step, else in the last alone
-  bool bound_awaited = false;             ///< run() has to return the bound of this plan, not of the plan before
-  double alarming_frequency_squared = 0;  ///< a bound above it has to be followed by that of this plan [1/s2]
+  bool bound_every_step = false;          ///< true: find the frequency bound in every step; false: in the last one only
+  bool bound_awaited = false;             ///< true: run() must return the bound of this plan, not of the previous one
+  double alarming_frequency_squared = 0;  ///< if the previous bound is above it, run() waits for this one [1/s2]
   Controls begin, end;                    ///< activations as fibres feel them
   std::vector<double> relaxation;         ///< one per step: by how much viscous stresses relax after it [s]
 
@@ -48,7 +48,7 @@ struct StepPlan
   }
   ConstraintStep constraint_step(int step) const
   {
-    ConstraintStep now{ time + (step + 1) * dt, dt, {}, {} };
+    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {} };
     for (std::size_t b = 0; b < begin.bone.size(); ++b)
     {
       now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));

@@ -14,22 +14,21 @@ namespace
 {
 
 // These numbers are empirical: the hard cases of doc/stability.md hold with them.
-constexpr double cautious_share = 0.55;  // of the critical step, instead of the safety share
+constexpr double cautious_share = 0.55;  // of the critical step, instead of the model's time_step_share
 constexpr int cautious_plan = 8;         // steps
 constexpr int vibration_plan = 32;       // steps at most
-// signs of fast change, and for how many steps they call for caution
-constexpr double growth_allowed = 1.1;  // of the frequency squared from one plan to the next
+// signs of fast change, and the number of steps of caution after each
+constexpr double growth_allowed = 1.1;  // ratio of squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // of a muscle within a plan
 constexpr int steps_after_a_switch = 48;
 constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
 // Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens it slowly.
-constexpr double stiffening_ratio = 4;     // of the frequency squared against rest
-constexpr double vibration_change = 0.05;  // of the frequency squared from one plan to the next
+constexpr double stiffening_ratio = 4;     // squared frequency over that at rest
+constexpr double vibration_change = 0.05;  // relative change of the squared frequency between plans
 constexpr int steps_after_vibration = 256;
-// Softening is followed slowly: tissue may stiffen again before the next plan, and each change of the step costs
-// accuracy.
-constexpr double slowest_softening = 0.95;  // of the frequency squared from one plan to the next
+// The bound follows softening slowly: tissue may stiffen again soon, and each change of the step costs accuracy.
+constexpr double slowest_softening = 0.95;  // ratio of squared frequencies of successive plans
 
 }  // namespace
 
@@ -82,7 +81,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     most_steps = cautious_plan;
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
-  // a rounding error must not cost a step
+  // without the tolerance, a rounding error could add a step
   const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
   return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
            cautious, cautious || vibrates };

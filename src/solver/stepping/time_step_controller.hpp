@@ -6,18 +6,18 @@
 namespace frontalis
 {
 
-/// Chooses the length of steps, and the number of steps until the frequency bound is found again. It is told the bounds
-/// that a backend finds, activations, and when bones jump; it knows neither model nor backend.
+/// Chooses the length of steps, and the number of steps until the frequency bound is found again. Its inputs are the
+/// bounds that a backend finds, the activations, and jumps of bones.
 ///
 /// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. So the
-/// controller is cautious for some steps after signs of fast change: steps are shorter, plans have few steps, and every
-/// step's bound is found. While tissue that has stiffened vibrates, steps are shorter and plans not long.
+/// controller is cautious for some steps after signs of fast change: steps are shorter, plans have few steps, and the
+/// bound is found in every step. While stiffened tissue vibrates, steps are shorter and the length of plans is limited.
 class TimeStepController
 {
 public:
   struct State
   {
-    double frequency_squared = 0;  ///< bound at nodes that steps are chosen by [1/s2]
+    double frequency_squared = 0;  ///< bound at nodes from which steps are chosen [1/s2]
     double latest_observed = 0;    ///< latest bound that a backend found [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
@@ -34,7 +34,7 @@ public:
   {
     int steps;
     double dt;              ///< [s]
-    bool reaches_end;       ///< of the motion
+    bool reaches_end;       ///< whether the plan reaches the end of the motion
     bool bound_every_step;  ///< as in StepPlan
     bool bound_awaited;     ///< as in StepPlan
   };
@@ -45,25 +45,25 @@ public:
 
   /// Longest step [s] that would be taken now if nothing called for caution.
   double safe_step() const;
-  /// At most this share of the safe step is taken from now on. Throws Error.
+  /// Limits further steps to this fraction of the safe step. Throws Error if it is out of range.
   void slow_down(double share);
-  /// Bound above which a plan's own bound has to be awaited [1/s2].
+  /// Bound above which the backend must wait for a plan's own bound [1/s2]; see StepPlan.
   double alarming_frequency_squared() const;
   /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
   Choice choose(double remaining, double longest, const BackendTraits& backend) const;
 
-  /// After a plan: the largest bound that was found in it, or in the one before.
+  /// Records the largest bound found in the latest plan, or in the previous one.
   void observe(double frequency_squared, int steps);
-  /// Returns whether a muscle is switched between these activations, and is cautious then: its voxels stiffen at once,
-  /// and a little later those that it pulls on.
+  /// Whether a muscle is switched between these activations. If so, becomes cautious: the muscle's voxels stiffen at
+  /// once, and a little later those that it pulls on.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
-  /// The velocity of a bone has jumped (BoneMotionLimits).
+  /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Displacements were set from outside, where the bound at nodes is this [1/s2].
+  /// Starts anew after displacements were set from outside; `frequency_squared`: their bound at nodes [1/s2].
   void displacements_set(double frequency_squared);
-  /// The bound at rest has another value now, because effects were switched.
+  /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }
-  /// Back to rest.
+  /// Returns to the state at rest.
   void reset();
 
   const State& state() const { return state_; }
@@ -71,7 +71,7 @@ public:
   AssembledEstimate& assembled() { return state_.assembled; }
 
 private:
-  double critical_step(double share) const;  ///< a share of it
+  double critical_step(double share) const;  ///< this fraction of the critical step [s]
 
   double rest_frequency_squared_, safety_share_, fixed_step_;
   double slow_share_ = 1;

@@ -18,13 +18,13 @@ namespace frontalis
 namespace
 {
 
-// Viscous stresses relax when this share of the shortest time constant has passed, and at the end of each plan.
+// Viscous stresses relax whenever this fraction of the shortest time constant has passed, and at the end of each plan.
 constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // [s] longer than any time constant
-// During dynamic relaxation a window ends at the latest after so many steps, even if nothing seems to move.
+// During dynamic relaxation, a window ends after this number of steps even if no motion is seen.
 constexpr int steps_per_window = 2048;
 
-// adds the wall seconds of its life to a sum
+// adds the wall seconds of its lifetime to a sum
 class Stopwatch
 {
 public:
@@ -173,14 +173,15 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
     const auto forces_at = [this](const NodalVectors& at, NodalVectors& out)
     {
       backend_->internal_forces(&at, out);
-      discretisation_.contact.add_forces(*model_, at, out);
+      for (const auto& stiffness : discretisation_.added)
+        stiffness->add_forces(*model_, at, out);
     };
     return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
   };
   controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
 }
 
-// takes the muscles on to the end of the plan
+// moves the muscles' activations on to the end of the plan
 StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Choice& choice)
 {
   StepPlan plan;
@@ -217,7 +218,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   if (!(tolerance > 0) || !std::isfinite(tolerance))
     throw Error(fmt::format("equilibrium within {:g}: allowed are tolerances above 0", tolerance));
   check(seconds, target);
-  // settled motion has no history: muscles have responded, viscous stresses relaxed
+  // an equilibrium has no history: muscles have responded, viscous stresses have relaxed
   struct Settling
   {
     explicit Settling(TimeStepper& s) : stepper(s) { stepper.settling_ = true; }
@@ -264,7 +265,7 @@ void TimeStepper::switch_effect(Effect effect, bool on)
   effects_switched({ effect });
 }
 
-// the discretisation's bounds are those of the effects already
+// the discretisation's bounds must already be those of the running effects
 void TimeStepper::effects_switched(const std::vector<Effect>& effects)
 {
   backend_->effects_switched();
@@ -328,7 +329,7 @@ void TimeStepper::open_ledger()
 EnergyLedger TimeStepper::ledger()
 {
   if (!ledger_)
-    throw Error("no energy ledger is kept: ask for it in SolverSettings");
+    throw Error("no energy ledger is kept: set SolverSettings::ledger");
   const Stopwatch stopwatch(profile_.monitor);
   return ledger_->balance(motion_.time, ledger_step());
 }

@@ -11,8 +11,7 @@
 namespace frontalis
 {
 
-/// The Solver of every backend: plans a motion in parts of equal steps, as its components advise, and has the backend
-/// take them.
+/// The Solver of every backend: divides a motion into plans of equal steps and has the backend run them.
 class TimeStepper final : public Solver
 {
 public:
@@ -52,7 +51,7 @@ public:
   std::string description() const override { return traits_.description; }
 
 private:
-  /// How far the motion has come, besides what controller, ledger and backend know.
+  /// State of the motion, except that of controller, ledger and backend.
   struct Motion
   {
     BoneMotionLimits bones;
@@ -76,7 +75,7 @@ private:
   void renew_assembled_estimate(const std::vector<float>& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
-  /// Time step and ledger begin anew.
+  /// Starts time step and ledger anew.
   void displacements_were_set();
   void open_ledger();
   double ledger_step() const;
@@ -89,8 +88,8 @@ private:
   TimeStepController controller_;
   std::unique_ptr<StepBackend> backend_;
   BackendTraits traits_;
-  std::unique_ptr<EnergyLedgerKeeper> ledger_;  // where it was asked for
-  std::unique_ptr<SkinValues> skin_values_;     // from the first request on
+  std::unique_ptr<EnergyLedgerKeeper> ledger_;  // null without a ledger
+  std::unique_ptr<SkinValues> skin_values_;     // made on the first request
   Motion motion_;
   Profile profile_;
   bool settling_ = false;  // viscous stresses are fully relaxed, and no ledger is kept

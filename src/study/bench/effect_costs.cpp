@@ -141,9 +141,8 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
       return spread_of_difference(timer({ { whole.get(), active }, { less.get(), active } }), 0, 1);
     }
     EffectSet moving;
-    for (const Effect e :
-         { Effect::gravity, Effect::surface_loads, Effect::prescribed_displacement, Effect::sliding, Effect::contact })
-      moving = moving.with(e);
+    for (const Effect e : every_effect())
+      moving = moving.with(e, e != effect && presence_of(*model, e).nodes > 0);
     const auto held = solver_of(without(*model, moving), settings),
                loose = solver_of(without(*model, moving.with(effect)), settings);
     return spread_of_difference(timer({ { held.get(), rest }, { loose.get(), rest } }), 0, 1);

@@ -135,9 +135,9 @@ void GuardedTrial::record()
     throw Error(fmt::format("the energy ledger is no longer finite at {:g} s", solver_->time()));
   worst_imbalance_ = std::max(worst_imbalance_, std::abs(ledger_.imbalance()));
   largest_ = std::max(largest_, ledger_.largest);
-  most_hourglass_ = std::max(most_hourglass_, ledger_.hourglass);
-  moments_.push_back({ solver_->time(), ledger_.kinetic, ledger_.internal + ledger_.hourglass, ledger_.imbalance(),
-                       monitor_.worst_jacobian });
+  most_hourglass_ = std::max(most_hourglass_, ledger_["hourglass"]);
+  moments_.push_back({ solver_->time(), ledger_["kinetic"], ledger_["internal"] + ledger_["hourglass"],
+                       ledger_.imbalance(), monitor_.worst_jacobian });
 }
 
 void GuardedTrial::check_balance(const std::string& of, const std::string& picture, const std::string& title)

@@ -111,7 +111,7 @@ void strong_muscle(CaseRun& run)
 // activates every muscle of a face fully within one time step, and deactivates them likewise
 void switch_on(CaseRun& run, const std::string& scene)
 {
-  // the guard checks every 128 steps, since the motion after a switch lasts only some hundred
+  // the guard checks every 128 steps, because the motion after a switch lasts only a few hundred steps
   GuardedTrial motion(run, run.settings.scene(scene), true, { 128 });
   motion.advance({ motion.solver().time_step(), motion.controls(1), 1 });
   motion.advance({ run.seconds("on"), motion.controls(1), 40 });

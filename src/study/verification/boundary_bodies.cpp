@@ -170,6 +170,8 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
   }
   body.scene.constraints = { constraint_at("base",
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
+  if (!stiff)
+    body.bound = 0.03;
   // so weak that strains are about 1e-4
   const double gravity = slides ? 0.1 : 1;
   body.scene.gravity = { 0, 0, -gravity };

@@ -27,7 +27,7 @@ Point still(const Point&) { return {}; }
 // A problem that both this solver and CalculiX can solve: a box of neo-Hookean materials, held and loaded.
 struct SolidProblem
 {
-  // Nodes whose rest position [m] fulfils `where` get `displacement` [m] in the selected components.
+  // Prescribes `displacement` [m] in the selected components at nodes whose rest position [m] satisfies `where`.
   struct Hold
   {
     Condition where;

@@ -1,8 +1,11 @@
-// contact with rigid bodies: a sphere on a layer
+// contact with rigid bodies: blocks that are pressed, bounce, slip and slide, on every backend
 
-#include "frontalis/model/sample_field.hpp"
+#include "frontalis/physics/contact.hpp"
+#include "frontalis/solver/backend.hpp"
+#include "frontalis/study/contact_model.hpp"
 #include "study/verification/verification_cases.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -10,88 +13,251 @@ namespace frontalis
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double edge = 1e-3, young = 34e3, density = 1000, gravity = 9.81;
 
-// Force on a rigid sphere pressed into an elastic layer that is bonded to a rigid ground, without friction: Hertz with
-// the factor of Dimitriadis et al., Biophysical Journal 82, 2002. chi: contact radius of Hertz over thickness.
-double layer_factor(double poisson, double chi)
+Model block(const Voxel& size, double damping, double poisson = 0.49)
 {
-  const double a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson * poisson) / (1 - poisson);
-  const double b = (0.6387 - 1.0277 * poisson + 1.5164 * poisson * poisson) / (1 - poisson);
-  return 1 - 2 * a / pi * chi + 4 * a * a / (pi * pi) * chi * chi -
-         8 / std::pow(pi, 3) * (a * a * a + 4 * pi * pi / 15 * b) * std::pow(chi, 3) +
-         16 * a / std::pow(pi, 4) * (a * a * a + 3 * pi * pi / 5 * b) * std::pow(chi, 4);
+  Model model = voxel_model(size, edge, neo_hookean(young, poisson, density));
+  model.damping = damping;
+  return model;
 }
 
-double hertz_force(double young, double poisson, double radius, double depth)
+// A free block of 5 x 4 x 4 voxels above a plate.
+Model falling_block(double gap, double friction)
 {
-  return 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(radius * depth) * depth;
+  Model model = block({ { 5, 4, 4 } }, 0);
+  model.contacts.push_back(touching_side(model, false, flat_body(-gap, -1)));
+  model.contacts[0].friction = friction;
+  return model;
 }
 
-// The upper side of a model of whole voxels, four triangles per voxel.
-void touch_with_top(Contact& contact, const Model& model)
+// Calls `verify` for each backend of this machine. Backends that do not compute contact are listed as skipped.
+void on_every_backend(Finding& finding, const std::function<void(const Backend&)>& verify)
 {
-  const std::int32_t nx = model.size[0], ny = model.size[1], top = (model.size[2] - 1) * ny * nx;
-  TriangleMesh mesh;
-  Binding binding;
-  const auto add = [&](double x, double y)
-  {
-    const auto i = std::min(static_cast<std::int32_t>(x), nx - 1), j = std::min(static_cast<std::int32_t>(y), ny - 1);
-    mesh.vertices.push_back({ { x * model.spacing[0], y * model.spacing[1], model.size[2] * model.spacing[2] } });
-    binding.voxel.push_back(top + j * nx + i);
-    binding.coordinates.push_back({ { static_cast<float>(x - i), static_cast<float>(y - j), 1 } });
-  };
-  for (std::int32_t j = 0; j <= ny; ++j)
-    for (std::int32_t i = 0; i <= nx; ++i)
-      add(i, j);
-  for (std::int32_t j = 0; j < ny; ++j)
-    for (std::int32_t i = 0; i < nx; ++i)
+  for (const Backend& backend : available_backends())
+    try
     {
-      const std::int32_t a = j * (nx + 1) + i, b = a + 1, c = a + nx + 1, d = c + 1;
-      const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
-      add(i + 0.5, j + 0.5);
-      for (const auto& edge : { std::array<std::int32_t, 2>{ { a, b } }, { { b, d } }, { { d, c } }, { { c, a } } })
-        mesh.triangles.push_back({ { edge[0], edge[1], middle } });
+      verify(backend);
     }
-  set_points(contact, mesh, binding);
+    catch (const BackendUnavailable& why)
+    {
+      finding.skipped += (finding.skipped.empty() ? "" : "; ") + std::string(why.what());
+    }
+}
+
+std::unique_ptr<Solver> make(const Model& model, const Backend& backend, bool ledger = false, double time_step = 0)
+{
+  return make_solver(std::make_shared<const Model>(model), { backend, 1, time_step, ledger });
+}
+
+Vectors displacements(const Solver& solver)
+{
+  Vectors u;
+  solver.displacements(u);
+  return u;
+}
+
+double mean(const Vectors& vectors, std::size_t axis)
+{
+  double sum = 0;
+  for (const Point& v : vectors)
+    sum += v[axis];
+  return sum / static_cast<double>(vectors.size());
+}
+
+double relative(double found, double expected) { return 100 * std::abs(found / expected - 1); }
+
+// mass of each node [kg]
+std::vector<double> lumped_masses(const Model& model)
+{
+  std::vector<double> mass(model.nodes.size(), 0);
+  for (const auto& corners : model.voxel_nodes)
+    for (const auto node : corners)
+      mass[node] += density * edge * edge * edge / 8;
+  return mass;
+}
+
+// Force [N] and moment [N m] on a plate, or rate of change of the tissue's momentum and angular momentum.
+using Wrench = std::array<double, 6>;
+
+void add_momentum(Wrench& sum, const Point& place, const Point& momentum)
+{
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
+    sum[axis] += momentum[axis];
+    sum[3 + axis] += place[j] * momentum[k] - place[k] * momentum[j];
+  }
 }
 
 }  // namespace
 
-void verify_hertz(const Backend& backend, Finding& finding)
+void verify_contact_pressure(const Backend&, Finding& finding)
 {
-  // a quarter of the layer; lengths in voxels: contact radius, thickness, half of the width
-  constexpr std::int32_t contact_radius = 8, thickness = 24, width = 40;
-  constexpr double edge = 0.5e-3, young = 34e3, poisson = 0.3, density = 1000;
-  const double radius = contact_radius * edge / 0.1, depth = 0.1 * contact_radius * edge;
-  Model model = voxel_model({ { width, width, thickness } }, edge, neo_hookean(young, poisson, density));
-  model.hourglass = HourglassControl::assumed_strain;
-  for (const int axis : { 0, 1 })
-    prescribe(model, nodes_where(model, [&](const auto& p) { return p[axis] == 0; }),
-              { { axis == 0, axis == 1, false } });
-  hold(model, [](const auto& p) { return p[2] == 0; });
-  model.bones = { "sphere" };
-  Contact contact;
-  contact.name = "sphere";
-  contact.bone = 0;
-  contact.field = sphere_field({ { 0, 0, thickness * edge + radius } }, radius);
-  touch_with_top(contact, model);
-  model.contacts.push_back(contact);
-  EquilibriumSettings search;
-  search.backend = backend;
-  search.period = 4 * thickness * edge * std::sqrt(density / shear_modulus(young, poisson));
-  search.bone_pose.translation[2] = -depth;
-  const RestState state = find_equilibrium(model, search);
-  const double force = 4 * state.solver->reactions()[0].force[2];
-  const double half_space = hertz_force(young, poisson, radius, depth);
-  finding.checks.relative("force on the sphere", "N",
-                          half_space * layer_factor(poisson, contact_radius / double(thickness)), force, 0.05);
-  finding.checks.relative("the same on a half-space", "N", half_space, force, std::nan(""));
-  // tissue in the middle is as deep as the sphere, but for what contact gives way
-  const auto middle =
-      nodes_where(model, [&](const auto& p) { return p[0] == 0 && p[1] == 0 && p[2] > (thickness - 0.5) * edge; });
-  finding.checks.absolute("depth of the middle below the sphere, in voxels", "1", 0,
-                          (mean_displacement(state.displacements, middle)[2] + depth) / edge, 0.05);
+  const auto verify = [&](const Backend& backend, double poisson)
+  {
+    Model model = block({ { 5, 4, 4 } }, 3000, poisson);
+    prescribe(model, nodes_where(model, [](const auto& p) { return p[2] == 0; }), { { false, false, true } });
+    model.bones = { "plate" };
+    model.contacts.push_back(touching_side(model, true, flat_body(4 * edge, 1)));
+    model.contacts[0].bone = 0;
+    const auto solver = make(model, backend);
+    constexpr double way = 0.206e-3;
+    Controls controls = solver->controls();
+    controls.bone[0].translation[2] = -way;
+    for (int i = 0; i < 9; ++i)
+      solver->advance(0.02, controls);
+    const double pressure = solver->reactions()[0].force[2] / (20 * edge * edge);
+    const Vectors u = displacements(*solver);
+    double least = 1, most = 0;
+    for (const auto node : nodes_where(model, [](const auto& p) { return p[2] > 3.5 * edge; }))
+    {
+      least = std::min(least, u[node][2] + way);
+      most = std::max(most, u[node][2] + way);
+    }
+    const std::string of = ", ν = " + readable(poisson) + ", " + backend;
+    finding.checks.relative("pressure over E" + of, "1", 0.05, pressure / young, 0.1);
+    finding.checks.absolute("largest depth" + of, "% of a voxel", 0, 100 * most / edge, 2);
+    finding.checks.absolute("unevenness of depth" + of, "%", 0, 100 * (most - least) / most, 5);
+    finding.checks.relative("mean depth" + of, "um", 1e6 * pressure * edge / (physics::contact_stiffness * young),
+                            1e6 * 0.5 * (most + least), 0.03);
+  };
+  on_every_backend(finding,
+                   [&](const Backend& backend)
+                   {
+                     verify(backend, 0.3);
+                     verify(backend, 0.49);
+                   });
+}
+
+void verify_contact_impact(const Backend&, Finding& finding)
+{
+  const auto verify = [&](const Backend& backend)
+  {
+    const Model model = falling_block(0.1e-3, 0);
+    const auto solver = make(model, backend, true);
+    solver->set_velocities(Vectors(model.nodes.size(), { { 0.05, 0, -0.3 } }));
+    const double initial = solver->ledger().initial;
+    double stored = 0, worst = 0, unexplained = 0;
+    Plot plot{ "A block hits a plate, " + backend, "time [ms]", "energy over the first kinetic energy [1]" };
+    plot.key = "right";
+    plot.curves = { { "kinetic", {}, {}, Plot::Style::line },
+                    { "of deformation", {}, {}, Plot::Style::line },
+                    { "of contact", {}, {}, Plot::Style::dashed },
+                    { "all", {}, {}, Plot::Style::line } };
+    for (int slice = 0; slice < 60; ++slice)
+    {
+      solver->advance(0.1e-3, solver->controls());
+      const EnergyLedger l = solver->ledger();
+      const double all = l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"], ms = 1e3 * solver->time();
+      stored = std::max(stored, l["contact_stored"]);
+      worst = std::max(worst, relative(all, initial));
+      unexplained = std::max(unexplained, 100 * std::abs(l.imbalance()) / initial);
+      plot.curves[0].add(ms, l["kinetic"] / initial);
+      plot.curves[1].add(ms, (l["internal"] + l["hourglass"]) / initial);
+      plot.curves[2].add(ms, l["contact_stored"] / initial);
+      plot.curves[3].add(ms, all / initial);
+    }
+    finding.checks.absolute("change of mechanical energy, " + backend, "%", 0, worst, 2);
+    finding.checks.absolute("energy unexplained, " + backend, "%", 0, unexplained, 2);
+    finding.checks.absolute("shortfall from 1 % stored by contact, " + backend, "%", 0,
+                            std::max(0.0, 1 - 100 * stored / initial), 0);
+    finding.checks.absolute("force after the bounce, " + backend, "N", 0, solver->reactions()[0].force[2], 0);
+    finding.checks.absolute("shortfall from a rise of 0.05 mm, " + backend, "mm", 0,
+                            std::max(0.0, 0.05 - 1e3 * mean(displacements(*solver), 2)), 0);
+    if (backend == "cpu")
+      finding.plots.emplace_back("contact_impact", plot);
+  };
+  on_every_backend(finding, verify);
+}
+
+void verify_contact_wrench(const Backend&, Finding& finding)
+{
+  const auto verify = [&](const Backend& backend)
+  {
+    const Model model = falling_block(1e-6, 0.4);
+    const std::vector<double> mass = lumped_masses(model);
+    constexpr double dt = 2e-6;
+    const auto solver = make(model, backend, false, dt);
+    // the block arrives obliquely and turning, so that no component is zero
+    Vectors velocity;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    {
+      const Point p = rest_position(model, n);
+      velocity.push_back({ { 0.1 + 10 * p[1], -0.05, -0.3 - 20 * p[0] } });
+    }
+    solver->set_velocities(velocity);
+    Wrench gained{}, lost{};
+    Vectors before = displacements(*solver);
+    for (int step = 0; step < 600; ++step)
+    {
+      solver->advance(dt, solver->controls());
+      const Reaction reaction = solver->reactions()[0];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        gained[axis] += dt * reaction.force[axis];
+        gained[3 + axis] += dt * reaction.moment[axis];
+      }
+      const Vectors after = displacements(*solver);
+      for (std::size_t n = 0; n < mass.size(); ++n)
+      {
+        Point place = rest_position(model, n), change{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          const double now = (after[n][axis] - before[n][axis]) / dt;
+          change[axis] = mass[n] * (velocity[n][axis] - now);
+          place[axis] += before[n][axis];
+          velocity[n][axis] = now;
+        }
+        add_momentum(lost, place, change);
+      }
+      before = after;
+    }
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      const std::string what = i < 3 ? "impulse " : "angular impulse ", axis(1, "xyz"[i % 3]);
+      finding.checks.relative(what + axis + ", " + backend, i < 3 ? "uN s" : "nN m s", (i < 3 ? 1e6 : 1e9) * lost[i],
+                              (i < 3 ? 1e6 : 1e9) * gained[i], 0.01);
+    }
+  };
+  on_every_backend(finding, verify);
+}
+
+void verify_contact_incline(const Backend&, Finding& finding)
+{
+  // the angle of friction is 26.6 degrees; gravity starts suddenly, and the block bounces until it has settled
+  constexpr double friction = 0.5, damping = 50, settling = 0.15, time = 0.05, degree = 3.14159265358979 / 180;
+  const auto on_incline = [&](double degrees, const Backend& backend)
+  {
+    Model model = block({ { 6, 4, 2 } }, damping);
+    model.contacts.push_back(touching_side(model, false, flat_body(0, -1)));
+    model.contacts[0].friction = friction;
+    model.gravity = { { gravity * std::sin(degrees * degree), 0, -gravity * std::cos(degrees * degree) } };
+    auto solver = make(model, backend);
+    solver->advance(settling, {});
+    return solver;
+  };
+  const auto way = [&](Solver& solver)
+  {
+    const double begin = mean(displacements(solver), 0);
+    solver.advance(time, {});
+    return mean(displacements(solver), 0) - begin;
+  };
+  const auto verify = [&](const Backend& backend)
+  {
+    finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1);
+    for (const double degrees : { 35.0, 60.0 })
+    {
+      // with damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
+      // next, q = exp(-c t)
+      const auto solver = on_incline(degrees, backend);
+      const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
+      finding.checks.relative("acceleration at " + readable(degrees) + "°, " + backend, "m/s2",
+                              gravity * (std::sin(degrees * degree) - friction * std::cos(degrees * degree)),
+                              damping * (second - q * first) / (time * (1 - q)), 0.01);
+    }
+  };
+  on_every_backend(finding, verify);
 }
 
 }  // namespace frontalis

@@ -8,7 +8,7 @@ namespace frontalis
 namespace physics
 {
 
-/// The fibres of one muscle in a voxel. S is the number type of what all voxels of a batch share.
+/// The fibres of one muscle in a voxel. T: number type of a batch of voxels; S: that of values that all of them share.
 template <class T, class S>
 struct Fibre
 {
@@ -19,7 +19,7 @@ struct Fibre
   bool passive;    ///< has a passive part
 };
 
-/// A fibre at a deformation.
+/// State of a fibre at a deformation.
 template <class T>
 struct FibreState
 {

@@ -31,14 +31,14 @@ Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
   return kick;
 }
 
-/// Velocity of a free node after a step. gain_over_mass: Kick::gain over the node's mass.
+/// Velocity of a free node after a step. gain_over_mass: Kick::gain over the node's mass [s/kg].
 template <class T>
 FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T force)
 {
   return (kick.keep * v + kick.impulse[axis]) - gain_over_mass * force;
 }
 
-/// The step is linear in the force, so that loads [N] may be added after it.
+/// Adds the effect of a load [N] after the step, which is linear in the force.
 template <class T>
 FRONTALIS_LAW void add_load(T gain_over_mass, T dt, T force, T& u, T& v)
 {

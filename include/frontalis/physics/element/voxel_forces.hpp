@@ -10,7 +10,7 @@ namespace frontalis
 namespace physics
 {
 
-/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. With `look`,
+/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. If `look` is set,
 /// stiffness becomes the largest bound at these points if that is larger.
 template <class Voxel, class T>
 FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
@@ -44,10 +44,10 @@ FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
       mode[m] = stiffness * mode[m];
 }
 
-/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Modes
-/// with more than scalar hourglass control are replaced by the forces on them. For the others the voxel calls
-/// scalar_hourglass() here or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the
-/// call; with `look` it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
+/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Unless
+/// hourglass control is scalar, the modes become the forces on them; if it is, the voxel calls scalar_hourglass() here
+/// or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the call; if `look` is set,
+/// it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
 {

@@ -10,25 +10,25 @@ namespace frontalis
 namespace physics
 {
 
-// The stress of one voxel at one point, from all its effects. `Voxel` is a type of the backend that knows where the
-// data of a voxel lies. All moduli and weights that it returns are multiplied by the tissue volume, so that stresses
-// are in N m. T is its number type: double, float or a SIMD batch of voxels. The functions of this folder call these
-// members of it, each only what it needs:
+// The stress of one voxel at one point, from all its effects. `Voxel` is a type of the backend that reads the data of
+// a voxel from where the backend stores it. All moduli and weights that it returns are multiplied by the tissue volume,
+// so that stresses are in N m. T is its number type: double, float or a SIMD batch of voxels. The functions of this
+// folder call these members of it, each only those that it needs:
 //
 //   scale(), stretch_weight(), stretch_half_sum(), hourglass_weight()   geometry, as in kinematics(),
 //                                       voxel_stiffness_now() and hourglass_forces()
 //   material()                          NeoHookean<T>
 //   hourglass()                         scalar hourglass stiffness [N/m]
-//   stabilisation()                     AssumedStrain<T>, asked for where assumed_strain()
+//   stabilisation()                     AssumedStrain<T>, used only if assumed_strain()
 //   assumed_strain(), selective_reduced()   whether these replace scalar hourglass control
 //   bound_at_rest()                     bound of the stiffness at rest [N/m]
 //   has_laws(), each_law(visit)         laws beyond neo-Hookean: add_stress(k, P), stiffening(k), energy(k)
-//   each_fibre(visit)                   Fibre<T, S> of each muscle where has_stress()
+//   each_fibre(visit)                   Fibre<T, S> of each muscle for which has_stress() is true
 //   viscous_terms(), viscous_term(n)    Prony series; ViscousTerm<T>
 //   relaxed(n), keep_relaxed(n, H)      its stresses: relaxed_tensors() of them
 //
-// These decide whether the effect is there at all and whether its code stands in line; each calls the function of this
-// folder that has its name: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),
+// The following members decide whether an effect is computed at all, and whether its code is inlined. Each calls the
+// function of the same name in this folder: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),
 // stiffness_now(k), gauss_forces(mode, look, stiffness), scalar_hourglass(mode).
 
 /// Adds the stress of the laws other than neo-Hookean.
@@ -52,7 +52,7 @@ FRONTALIS_LAW Matrix3<T> elastic_stress(const Voxel& voxel, const NeoHookean<T>&
   return P;
 }
 
-/// The same without the volumetric part.
+/// Isochoric part of elastic_stress().
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> isochoric_stress(const Voxel& voxel, const Kinematics<T>& k)
 {
@@ -61,7 +61,7 @@ FRONTALIS_LAW Matrix3<T> isochoric_stress(const Voxel& voxel, const Kinematics<T
   return elastic_stress(voxel, material, k);
 }
 
-/// Only the volumetric part.
+/// Volumetric part of elastic_stress().
 template <class T>
 FRONTALIS_LAW Matrix3<T> volumetric_stress(const NeoHookean<T>& material, const Kinematics<T>& k)
 {

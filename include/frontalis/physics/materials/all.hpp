@@ -25,7 +25,7 @@ struct MaterialList
 
 /// The table of materials: every solid that a scene can use. A solid is a struct of its parameters with a `description`
 /// and the functions add_stress, energy, tangent_stiffness and shear_modulus; with fibres, the first three take a
-/// pointer to their directions after the kinematics. New solids go to the end, because model files store places in the
+/// pointer to their directions after the kinematics. New solids go to the end: model files store indices into the
 /// table.
 using Materials = MaterialList<NeoHookean, MooneyRivlin, Ogden, FungExponential, HolzapfelGasserOgden, Guccione>;
 
@@ -60,7 +60,7 @@ FRONTALIS_LAW void visit_solid(const T* numbers, Visit&& visit)
   }
 }
 
-/// Calls visit for the law's solid. Laws before the place `First` are skipped.
+/// Calls visit with the law's solid. Laws with an index below `First` are skipped.
 template <int First, class T, class Visit, template <class> class... Solids, std::size_t... I>
 FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, MaterialList<Solids...>,
                                 std::index_sequence<I...>)
@@ -69,7 +69,7 @@ FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, Materi
          ...);
 }
 
-/// The same for the whole table, or from the place `First` onwards.
+/// The same for the whole table, or from index `First` onwards.
 template <int First = 0, class T, class Visit>
 FRONTALIS_LAW void visit_table(Law law, const T* numbers, Visit&& visit)
 {
@@ -89,6 +89,6 @@ constexpr Law find_law(MaterialList<Solids...>)
 /// The law of a solid: law_of<physics::Guccione>.
 template <template <class> class Solid>
 constexpr Law law_of = physics::find_law<Solid>(physics::Materials{});
-static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels treat the first law apart");
+static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels have code of their own for the first law");
 
 }  // namespace frontalis

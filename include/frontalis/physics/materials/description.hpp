@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// The law of a material: its place in the table of materials (physics/materials/all.hpp), which model files store.
+/// The law of a material: its index in the table of materials (physics/materials/all.hpp), which model files store.
 enum class Law : std::uint8_t
 {
   neo_hookean = 0  ///< the law that every kernel computes for all voxels, without a lookup
@@ -17,7 +17,7 @@ enum class Law : std::uint8_t
 namespace physics
 {
 
-/// The numbers of a material in a model: at most four parameters of its law, the bulk modulus, at most two directions.
+/// What a model stores of a material: at most four parameters of its law, the bulk modulus, at most two directions.
 constexpr int law_parameters_max = 4;
 constexpr int bulk_modulus_slot = 1;
 constexpr int first_direction = 5;
@@ -46,7 +46,7 @@ constexpr Range not_zero{ -unbounded, unbounded, true, true, false };
 constexpr Range above_zero{ 0, unbounded, false, true };
 constexpr Range from_zero{ 0, unbounded, true, true };
 
-/// One parameter as a scene gives it.
+/// One parameter of a law, as a scene specifies it.
 struct Parameter
 {
   const char* key = nullptr;      ///< in the scene

@@ -15,7 +15,7 @@ constexpr std::array<MaterialDescription, sizeof...(Solids)> descriptions_of(Mat
   return { { Solids<double>::description... } };
 }
 
-/// The description of each law, by its place in the table.
+/// The description of each law, by its index in the table.
 inline constexpr auto material_table = descriptions_of(Materials{});
 
 template <std::size_t... I>

@@ -1,0 +1,246 @@
+#include "cuda/backend/device_body_contact.hpp"
+
+#include "cuda/backend/device_model.hpp"
+#include "cuda/kernels/contact_kernels.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace frontalis
+{
+namespace cuda
+{
+std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patches)
+{
+  if (model.contacts.empty())
+    return 0;
+  std::vector<std::uint32_t> in_voxel(model.voxels.size(), 0);
+  for (const Contact& contact : model.contacts)
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+      in_voxel[contact.binding.voxel[p]] += contact.area[p] > 0 ? 1 : 0;
+  std::uint32_t most = 0;
+  for (const Patch& patch : patches.patches)
+  {
+    const auto voxel = patches.voxel.begin() + patch.voxel_begin;
+    most = std::max(most, std::accumulate(voxel, voxel + patch.voxels, 0u,
+                                          [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
+  }
+  return most;
+}
+
+std::unique_ptr<DevicePart> touching_part(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
+                                          const std::vector<std::uint32_t>& device_node)
+{
+  if (model.contacts.empty())
+    return nullptr;
+  return std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node);
+}
+
+DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
+                                     const std::vector<std::uint32_t>& device_node)
+    : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0)
+{
+  for (const auto& point : host_.points())
+    ++first_point_[point.voxel + 1];
+  std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
+  if (cut.patches)
+    add_to_patches(*cut.patches);
+  else
+    add_to_strips(model, device_node);
+  add_points(model);
+  for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+    *state = DeviceArray<float4>(point_.size());
+  holds_ = DeviceArray<ContactHold>(point_.size());
+  reset();
+}
+
+// Each copy of a voxel in a patch has copies of its points.
+void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
+{
+  std::vector<PatchContact> of_patch;
+  std::vector<ContactVoxel> voxels;
+  std::vector<uint4> corners;
+  for (const Patch& patch : patches.patches)
+  {
+    PatchContact contact{ static_cast<std::uint32_t>(point_.size()), 0, static_cast<std::uint32_t>(voxels.size()), 0 };
+    for (std::uint32_t v = 0; v < patch.voxels; ++v)
+    {
+      const auto e = patches.voxel[patch.voxel_begin + v];
+      const std::uint32_t first = contact.points;
+      for (auto p = first_point_[e]; p < first_point_[e + 1]; ++p, ++contact.points)
+      {
+        point_.push_back(p);
+        uint4 places;
+        static_assert(sizeof places == sizeof patches.corner[0], "eight places are read as four words");
+        std::memcpy(&places, &patches.corner[patch.voxel_begin + v], sizeof places);
+        corners.push_back(places);
+      }
+      if (contact.points > first)
+        voxels.push_back({ v, first, contact.points });
+    }
+    contact.voxels = static_cast<std::uint32_t>(voxels.size()) - contact.voxel_begin;
+    of_patch.push_back(contact);
+  }
+  patches_ = DeviceArray<PatchContact>(of_patch);
+  voxels_ = DeviceArray<ContactVoxel>(voxels);
+  corners_ = DeviceArray<uint4>(corners);
+}
+
+void DeviceBodyContact::add_to_strips(const Model& model, const std::vector<std::uint32_t>& device_node)
+{
+  point_.resize(host_.points().size());
+  std::iota(point_.begin(), point_.end(), 0u);
+  std::vector<uint4> nodes;
+  std::vector<ContactVoxel> voxels;
+  std::vector<std::pair<std::uint32_t, std::pair<int, std::int32_t>>> uses;  // node, corner, voxel with points
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    if (first_point_[e] == first_point_[e + 1])
+      continue;
+    std::uint32_t node[8];
+    for (int b = 0; b < 8; ++b)
+    {
+      node[b] = device_node[model.voxel_nodes[e][b]];
+      uses.push_back({ node[b], { b, static_cast<std::int32_t>(voxels.size()) } });
+    }
+    for (auto p = first_point_[e]; p < first_point_[e + 1]; ++p)
+      for (const int half : { 0, 4 })
+        nodes.push_back({ node[half], node[half + 1], node[half + 2], node[half + 3] });
+    voxels.push_back({ 0, first_point_[e], first_point_[e + 1] });
+  }
+  std::sort(uses.begin(), uses.end());
+  std::vector<std::uint32_t> bound;
+  std::vector<std::int32_t> node_voxels;
+  for (const auto& [node, use] : uses)
+  {
+    if (bound.empty() || bound.back() != node)
+    {
+      bound.push_back(node);
+      node_voxels.resize(node_voxels.size() + 8, -1);
+    }
+    node_voxels[node_voxels.size() - 8 + use.first] = use.second;
+  }
+  nodes_ = DeviceArray<uint4>(nodes);
+  voxels_ = DeviceArray<ContactVoxel>(voxels);
+  bound_ = DeviceArray<std::uint32_t>(bound);
+  node_voxels_ = DeviceArray<std::int32_t>(node_voxels);
+  pushes_ = DeviceArray<float4>(point_.size());
+}
+
+void DeviceBodyContact::add_points(const Model& model)
+{
+  std::vector<ContactBody> bodies;
+  for (const Contact& contact : model.contacts)
+    bodies.push_back(contact_body(contact, fields_.add(contact.field)));
+  bodies_ = DeviceArray<ContactBody>(bodies);
+  std::vector<ContactPoint> points;
+  copy_.resize(host_.points().size());
+  for (const auto p : point_)
+  {
+    const auto& from = host_.points()[p];
+    copy_[p] = static_cast<std::uint32_t>(points.size());
+    points.push_back(contact_point(model.contacts[from.body], from));
+  }
+  points_ = DeviceArray<ContactPoint>(points);
+}
+
+void DeviceBodyContact::describe(StepArguments& g) const
+{
+  g.contact = { bodies_.data(),
+                points_.data(),
+                voxels_.data(),
+                patches_.data(),
+                corners_.data(),
+                nodes_.data(),
+                bound_.data(),
+                node_voxels_.data(),
+                pushes_.data(),
+                static_cast<std::uint32_t>(point_.size()),
+                static_cast<std::uint32_t>(bound_.size()),
+                grips_.data(),
+                holds_.data(),
+                forces_.data(),
+                arms_.data(),
+                clearances_.data(),
+                false };
+}
+
+void DeviceBodyContact::list_arrays(ArrayList& list)
+{
+  const Effect effect = Effect::contact;
+  fields_.list_arrays(effect, list);
+  list.add(effect, "points", bodies_.bytes() + points_.bytes() + corners_.bytes() + nodes_.bytes());
+  list.add(effect, "their voxels", voxels_.bytes() + patches_.bytes() + bound_.bytes() + node_voxels_.bytes());
+  list.add(effect, "forces", pushes_.bytes());
+  for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+    list_state(list, effect, "forces", *state);
+  list_state(list, effect, "forces", holds_);
+  host_.list_arrays(list);
+}
+
+void DeviceBodyContact::run(EffectSet running)
+{
+  host_.run(running);
+  if (idle())
+    reset();
+}
+
+void DeviceBodyContact::reset()
+{
+  for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+    state->clear();
+  holds_.clear();
+  host_.reset();
+}
+
+void DeviceBodyContact::push(const StepArguments& g, int step, cudaStream_t stream) const
+{
+  require(launch_find_pushes(g, step, stream), "finding forces of contact");
+  require(launch_push_nodes(g, g.gain / g.keep, g.v, stream), "pushing nodes");
+}
+
+void DeviceBodyContact::take_back(const StepArguments& g, float* const (&v)[3], cudaStream_t stream) const
+{
+  require(launch_push_nodes(g, -g.gain / g.keep, v, stream), "velocities before contact");
+}
+
+void DeviceBodyContact::add_springs(const StepArguments& g, cudaStream_t stream) const
+{
+  float* const none[3] = { nullptr, nullptr, nullptr };
+  require(launch_find_pushes(g, 0, stream), "finding forces of contact");
+  require(launch_push_nodes(g, 0, none, stream), "adding forces of contact");
+}
+
+void DeviceBodyContact::follow(const ConstraintStep& step)
+{
+  std::vector<float4> grips, forces, arms;
+  std::vector<ContactHold> holds;
+  grips_.download(grips);
+  forces_.download(forces);
+  arms_.download(arms);
+  holds_.download(holds);
+  ContactArguments left{};
+  left.grips = grips.data();
+  left.forces = forces.data();
+  left.arms = arms.data();
+  left.holds = holds.data();
+  std::vector<HostContact::Found> found;
+  for (std::size_t p = 0; p < copy_.size(); ++p)
+    found.push_back(found_at(left, copy_[p], host_.points()[p]));
+  host_.follow(found, step);
+}
+
+void DeviceBodyContact::add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open,
+                                     Vectors& forces, EnergyLedger& ledger)
+{
+  std::vector<double> components[3];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const auto& moved : u)
+      components[axis].push_back(moved[axis]);
+  const double* const pointers[3] = { components[0].data(), components[1].data(), components[2].data() };
+  host_.add_energies(pointers, bones, open, forces, ledger);
+}
+
+}  // namespace cuda
+}  // namespace frontalis

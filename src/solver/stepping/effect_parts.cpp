@@ -1,0 +1,47 @@
+#include "solver/stepping/effect_parts.hpp"
+
+#include "solver/contact/body_contact.hpp"
+#include "solver/contact/contact_stiffness.hpp"
+#include "solver/stepping/attached_nodes.hpp"
+#include "solver/stepping/nodal_loads.hpp"
+#include "solver/stepping/restricted_nodes.hpp"
+
+namespace frontalis
+{
+
+template <class Real>
+std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, const Discretisation& discretisation,
+                                                        SlideKernel<Real> slide)
+{
+  std::vector<std::unique_ptr<NodePart<Real>>> parts;
+  parts.push_back(std::make_unique<RestrictedNodes<Real>>(model, slide));
+  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass));
+  parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
+  parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));
+  return parts;
+}
+
+template std::vector<std::unique_ptr<NodePart<float>>> node_parts(const Model&, const Discretisation&,
+                                                                  SlideKernel<float>);
+template std::vector<std::unique_ptr<NodePart<double>>> node_parts(const Model&, const Discretisation&,
+                                                                   SlideKernel<double>);
+
+std::vector<EnergyTerm> energy_terms_of_effects()
+{
+  using Kind = EnergyTerm::Kind;
+  return {
+    { "contact", Kind::work },           // of the motion of bodies that tissue touches
+    { "contact_stored", Kind::stored },  // by the stiffness of contact
+  };
+}
+
+std::vector<std::shared_ptr<const AddedStiffness>> added_stiffness(const Model& model,
+                                                                   const Discretisation& discretisation)
+{
+  std::vector<std::shared_ptr<const AddedStiffness>> added;
+  if (!model.contacts.empty())
+    added.push_back(std::make_shared<const ContactStiffness>(model, discretisation));
+  return added;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "solver/cpu/slide_kernel.hpp"
+#include "solver/stepping/node_part.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace frontalis
+{
+
+/// The parts of all effects on nodes, in the order in which their forces are added.
+template <class Real>
+std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, const Discretisation& discretisation,
+                                                        SlideKernel<Real> slide);
+
+/// Terms of the energy ledger that exist because of an effect.
+std::vector<EnergyTerm> energy_terms_of_effects();
+
+/// Stiffness that effects of a model add to its voxels. The voxels' bounds must not include it yet.
+std::vector<std::shared_ptr<const AddedStiffness>> added_stiffness(const Model& model,
+                                                                   const Discretisation& discretisation);
+
+}  // namespace frontalis

@@ -1,0 +1,100 @@
+#pragma once
+
+#include "frontalis/physics/element/node_motion.hpp"
+#include "frontalis/solver/reaction.hpp"
+#include "frontalis/solver/solver_state.hpp"
+#include "solver/energy/energy_account.hpp"
+#include "solver/stepping/array_list.hpp"
+#include "solver/stepping/constraint_step.hpp"
+
+#include <array>
+#include <vector>
+
+namespace frontalis
+{
+
+/// The planes of nodes that one thread processes.
+struct NodeShare
+{
+  int thread, threads;
+  std::int32_t first_plane, end_plane;
+  std::int32_t first_node, end_node;
+};
+
+/// Applies external forces to nodes: either subtracts them from internal forces, or corrects the nodes after their
+/// update, which is linear in the force.
+template <class Real>
+class ForceSink
+{
+public:
+  /// For subtracting forces from internal forces [N].
+  explicit ForceSink(Real* const internal[3]) : u_{ internal[0], internal[1], internal[2] } {}
+  /// For correcting displacements [m] and velocities [m/s]. `gain`: of a physics::Kick.
+  ForceSink(Real gain, Real dt, const float* inverse_mass, Real* const u[3], Real* const v[3])
+      : gain_(gain), dt_(dt), inverse_mass_(inverse_mass), u_{ u[0], u[1], u[2] }, v_{ v[0], v[1], v[2] }
+  {
+  }
+  void operator()(std::int32_t node, const std::array<double, 3>& force) const
+  {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (inverse_mass_ == nullptr)
+        u_[axis][node] -= static_cast<Real>(force[axis]);
+      else
+        physics::add_load(gain_ * inverse_mass_[node], dt_, static_cast<Real>(force[axis]), u_[axis][node],
+                          v_[axis][node]);
+  }
+
+private:
+  Real gain_ = 0, dt_ = 0;
+  const float* inverse_mass_ = nullptr;
+  Real* u_[3];
+  Real* v_[3] = {};
+};
+
+/// The part of a host backend that serves an effect on nodes. In each step, each thread calls its functions in the
+/// order of this list, for its own nodes. By default they do nothing. Real is the backend's number type.
+template <class Real>
+class NodePart : public EffectPart
+{
+public:
+  /// If true, none of the other functions is called.
+  virtual bool idle() const = 0;
+  /// Whether add_forces() adds any. If so, threads wait for each other between before_step() and add_forces().
+  virtual bool pushes() const { return false; }
+  /// Called with the displacements at the start of the step.
+  virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
+  virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
+  /// Overwrites displacements and velocities after the update. `before`: displacements before it.
+  virtual void constrain(const NodeShare& /*share*/, Real* const /*u*/[3], Real* const /*v*/[3],
+                         const Real* const /*before*/[3], const ConstraintStep& /*step*/)
+  {
+  }
+  /// Whether constrain_groups() is needed. If so, threads wait for each other before and after it.
+  virtual bool groups() const { return false; }
+  /// Overwrites displacements and velocities of groups of nodes, which may belong to several threads: each group is
+  /// that of one thread.
+  virtual void constrain_groups(const NodeShare& /*share*/, Real* const /*u*/[3], Real* const /*v*/[3],
+                                const ConstraintStep& /*step*/)
+  {
+  }
+  /// Called with the displacements before and after the step.
+  virtual void after_step(const NodeShare& /*share*/, const Real* const /*before*/[3], const Real* const /*after*/[3])
+  {
+  }
+  /// Adds its work in the step. `kick`: time over which forces changed velocities [s].
+  virtual void account(const NodeShare& /*share*/, EnergyAccount<Real>& /*account*/, const Real* const /*v*/[3],
+                       double /*kick*/)
+  {
+  }
+
+  /// Adds its present energies to terms of the ledger, and its present forces [N] to `forces` if that is not empty.
+  /// `open`: works and losses count from now on. `bones`: present poses.
+  virtual void add_energies(const Real* const /*u*/[3], const std::vector<RigidTransform>& /*bones*/, bool /*open*/,
+                            std::vector<std::array<double, 3>>& /*forces*/, EnergyLedger& /*ledger*/)
+  {
+  }
+  /// Reactions of the latest step, one per entry of touched_bodies(model) that belongs to this effect.
+  virtual std::vector<Reaction> reactions() const { return {}; }
+};
+
+}  // namespace frontalis

@@ -1,0 +1,162 @@
+// The GPU's code for points of contact, run by the host: where a toolkit is, no GPU is needed.
+#include <gtest/gtest.h>
+
+#if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
+
+#include <cuda_runtime.h>
+
+#include "cuda/kernels/contact_points.cuh"
+
+#include "cuda/backend/contact_point.hpp"
+#include "solver/bodies_touch.hpp"
+#include "solver/energy/energy_ledger_keeper.hpp"
+
+using namespace frontalis;
+using namespace frontalis::cuda;
+
+namespace
+{
+
+constexpr double dt = 20e-6;
+constexpr int steps = 2000;
+
+// The points of a model whose nodes move on a prescribed way: on the host, and as on the GPU.
+class TwoWays
+{
+public:
+  explicit TwoWays(const Model& model)
+      : model_(model), discretisation_(model), host(model, discretisation_), account(model, discretisation_)
+  {
+    for (auto& component : u_)
+      component.assign(model.nodes.size(), 0.0);
+    for (const Contact& contact : model.contacts)
+      bodies_.push_back(contact_body(contact, view(contact.field)));
+    for (const auto& point : host.points())
+      points_.push_back(contact_point(model.contacts[point.body], point));
+    for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+      state->assign(points_.size(), float4{ 0, 0, 0, 0 });
+    holds_.assign(points_.size(), {});
+    g_.contact.bodies = bodies_.data();
+    g_.contact.grips = grips_.data();
+    g_.contact.holds = holds_.data();
+    g_.contact.forces = forces_.data();
+    g_.contact.arms = arms_.data();
+    g_.contact.clearances = clearances_.data();
+    g_.bones = 2;
+    g_.friction_response = physics::friction_response(dt);
+  }
+  TwoWays(const TwoWays&) = delete;
+  TwoWays& operator=(const TwoWays&) = delete;
+
+  // A wave goes through the tissue while the finger presses, strokes and leaves.
+  void step(int number)
+  {
+    const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number) };
+    std::vector<double> poses;
+    for (const RigidTransform& pose : now.bone_before)
+    {
+      poses.insert(poses.end(), pose.rotation.begin(), pose.rotation.end());
+      poses.insert(poses.end(), pose.translation.begin(), pose.translation.end());
+    }
+    g_.poses = poses.data();
+    const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
+    Components unused = u_;
+    double* const ignored[3] = { unused[0].data(), unused[1].data(), unused[2].data() };
+    host.before_step(all, pointers().data(), now);
+    host.add_forces(all, ForceSink<double>(ignored));
+    std::vector<HostContact::Found> found;
+    for (std::size_t p = 0; p < points_.size(); ++p)
+    {
+      float weight[8];
+      const auto& c = points_[p].coordinates;
+      physics::trilinear_weights(c[0], c[1], c[2], weight);
+      physics::Vec3<float> moved{ 0, 0, 0 }, force{ 0, 0, 0 };
+      for (int b = 0; b < 8; ++b)
+      {
+        EXPECT_EQ(weight[b], corner_weight(b, c[0], c[1], c[2]));
+        const auto node = model_.voxel_nodes[host.points()[p].voxel][b];
+        add_part(moved, weight[b], make_float4(float(u_[0][node]), float(u_[1][node]), float(u_[2][node]), 0));
+      }
+      touching += find_push(g_, static_cast<std::uint32_t>(p), points_[p], moved, 0, force) ? 1 : 0;
+      EXPECT_EQ(force.z, forces_[p].z);
+      found.push_back(found_at(g_.contact, p, host.points()[p]));
+    }
+    account.follow(found, now);
+    const Components before = u_;
+    for (std::size_t n = 0; n < model_.nodes.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        u_[axis][n] = static_cast<float>(
+            50e-6 * std::sin(300 * (number + 1) * dt + 700 * test::rest(model_, n)[axis] + double(axis)));
+    const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
+    host.after_step(all, old, pointers().data());
+  }
+  // work of bodies and loss to friction
+  std::array<double, 2> energies(HostContact& of)
+  {
+    EnergyLedger ledger = empty_ledger();
+    std::vector<std::array<double, 3>> none;
+    of.add_energies(pointers().data(), bones(steps), false, none, ledger);
+    return { { ledger["contact"], ledger["friction"] } };
+  }
+
+private:
+  using Components = std::array<std::vector<double>, 3>;
+  std::array<const double*, 3> pointers() const { return { { u_[0].data(), u_[1].data(), u_[2].data() } }; }
+  static std::vector<RigidTransform> bones(int step)
+  {
+    const double part = double(step) / steps, depth = std::sin(2 * 3.14159265 * part);
+    return { RigidTransform(), rigid_motion({ { 0, 0.1 * part, 0.3 * part } }, { { 1e-3 * part, 0, -1e-3 * depth } }) };
+  }
+
+  const Model& model_;
+  const Discretisation discretisation_;
+  Components u_;
+  std::vector<ContactBody> bodies_;
+  std::vector<ContactPoint> points_;
+  std::vector<float4> grips_, forces_, arms_, clearances_;
+  std::vector<ContactHold> holds_;
+  StepArguments g_{};
+
+public:
+  HostContact host, account;
+  std::int64_t touching = 0;
+};
+
+}  // namespace
+
+TEST(ContactPointsOfTheGpu, AreThoseOfTheHost)
+{
+  for (const bool sampled : { false, true })
+    for (const double friction : { 0.0, 0.4 })
+    {
+      const Model model = test::block_and_finger(friction, sampled);
+      TwoWays points(model);
+      double most_force = 0, most_moment = 0, worst_force = 0, worst_moment = 0;
+      for (int step = 0; step < steps; ++step)
+      {
+        points.step(step);
+        const Reaction expected = points.host.reactions()[0], found = points.account.reactions()[0];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          most_force = std::max(most_force, std::abs(expected.force[axis]));
+          most_moment = std::max(most_moment, std::abs(expected.moment[axis]));
+          worst_force = std::max(worst_force, std::abs(expected.force[axis] - found.force[axis]));
+          worst_moment = std::max(worst_moment, std::abs(expected.moment[axis] - found.moment[axis]));
+        }
+      }
+      EXPECT_GT(points.touching, 10000);
+      EXPECT_GT(most_force, 0.1);
+      EXPECT_LT(worst_force, 1e-4 * most_force) << sampled << friction;
+      EXPECT_LT(worst_moment, 1e-4 * most_moment) << sampled << friction;
+      const auto expected = points.energies(points.host), found = points.energies(points.account);
+      EXPECT_GT(std::abs(expected[0]), 1e-7);
+      for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_NEAR(found[i], expected[i], 1e-3 * std::abs(expected[i]));
+    }
+}
+
+#else
+
+TEST(ContactPointsOfTheGpu, NeedATool) { GTEST_SKIP() << "no CUDA toolkit"; }
+
+#endif
