@@ -143,6 +143,8 @@ AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>
     for (std::size_t n = 0; n < model.prescribed.size() && prescribed[group.master]; ++n)
       for (int axis = 0; axis < 3 && model.prescribed[n].node == group.master; ++axis)
         group.fixed[axis] = group.fixed[axis] || model.loads[model.prescribed[n].load].fixed[axis];
+  for (Group& group : groups_)
+    group.slides = group.slides && !group.fixed[0] && !group.fixed[1] && !group.fixed[2];
   reset();
 }
 
@@ -153,7 +155,12 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
   const bool still =
       std::all_of(begin, end, [](const AttachedNode& node) { return node.bone < 0 && node.surface < 0; });
   const auto position = [&] { return static_cast<std::int32_t>(still ? held_.size() : ties_.size()); };
-  Group group{ master, position(), 0, still, { false, false, false }, 1 };
+  const bool slides = std::all_of(begin, end,
+                                  [&](const AttachedNode& node) {
+                                    return node.surface >= 0 && node.surface == begin->surface &&
+                                           model_.constraint_surfaces[node.surface].bone < 0;
+                                  });
+  Group group{ master, position(), 0, still, { false, false, false }, slides, 1 };
   double common = mass_[master];
   for (const AttachedNode* node = begin; node != end; ++node)
     common += node->ratio * node->ratio * mass_[node->node];
@@ -221,6 +228,8 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
   for (auto group = begin; group != end; ++group)
     if (group->still)
       follow(*group, static_cast<Real>(step.dt), u, v);
+    else if (group->slides)
+      slide(*group, step.dt, u, v);
     else
       follow_on_bones(*group, u, v, bones);
 }
@@ -262,6 +271,47 @@ void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point&
   if (!sample(field, field_point(field, place), value) || !level_plane(value, 0.0, level))
     return;
   plane = { value.gradient, place, value.value, level.slip * level.slip };
+}
+
+// follow_on_bones() where only the velocity along the gradient of the master's level changes
+template <class Real>
+void AttachedNodes<Real>::slide(const Group& group, double dt, Real* const u[3], Real* const v[3])
+{
+  const std::int32_t m = group.master;
+  const Point u_m = point_of(u, m), v_m = point_of(v, m), place = rest_point(model_, m) + u_m;
+  const Tie* const begin = ties_.data() + group.begin;
+  const Tie* const end = ties_.data() + group.end;
+  Plane& above = planes_[begin->master_plane];
+  renew(above, begin->surface, place);
+  const double steepness_m = dot(above.gradient, above.gradient);
+  double speed_m = dot(above.gradient, v_m), momentum = 0, mass = mass_[m];
+  for (const Tie* tie = begin; tie != end; ++tie)
+  {
+    Plane& plane = planes_[tie->plane];
+    renew(plane, tie->surface, tie->rest + point_of(u, tie->node));
+    const double steepness = dot(plane.gradient, plane.gradient);
+    const double weight = steepness > 0 ? tie->mass * tie->ratio / steepness : 0;
+    momentum += weight * (dot(plane.gradient, point_of(v, tie->node)) - tie->ratio * speed_m);
+    mass += weight * tie->ratio * steepness_m;
+  }
+  const double change = momentum / mass;
+  put(v_m + change * above.gradient, v, m);
+  put(u_m + (dt * change) * above.gradient, u, m);
+  speed_m += change * steepness_m;
+  const double level_m = above.level_at(place) + dt * change * steepness_m;
+  for (const Tie* tie = begin; tie != end; ++tie)
+  {
+    const Plane& plane = planes_[tie->plane];
+    const Point u_s = point_of(u, tie->node), v_s = point_of(v, tie->node);
+    const double steepness = dot(plane.gradient, plane.gradient);
+    if (!(steepness > 0))
+      continue;
+    const double speed = tie->ratio * speed_m - dot(plane.gradient, v_s);
+    const double apart = plane.level_at(tie->rest + u_s) + dt * speed - tie->ratio * level_m - tie->offset;
+    const double left = std::clamp(0.5 * apart, -physics::error_left, physics::error_left);
+    put(v_s + (speed / steepness) * plane.gradient, v, tie->node);
+    put(u_s + ((dt * speed - (apart - left)) / steepness) * plane.gradient, u, tie->node);
+  }
 }
 
 // The velocity of the master is the one at which |v - v*|^2, weighted by mass and summed over the group, is least, with

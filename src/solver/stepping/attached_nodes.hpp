@@ -41,6 +41,7 @@ private:
     std::int32_t begin, end;  // in held_ if it is still, in ties_ otherwise
     bool still;               // all its nodes are held at bones that do not move
     bool fixed[3];            // axes along which the master has a prescribed path
+    bool slides;              // all its nodes slide on one surface that does not move, and no axis is fixed
     Real own;                 // share of the master's velocity in the common one
   };
   // of a group that is still
@@ -71,6 +72,7 @@ private:
 
   void add_group(const AttachedNode* begin, const AttachedNode* end);
   void follow(const Group& group, Real dt, Real* const u[3], Real* const v[3]) const;
+  void slide(const Group& group, double dt, Real* const u[3], Real* const v[3]);
   void follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones);
   void renew(Plane& plane, std::int32_t surface, const Point& place) const;
 
