@@ -45,6 +45,7 @@ public:
   Work work(bool open) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
+  std::int64_t lost_points() const override;
   void skin(SkinState& out) override;
 
 private:
@@ -62,6 +63,8 @@ private:
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
+  /// The part of contact, which has followed the latest step; null if the model has no contact.
+  const DevicePart* followed_contact() const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   struct State;

@@ -257,15 +257,27 @@ void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& led
 }
 
 // With a ledger the host has followed every step.
-std::vector<Reaction> CudaSolver::reactions() const
+const DevicePart* CudaSolver::followed_contact() const
 {
   DevicePart* const contact = device_.touching();
   if (contact == nullptr)
-    return {};
+    return nullptr;
   synchronise();
   if (!account_ && !contact->idle())
     contact->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
-  return contact->reactions();
+  return contact;
+}
+
+std::vector<Reaction> CudaSolver::reactions() const
+{
+  const DevicePart* const contact = followed_contact();
+  return contact == nullptr ? std::vector<Reaction>() : contact->reactions();
+}
+
+std::int64_t CudaSolver::lost_points() const
+{
+  const DevicePart* const contact = followed_contact();
+  return contact == nullptr ? 0 : contact->lost_points();
 }
 
 Monitor CudaSolver::monitor()

@@ -28,6 +28,7 @@ public:
   void add_springs(const StepArguments& g, cudaStream_t stream) const override;
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
+  std::int64_t lost_points() const override { return host_.lost_points(); }
   void add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open, Vectors& forces,
                     EnergyLedger& ledger) override;
 

@@ -41,6 +41,8 @@ public:
   /// Leaves the latest step to the host's account. Called after each step if energies are asked for.
   virtual void follow(const ConstraintStep& step) = 0;
   virtual std::vector<Reaction> reactions() const = 0;
+  /// See NodePart::lost_points.
+  virtual std::int64_t lost_points() const = 0;
   /// See NodePart::add_energies.
   virtual void add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open, Vectors& forces,
                             EnergyLedger& ledger) = 0;

@@ -96,10 +96,14 @@ __device__ __forceinline__ bool find_push(const StepArguments& g, std::uint32_t 
   const float lost = physics::let_go(grip, point.stiffness, response);
   if (!(body.friction > 0 && grip.normal > point.stiffness * static_cast<float>(physics::forgotten_depth)))
     grip.normal = 0;
-  hold.touching = int(hold.touching == int(Touching::yes) ? Touching::let_go : Touching::no);
+  const bool was_inside = hold.touching == int(Touching::yes) || hold.touching == int(Touching::lost);
+  const bool lost_inside = was_inside && !sampled && !far;
+  hold.touching = int(lost_inside ? Touching::lost : was_inside ? Touching::let_go : Touching::no);
   c.grips[index] = make_float4(held.x, held.y, held.z, grip.normal);
   c.holds[index] = { grip.along, hold.touching };
-  if (!far)
+  if (lost_inside)
+    c.clearances[index].w = 0;
+  else if (!far)
   {
     const Point place = rest + Point{ gone.x, gone.y, gone.z };
     // a little less, for what rounding takes

@@ -3,6 +3,7 @@
 #include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/contact_bodies.hpp"
+#include "bake/voxels/self_contacts.hpp"
 #include "frontalis/model/effects.hpp"
 
 namespace frontalis
@@ -130,8 +131,9 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   turn_families(scene, surfaces, frame, model, monitor);
 
   monitor.begin("skin");
-  for (const auto bind : { bind_surfaces, bind_contacts })
+  for (const auto bind : { bind_surfaces, bind_contacts, bind_self_contacts })
     bind(scene, surfaces, frame, model, monitor);
+  copy_poses(scene, model);
 
   monitor.begin("check");
   switch_off(model, scene.switched_off);

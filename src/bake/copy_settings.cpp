@@ -73,7 +73,8 @@ void copy_presets(const Scene& scene, Model& model)
           static_cast<float>(activation));
   }
   for (const DemoPhase& phase : scene.demo)
-    model.demo.push_back({ phase.expression == "relax"
+    model.demo.push_back({ phase.expression.empty() ? -2
+                           : phase.expression == "relax"
                                ? -1
                                : index_of(model.expressions, phase.expression, scene.file + ": demo", "expression"),
                            phase.ramp, phase.seconds });
@@ -133,6 +134,14 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
     model.profiles.push_back({ profile.name, profile.measured.error, profile.measured.cost, profile.measured.machine });
   model.profile = scene.accuracy.name;
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
+}
+
+void copy_poses(const Scene& scene, Model& model)
+{
+  for (std::size_t p = 0; p < scene.demo.size(); ++p)
+    for (const BonePose& pose : scene.demo[p].bones)
+      if (const auto bone = std::find(model.bones.begin(), model.bones.end(), pose.bone); bone != model.bones.end())
+        model.demo[p].bones.push_back({ static_cast<std::int32_t>(bone - model.bones.begin()), pose.shift, pose.turn });
 }
 
 }  // namespace frontalis

@@ -90,6 +90,8 @@ void add_bake_command(CLI::App& app)
   command->add_option("-o,--output", options->output, "model file to write (.vtkhdf)")->required();
   command->add_flag("--report", options->report,
                     "print all findings, and the muscles' volumes beside those of their meshes");
+  command->add_option("--surfaces", options->source.surfaces,
+                      "folder to write the scene's surfaces to, as made or repaired (OBJ, metres)");
   command->add_option(
       "--cache", options->source.cache,
       "folder that keeps models by the content of their scenes: a model is taken from there, or baked and kept there");

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -38,17 +39,42 @@ std::optional<double> number_from(const std::string& text)
   return error == std::errc() && end == text.data() + text.size() ? std::optional<double>(value) : std::nullopt;
 }
 
-// the activations of a row, whose columns after the first have the names of muscles
-std::vector<float> row_activation(const Model& model, const std::vector<std::string>& header,
-                                  const std::vector<double>& row, const std::string& place)
+RigidTransform pose_from(const std::array<double, 6>& values)
 {
-  std::map<std::string, double> named;
+  constexpr double degree = 3.14159265358979323846 / 180;
+  return rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
+                      { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } });
+}
+
+// the controls of a row, whose columns after the first have the names of muscles or BONE.x
+Controls row_controls(const Model& model, const std::vector<std::string>& header, const std::vector<double>& row,
+                      const std::string& place)
+{
+  static const std::array<std::string, 6> axes{ { "x", "y", "z", "rx", "ry", "rz" } };
+  std::map<std::string, double> activation;
+  std::map<std::string, std::array<double, 6>> poses;
+  std::set<std::string> given;
   for (std::size_t c = 1; c < header.size(); ++c)
-    if (!named.emplace(header[c], row[c]).second)
+  {
+    if (!given.insert(header[c]).second)
       throw Error(place + "'" + header[c] + "' is there twice; must be there once");
+    const std::size_t dot = header[c].find('.');
+    if (dot == std::string::npos)
+    {
+      activation[header[c]] = row[c];
+      continue;
+    }
+    const auto axis = std::find(axes.begin(), axes.end(), header[c].substr(dot + 1));
+    if (axis == axes.end())
+      throw Error(place + "'" + header[c] + "' is no muscle, nor a bone's .x, .y, .z, .rx, .ry or .rz");
+    poses[header[c].substr(0, dot)][axis - axes.begin()] = row[c];
+  }
   try
   {
-    return target_activation(model, {}, named);
+    Controls controls{ target_activation(model, {}, activation), std::vector<RigidTransform>(model.bones.size()) };
+    for (const auto& [bone, values] : poses)
+      set_bone_motion(model, bone, pose_from(values), controls.bone);
+    return controls;
   }
   catch (const Error& error)
   {
@@ -100,23 +126,40 @@ std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::ve
       throw WrongUsage("--bone: '" + text + "' is not written NAME=X,Y,Z,RX,RY,RZ (mm, degrees)");
     if (!given.insert(name).second)
       throw WrongUsage("--bone: '" + name + "' is given twice");
-    constexpr double degree = 3.14159265358979323846 / 180;
-    set_bone_motion(model, name,
-                    rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
-                                 { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } }),
+    set_bone_motion(model, name, pose_from({ { values[0], values[1], values[2], values[3], values[4], values[5] } }),
                     bones);
   }
   return bones;
 }
 
-ActivationCurve ramp_to(const std::vector<float>& target, double ramp)
+ControlCurve ramp_to(const Controls& target, double ramp)
 {
   if (ramp <= 0)
     return { { 0 }, { target } };
-  return { { 0, ramp }, { std::vector<float>(target.size(), 0), target } };
+  const Controls rest{ std::vector<float>(target.activation.size(), 0),
+                       std::vector<RigidTransform>(target.bone.size()) };
+  return { { 0, ramp }, { rest, target } };
 }
 
-ActivationCurve read_activation_curve(const std::string& path, const Model& model)
+ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransform>& targets, double ramp)
+{
+  ControlCurve out = curve;
+  if (std::find(out.time.begin(), out.time.end(), ramp) == out.time.end())
+  {
+    const auto after = std::upper_bound(out.time.begin(), out.time.end(), ramp) - out.time.begin();
+    out.controls.insert(out.controls.begin() + after, curve.at(ramp));
+    out.time.insert(out.time.begin() + after, ramp);
+  }
+  const RigidTransform rest;
+  for (std::size_t knot = 0; knot < out.time.size(); ++knot)
+    for (std::size_t b = 0; b < targets.size(); ++b)
+      if (targets[b].rotation != rest.rotation || targets[b].translation != rest.translation)
+        out.controls[knot].bone[b] =
+            out.time[knot] < ramp ? interpolate(rest, targets[b], out.time[knot] / ramp) : targets[b];
+  return out;
+}
+
+ControlCurve read_control_curve(const std::string& path, const Model& model)
 {
   std::ifstream file(path);
   std::string line;
@@ -125,8 +168,7 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
   const auto header = fields_of(line);
   if (header[0] != "time")
     throw Error(path + ":1: the first column must be called time");
-  ActivationCurve curve{ { 0 },
-                         { row_activation(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
+  ControlCurve curve{ { 0 }, { row_controls(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
   bool empty = true;
   for (int row = 2; std::getline(file, line); ++row)
   {
@@ -151,9 +193,9 @@ ActivationCurve read_activation_curve(const std::string& path, const Model& mode
     if (time > 0)
     {
       curve.time.push_back(time);
-      curve.activation.emplace_back();
+      curve.controls.emplace_back();
     }
-    curve.activation.back() = row_activation(model, header, numbers, place);
+    curve.controls.back() = row_controls(model, header, numbers, place);
   }
   if (empty)
     throw Error(path + ": has no row below its header");

@@ -23,10 +23,14 @@ std::vector<float> target_activation(const Model& model, const std::string& expr
 std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
 
 /// From rest to a target over a ramp.
-ActivationCurve ramp_to(const std::vector<float>& target, double ramp);
+ControlCurve ramp_to(const Controls& target, double ramp);
 
-/// Reads a table with a header `time,MUSCLE,MUSCLE,...` and one row per knot, times ascending. Up to the first row
-/// activations grow linearly from 0. Throws Error with the file's line.
-ActivationCurve read_activation_curve(const std::string& path, const Model& model);
+/// Reads a table with a header `time,NAME,NAME,...` and one row per knot, times ascending. A name is a muscle, or a
+/// bone and one of .x .y .z [mm] .rx .ry .rz [degrees]: its motion as parse_bone_motions() has it. Up to the first row
+/// all grow linearly from 0. Throws Error with the file's line.
+ControlCurve read_control_curve(const std::string& path, const Model& model);
+
+/// The curve with bones of their own: all that `targets` has at other places than their rest pose go there over a ramp.
+ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransform>& targets, double ramp);
 
 }  // namespace frontalis

@@ -7,6 +7,7 @@
 #include "frontalis/model/model_file.hpp"
 #ifdef FRONTALIS_WITH_BAKE
 #include "frontalis/bake/bake.hpp"
+#include "frontalis/bake/write_surfaces.hpp"
 #include "frontalis/scene/content_hash.hpp"
 #endif
 
@@ -128,6 +129,8 @@ Model bake_interruptibly(const Scene& scene, BakeReport* report,
 Model bake_scene(const ModelSource& source, BakeSummary* summary)
 {
   const Scene scene = read_scene(source.path, source.scene);
+  if (!source.surfaces.empty())
+    write_surfaces(scene, source.surfaces);
   const std::string hash = content_hash(scene.content);
   const std::string cached =
       source.cache.empty() ? "" : (std::filesystem::path(source.cache) / (hash + ".vtkhdf")).string();

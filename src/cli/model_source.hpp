@@ -24,6 +24,7 @@ struct ModelSource
   std::string path;
   SceneOptions scene;
   std::string cache;             ///< folder that keeps models by the hash of their scene; empty: none
+  std::string surfaces;          ///< folder to write the scene's surfaces to; empty: none
   std::FILE* progress = stdout;  ///< names the stages of a bake if stderr is not a terminal
 };
 

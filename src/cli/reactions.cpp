@@ -1,66 +1,72 @@
 #include "cli/reactions.hpp"
 
 #include "frontalis/model/effects.hpp"
-#include "frontalis/physics/number.hpp"
-#include "frontalis/solver/rigid_motion.hpp"
+#include "frontalis/study/plot.hpp"
 
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
-namespace
+
+void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies)
 {
-
-using Vector = physics::Vec3<double>;
-
-Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-
-}  // namespace
-
-std::vector<Reaction> reactions_in_face_frame(const Solver& solver, const Model& model)
-{
-  std::vector<Reaction> reactions = solver.reactions();
-  const std::vector<TouchedBody> bodies = touched_bodies(model);
-  const std::array<double, 3> origin = inverse(model.to_face).translation;
-  for (std::size_t c = 0; c < reactions.size(); ++c)
+  const std::vector<TouchedBody> touched = touched_bodies(model);
+  for (std::size_t c = 0; c < bodies.size(); ++c)
   {
-    const std::int32_t bone = bodies[c].bone;
-    const RigidTransform pose = bone < 0 ? RigidTransform() : solver.controls().bone[bone];
-    auto& [force, moment] = reactions[c];
-    // move the reference point from the origin of the local frame to that of the face frame, both moved with the body
-    const Vector about_face = vector(moment) - cross(vector(pose.turned(origin)), vector(force));
-    force = model.to_face.turned(force);
-    moment = model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } });
-  }
-  return reactions;
-}
-
-void print_reactions(const Model& model, const std::vector<Reaction>& reactions)
-{
-  const std::vector<TouchedBody> bodies = touched_bodies(model);
-  for (std::size_t c = 0; c < reactions.size(); ++c)
-  {
-    const auto& [force, moment] = reactions[c];
+    const auto& [force, moment] = bodies[c].reaction;
     fmt::print(
         "reaction           {}: {:+.4g} N forward, {:+.4g} N left, {:+.4g} N up; moment {:+.4g}, {:+.4g}, {:+.4g} "
         "N m\n",
-        bodies[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
+        touched[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
 }
 
-std::string reaction_rows(const Model& model, int frame, double time, const std::vector<Reaction>& reactions)
+std::string reaction_rows(const Model& model, int frame, double time, const std::vector<BodyFrame>& bodies)
 {
   std::string rows;
-  const std::vector<TouchedBody> bodies = touched_bodies(model);
-  for (std::size_t c = 0; c < reactions.size(); ++c)
+  const std::vector<TouchedBody> touched = touched_bodies(model);
+  for (std::size_t c = 0; c < bodies.size(); ++c)
   {
-    const auto& [force, moment] = reactions[c];
-    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, bodies[c].name,
+    const auto& [force, moment] = bodies[c].reaction;
+    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, touched[c].name,
                         force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
   return rows;
+}
+
+void ReactionPlot::add(double time, const std::vector<BodyFrame>& bodies)
+{
+  time_.push_back(time);
+  bodies_.push_back(bodies);
+}
+
+void ReactionPlot::write() const
+{
+  Plot plot;
+  plot.title = "Force on bodies that tissue touches";
+  plot.x_label = "simulated time [s]";
+  plot.y_label = "force [N]";
+  plot.key = "below";
+  const std::vector<TouchedBody> touched = touched_bodies(model_);
+  for (std::size_t c = 0; c < touched.size(); ++c)
+  {
+    const std::string& name = touched[c].name;
+    Plot::Curve curves[] = { { name + ": magnitude", {}, {}, Plot::Style::strong },
+                             { "forward", {}, {}, Plot::Style::line },
+                             { "left", {}, {}, Plot::Style::line },
+                             { "up", {}, {}, Plot::Style::line } };
+    for (std::size_t frame = 0; frame < time_.size(); ++frame)
+    {
+      const auto& force = bodies_[frame].empty() ? std::array<double, 3>{} : bodies_[frame][c].reaction.force;
+      curves[0].add(time_[frame], std::hypot(force[0], force[1], force[2]));
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        curves[axis + 1].add(time_[frame], force[axis]);
+    }
+    plot.curves.insert(plot.curves.end(), std::begin(curves), std::end(curves));
+  }
+  write_plot(plot, path_);
 }
 
 }  // namespace frontalis

@@ -36,8 +36,10 @@ struct RunOptions
   bool to_equilibrium = false;
   double tolerance = 1e-3;
   double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if that is less
+  bool demo = false;
   double seconds = 1;
-  std::string frames;
+  bool seconds_given = false;
+  std::string frames, plot;
   double frame_rate = 0;  ///< [1/s]; 0: the model's
   SolverSettings solver;
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
@@ -48,11 +50,10 @@ struct Run
 {
   const RunOptions& options;
   const Model& model;
-  ActivationCurve curve;
-  std::vector<RigidTransform> bones;  ///< motion of each bone from its rest pose, at the end of the ramp
-  double ramp;                        ///< [s]
+  ControlCurve curve;
   Solver& solver;
   std::optional<FrameFolder> folder;
+  std::optional<ReactionPlot> plot{};
   std::optional<Guard> guard{};
   RunSummary summary{};
   double time = 0;  ///< simulated so far [s], on the clock of the activations
@@ -78,7 +79,7 @@ void Run::look()
         fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
                     "time_step_share, smaller activations or more damping",
                     time));
-  summary.reactions = reactions_in_face_frame(solver, model);
+  summary.bodies = bodies_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;
   summary.time_step = solver.time_step();
@@ -88,14 +89,12 @@ void Run::look()
   summary.worst_jacobian = std::min(summary.worst_jacobian, summary.monitor.worst_jacobian);
 }
 
-// activations and bones move linearly between the knots of the curve and the end of the ramp
+// activations and bones move linearly between the knots of the curve
 void Run::advance_to(double end)
 {
   for (const double knot : curve.time)
     if (time < knot && knot < end)
       advance(knot);
-  if (time < ramp && ramp < end)
-    advance(ramp);
   advance(end);
 }
 
@@ -104,10 +103,7 @@ void Run::advance(double end)
   while (time < end && !interrupt_requested())
   {
     const double next = std::min(end, time + steps_per_slice * solver.time_step() * model.time_scaling);
-    Controls controls = solver.controls();
-    controls.activation = curve.at(next);
-    for (std::size_t b = 0; b < bones.size(); ++b)
-      controls.bone[b] = next < ramp ? interpolate({}, bones[b], next / ramp) : bones[b];
+    const Controls controls = curve.at(next);
     const double seconds = (next - time) / model.time_scaling;
     if (guard)
       guard->advance(seconds, controls);
@@ -133,7 +129,9 @@ void Run::play()
     if (frame == 0)
       summary.rest = summary.end;
     if (folder)
-      folder->add(time, summary.end, summary.reactions);
+      folder->add(time, summary.end, summary.bodies);
+    if (plot)
+      plot->add(time, summary.bodies);
     summary.frames = frame + 1;
     summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
@@ -154,7 +152,7 @@ void Run::settle()
     progress.update("relaxing", now.seconds / seconds);
     return !interrupt_requested();
   };
-  const Controls target{ curve.activation.back(), bones };
+  const Controls& target = curve.controls.back();
   const Equilibrium found = guard ? guard->settle(target, options.tolerance, seconds, go_on)
                                   : solver.settle(target, options.tolerance, seconds, go_on);
   time = found.seconds * model.time_scaling;
@@ -164,13 +162,19 @@ void Run::settle()
   summary.equilibrium = found;
   summary.complete = !interrupt_requested() || found.reached;
   if (folder)
-    folder->add(time, summary.end, summary.reactions);
+    folder->add(time, summary.end, summary.bodies);
 }
 
 void check_options(const RunOptions& options)
 {
   if (!options.activation_file.empty() && (!options.activation.empty() || !options.expression.empty()))
     throw WrongUsage("--activations goes with neither --activate nor --expression");
+  if (options.demo && (!options.activation.empty() || !options.expression.empty() || !options.activation_file.empty() ||
+                       !options.bones.empty() || options.to_equilibrium))
+    throw WrongUsage("--demo goes with none of --activate, --expression, --activations, --bone, --to-equilibrium");
+  if (!options.plot.empty() && options.to_equilibrium)
+    throw WrongUsage("--plot: there is no time on the way to equilibrium");
+  plot_path(options.plot);
   if (options.to_equilibrium && options.solver.ledger)
     throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
   check_seconds(options.seconds);
@@ -191,28 +195,49 @@ void switch_off(Solver& solver, EffectSet off)
       solver.switch_effect(*effect, false);
 }
 
-void simulate(const RunOptions& options)
+ControlCurve curve_of(const RunOptions& options, const Model& model)
+{
+  const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
+  const std::vector<RigidTransform> bones = parse_bone_motions(model, options.bones);
+  if (options.activation_file.empty())
+    return ramp_to({ target_activation(model, options.expression, parse_activation_list(options.activation)), bones },
+                   ramp);
+  const ControlCurve curve = read_control_curve(options.activation_file, model);
+  return options.bones.empty() ? curve : with_bones(curve, bones, ramp);
+}
+
+// the demo of the model, and as many seconds as it takes unless others were asked for
+ControlCurve demo_of(RunOptions& options, const Model& model)
+{
+  if (model.demo.empty())
+    throw Error(options.source.path + ": has no demo; --demo needs one");
+  const Controls rest{ std::vector<float>(model.muscles.size(), 0), std::vector<RigidTransform>(model.bones.size()) };
+  ControlCurve curve = demo_curve(model, rest);
+  if (!options.seconds_given)
+    options.seconds = curve.time.back();
+  return curve;
+}
+
+void simulate(RunOptions& options)
 {
   check_options(options);
-  const std::map<std::string, double> listed = parse_activation_list(options.activation);
+  parse_activation_list(options.activation);
   EffectSet off;
   for (const std::string& name : options.without)
     off = off.with(effect_from_name(name));
 
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
-  const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
-  ActivationCurve curve = options.activation_file.empty()
-                              ? ramp_to(target_activation(*model, options.expression, listed), ramp)
-                              : read_activation_curve(options.activation_file, *model);
-  std::vector<RigidTransform> bones = parse_bone_motions(*model, options.bones);
+  ControlCurve curve = options.demo ? demo_of(options, *model) : curve_of(options, *model);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
     folder.emplace(options.frames, *model);
 
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
-  Run run{ options, *model, std::move(curve), std::move(bones), ramp, *solver, std::move(folder) };
+  Run run{ options, *model, std::move(curve), *solver, std::move(folder) };
   RunSummary& summary = run.summary;
+  if (!options.plot.empty())
+    run.plot.emplace(plot_path(options.plot), *model);
   if (options.solver.ledger)
     summary.ledger.emplace();
   summary.backend = solver->description();
@@ -241,6 +266,8 @@ void simulate(const RunOptions& options)
   }
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
+  if (run.plot)
+    run.plot->write();
   print_result(*model, summary);
   if (!summary.complete)
     throw Interrupted();
@@ -261,8 +288,11 @@ void add_run_command(CLI::App& app)
   command->add_option("--activate", options->activation, "activations from 0 to 1: MUSCLE=VALUE,MUSCLE=VALUE,...");
   command->add_option("--expression", options->expression,
                       "a named set of activations, over which --activate takes precedence");
-  command->add_option("--activations", options->activation_file,
-                      "activations over time: a table (CSV) with a column time [s] and one column per muscle");
+  command->add_option(
+      "--activations", options->activation_file,
+      "activations and poses over time: a table (CSV) with a column time [s], one column per muscle, and "
+      "BONE.x, .y, .z [mm], .rx, .ry, .rz [degrees]");
+  command->add_flag("--demo", options->demo, "play the scene's demo once, expressions and poses of bones");
   command->add_flag("--to-equilibrium", options->to_equilibrium,
                     "relax to equilibrium under the final activations, within --seconds (10)");
   add_positive(*command, "--tolerance", options->tolerance,
@@ -281,6 +311,8 @@ void add_run_command(CLI::App& app)
   command->add_option("--frames", options->frames,
                       "folder for skin_NNNN.ply, landmarks.csv, reactions.csv (of bodies that tissue touches) and "
                       "run.json; files of an earlier run are replaced");
+  command->add_option("--plot", options->plot,
+                      "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
   add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");
   add_solver_options(*command, options->solver);
   command
@@ -295,7 +327,8 @@ void add_run_command(CLI::App& app)
   command->callback(
       [options, command]
       {
-        if (options->to_equilibrium && command->count("--seconds") == 0)
+        options->seconds_given = command->count("--seconds") > 0;
+        if (options->to_equilibrium && !options->seconds_given)
           options->seconds = 10;
         simulate(*options);
       });

@@ -115,7 +115,7 @@ void print_result(const Model& model, const RunSummary& summary)
     fmt::print("energy balance     closes within {:.3g} % of the largest term\n",
                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
   }
-  print_reactions(model, summary.reactions);
+  print_reactions(model, summary.bodies);
   if (summary.guard)
     fmt::print("guard              {} checks, went back {} times{}\n", summary.guard->checks, summary.guard->rollbacks,
                summary.guard->rollbacks > 0 ? ", the last because " + words_for(summary.guard->latest) : "");
@@ -170,9 +170,9 @@ std::string json_of(const Model& model, const RunSummary& summary)
   if (summary.ledger)
     for (const auto& [name, joules] : energies_of(*summary.ledger))
       add({ { fmt::format("ledger_{}_J", name), joules } });
-  for (std::size_t c = 0; c < summary.reactions.size(); ++c)
-    json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.reactions[c].force },
-                                                         { "moment_Nm", summary.reactions[c].moment } };
+  for (std::size_t c = 0; c < summary.bodies.size(); ++c)
+    json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.bodies[c].reaction.force },
+                                                         { "moment_Nm", summary.bodies[c].reaction.moment } };
   if (const auto& guard = summary.guard)
     add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
   if (const auto& found = summary.equilibrium)
@@ -198,7 +198,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model)
     std::filesystem::remove(file);
 }
 
-void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reaction>& reactions)
+void FrameFolder::add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies)
 {
   if (frames_ == 0)
     first_ = skin;
@@ -211,7 +211,7 @@ void FrameFolder::add(double time, const SkinState& skin, const std::vector<Reac
                           model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
                           1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
   }
-  reactions_ += reaction_rows(model_, frames_, time, reactions);
+  reactions_ += reaction_rows(model_, frames_, time, bodies);
   ++frames_;
 }
 

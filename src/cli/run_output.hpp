@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
 
 #include <optional>
@@ -26,7 +27,7 @@ struct RunSummary
   Profile profile;
   std::optional<GuardCounts> guard;        ///< empty: the motion was not guarded
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
-  std::vector<Reaction> reactions;         ///< at the end, face frame, one per body that tissue touches
+  std::vector<BodyFrame> bodies;           ///< at the end, one per body that tissue touches
   std::optional<Equilibrium> equilibrium;  ///< empty: the run did not settle
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
@@ -50,7 +51,7 @@ public:
   FrameFolder(std::string path, const Model& model);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
-  void add(double time, const SkinState& skin, const std::vector<Reaction>& reactions);
+  void add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies);
   /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
   /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
   void finish(const std::string& summary);

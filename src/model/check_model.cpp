@@ -11,6 +11,12 @@ namespace frontalis
 namespace checks
 {
 
+void check_mesh(const std::string& array, const TriangleMesh& mesh)
+{
+  check_each(array + ".vertices", check_finite, mesh.vertices);
+  check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
+}
+
 void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels)
 {
   check_length(array + ".voxel", binding.voxel.size(), points, "point");
@@ -55,12 +61,6 @@ void check_ranges(const std::string& array, const std::vector<std::int32_t>& beg
     fail(array, "decreases after entry {}", decrease - begin.begin() - 1);
   if (static_cast<std::size_t>(begin.back()) != entries)
     fail(array, "ends at {}; there are {} entries", begin.back(), entries);
-}
-
-void check_mesh(const std::string& array, const TriangleMesh& mesh)
-{
-  check_each(array + ".vertices", check_finite, mesh.vertices);
-  check_each(array + ".triangles", index_below(mesh.vertices.size()), mesh.triangles);
 }
 
 void check_grid(const Model& model)
@@ -203,9 +203,15 @@ void check_presets(const Model& model)
     check_each(name, index_below(model.muscles.size()), expression.activation, &Activation::first);
     check_each(name, check_proportion, expression.activation, &Activation::second);
   }
-  check_each("demo", index_below(model.expressions.size(), -1), model.demo, &Model::DemoPhase::expression);
+  check_each("demo", index_below(model.expressions.size(), -2), model.demo, &Model::DemoPhase::expression);
   check_each("demo (ramp)", check_finite, model.demo, &Model::DemoPhase::ramp);
   check_each("demo (seconds)", check_positive, model.demo, &Model::DemoPhase::seconds);
+  for (const Model::DemoPhase& phase : model.demo)
+  {
+    check_each("demo (bone)", index_below(model.bones.size()), phase.bones, &Model::BonePose::bone);
+    check_each("demo (shift)", check_finite, phase.bones, &Model::BonePose::shift);
+    check_each("demo (turn)", check_finite, phase.bones, &Model::BonePose::turn);
+  }
 }
 
 void check_settings(const Model& model)

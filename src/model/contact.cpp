@@ -1,5 +1,6 @@
 #include "frontalis/model/contact.hpp"
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/physics/number.hpp"
 #include "model/effect_description.hpp"
 #include "model/model_checks.hpp"
@@ -37,6 +38,12 @@ void check(const Model& model)
     check_each(name + " (points)", check_finite, contact.points);
     for (const double area : contact.area)
       check_not_negative(name, "an area", area);
+    check_entry(name + " (centre)", 0, check_finite, contact.centre);
+    check_each(name + " (shape)", check_finite, contact.shape.vertices);
+    check_each(name + " (shape)", index_below(contact.shape.vertices.size()), contact.shape.triangles);
+    for (const double number : { contact.mass, contact.spring, contact.damping })
+      check_not_negative(name, "mass, spring or damping", number);
+    check_entry(name + " (force)", 0, check_finite, contact.force);
   }
 }
 
@@ -48,11 +55,15 @@ void exchange_contacts(Archive& archive, Contacts& contacts)
   if (!archive.group_if(!contacts.empty(), path))
     return;
   archive.table(path, contacts, Column{ "name", &Contact::name }, Column{ "bone", &Contact::bone },
-                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach });
+                Column{ "friction", &Contact::friction }, Column{ "reach", &Contact::reach },
+                Column{ "centre", &Contact::centre }, Column{ "mass", &Contact::mass },
+                Column{ "force", &Contact::force }, Column{ "spring", &Contact::spring },
+                Column{ "damping", &Contact::damping });
   for (std::size_t c = 0; c < contacts.size(); ++c)
   {
     const std::string own = path + "/" + std::to_string(c);
     exchange_field(archive, own, contacts[c].field);
+    exchange_mesh(archive, own, contacts[c].shape);
     archive(own + "/points", contacts[c].points);
     archive(own + "/area", contacts[c].area);
     exchange_binding(archive, own, contacts[c].binding);
@@ -88,11 +99,9 @@ EffectDescription contact_description()
            add_bodies };
 }
 
-void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding)
+std::vector<double> vertex_areas(const TriangleMesh& surface)
 {
-  contact.points = surface.vertices;
-  contact.binding = binding;
-  contact.area.assign(surface.vertices.size(), 0);
+  std::vector<double> area(surface.vertices.size(), 0);
   const auto corner = [&](std::int32_t v)
   {
     const auto& p = surface.vertices[v];
@@ -103,8 +112,24 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
     const auto a = corner(t[0]);
     const double third = norm(cross(corner(t[1]) - a, corner(t[2]) - a)) / 6;
     for (const auto v : t)
-      contact.area[v] += third;
+      area[v] += third;
   }
+  return area;
+}
+
+void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding)
+{
+  contact.points = surface.vertices;
+  contact.binding = binding;
+  contact.area = vertex_areas(surface);
+}
+
+std::vector<BodyShape> body_shapes(const Model& model)
+{
+  std::vector<BodyShape> shapes;
+  for (const Contact& contact : model.contacts)
+    shapes.push_back({ contact.name, contact.centre, &contact.shape });
+  return shapes;
 }
 
 }  // namespace frontalis

@@ -32,6 +32,7 @@ struct EffectDescription
 
 /// Descriptions of the effects that have a file of their own.
 EffectDescription contact_description();
+EffectDescription self_contact_description();
 EffectDescription attachment_description();
 
 /// Removes the attached nodes that slide, or those that are held.

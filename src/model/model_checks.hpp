@@ -86,6 +86,7 @@ void check_each(const std::string& array, const Check& check, const std::vector<
     check_entry(array, at, check, (entries[at].*....*field));
 }
 
+void check_mesh(const std::string& array, const TriangleMesh& mesh);
 void check_binding(const std::string& array, const Binding& binding, std::size_t points, std::size_t voxels);
 void check_field(const std::string& array, const SampledField& field);
 

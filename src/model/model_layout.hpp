@@ -127,6 +127,11 @@ void exchange_model(Archive& archive, AnyModel& model)
   using Phase = Model::DemoPhase;
   archive.table("demo", model.demo, Column{ "expression", &Phase::expression }, Column{ "ramp", &Phase::ramp },
                 Column{ "seconds", &Phase::seconds });
+  using Pose = Model::BonePose;
+  for (std::size_t p = 0; p < model.demo.size(); ++p)
+    if (const std::string path = "demo/" + std::to_string(p); archive.group_if(!model.demo[p].bones.empty(), path))
+      archive.table(path, model.demo[p].bones, Column{ "bone", &Pose::bone }, Column{ "shift", &Pose::shift },
+                    Column{ "turn", &Pose::turn });
   archive("switched_off", model.switched_off);
   using Profile = Model::AccuracyProfile;
   archive.table("profiles", model.profiles, Column{ "name", &Profile::name }, Column{ "error", &Profile::error },

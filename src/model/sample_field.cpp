@@ -1,5 +1,7 @@
 #include "frontalis/model/sample_field.hpp"
 
+#include "model/limit_slope.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -121,6 +123,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
     field.table[places[n]] = stored++;
     field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
   }
+  limit_slope(field);
 }
 
 }  // namespace
@@ -163,7 +166,7 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
 }
 
 SampledField sample_band(const Point& lower, const Point& upper, const Distance& distance, double spacing, double reach,
-                         const Loop& loop)
+                         const Loop& loop, double inside)
 {
   const double margin = reach + 2 * spacing;
   Point from = lower, to = upper;
@@ -173,7 +176,7 @@ SampledField sample_band(const Point& lower, const Point& upper, const Distance&
     to[axis] += margin;
   }
   SampledField field = empty_field(from, to, spacing);
-  fill(field, std::vector<Band>(field.table.size(), { -margin, margin, false }), distance, loop);
+  fill(field, std::vector<Band>(field.table.size(), { -std::max(margin, inside), margin, false }), distance, loop);
   return field;
 }
 

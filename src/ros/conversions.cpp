@@ -2,9 +2,12 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <fmt/format.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
+#include <tf2/LinearMath/Matrix3x3.h>
+#include <tf2/LinearMath/Quaternion.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +20,8 @@ namespace
 {
 
 /// Sets the coordinates of a point or vector of a message.
-template <typename Message>
-void set(Message& message, const std::array<float, 3>& coordinates)
+template <typename Message, typename Number>
+void set(Message& message, const std::array<Number, 3>& coordinates)
 {
   message.x = coordinates[0];
   message.y = coordinates[1];
@@ -118,11 +121,87 @@ void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out)
   }
 }
 
-void to_transforms(const Model& model, const SkinState& skin, const std::string& face_frame, const ros::Time& stamp,
+std::string body_frame(const std::string& face_frame, const BodyShape& shape)
+{
+  return face_frame + "/body/" + shape.name;
+}
+
+geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
+{
+  const auto& r = pose.rotation;
+  tf2::Quaternion rotation;
+  tf2::Matrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]).getRotation(rotation);
+  geometry_msgs::Transform out;
+  set(out.translation, pose(model.to_face(shape.centre)));
+  out.rotation.x = rotation.x();
+  out.rotation.y = rotation.y();
+  out.rotation.z = rotation.z();
+  out.rotation.w = rotation.w();
+  return out;
+}
+
+geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body)
+{
+  const RigidTransform back = inverse(body.pose);
+  const auto force = back.turned(body.reaction.force), moment = back.turned(body.reaction.moment);
+  const auto centre = model.to_face(shape.centre);
+  std::array<double, 3> about_centre{};
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    about_centre[i] = moment[i] - (centre[j] * force[k] - centre[k] * force[j]);
+  }
+  geometry_msgs::Wrench out;
+  set(out.force, force);
+  set(out.torque, about_centre);
+  return out;
+}
+
+visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
+{
+  visualization_msgs::MarkerArray out;
+  for (const BodyShape& shape : body_shapes(model))
+  {
+    visualization_msgs::Marker& marker = out.markers.emplace_back();
+    marker.header.frame_id = body_frame(face_frame, shape);
+    marker.frame_locked = true;
+    marker.ns = shape.name;
+    marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
+    marker.action = visualization_msgs::Marker::ADD;
+    marker.pose.orientation.w = 1;
+    marker.scale.x = marker.scale.y = marker.scale.z = 1;
+    marker.color.r = 0.45f;
+    marker.color.g = 0.55f;
+    marker.color.b = 0.65f;
+    marker.color.a = 1;
+    const auto centre = model.to_face(shape.centre);
+    for (const auto& triangle : shape.surface->triangles)
+      for (const auto vertex : triangle)
+      {
+        auto p = model.to_face(shape.surface->vertices[vertex]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          p[axis] -= centre[axis];
+        set(marker.points.emplace_back(), p);
+      }
+  }
+  return out;
+}
+
+void to_transforms(const Model& model, const Frame& frame, const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out)
 {
-  out.resize(skin.landmarks.size());
-  for (std::size_t landmark = 0; landmark < out.size(); ++landmark)
+  const SkinState& skin = frame.skin;
+  const std::vector<BodyShape> shapes = body_shapes(model);
+  out.resize(skin.landmarks.size() + frame.bodies.size());
+  for (std::size_t body = 0; body < frame.bodies.size(); ++body)
+  {
+    auto& transform = out[skin.landmarks.size() + body];
+    transform.header.stamp = stamp;
+    transform.header.frame_id = face_frame;
+    transform.child_frame_id = body_frame(face_frame, shapes[body]);
+    transform.transform = to_transform(model, shapes[body], frame.bodies[body].pose);
+  }
+  for (std::size_t landmark = 0; landmark < skin.landmarks.size(); ++landmark)
   {
     auto& transform = out[landmark];
     transform.header.stamp = stamp;

@@ -6,32 +6,33 @@
 namespace frontalis
 {
 
-DemoPlayer::DemoPlayer(const Model& model)
+DemoPlayer::DemoPlayer(std::shared_ptr<const Model> model) : model_(std::move(model))
 {
-  for (const auto& muscle : model.muscles)
-    muscles_.push_back(muscle.name);
-  std::vector<float> target(muscles_.size(), 0);
-  const auto add = [&](double time)
-  {
-    first_round_.time.push_back(time);
-    first_round_.activation.push_back(target);
-  };
-  for (const auto& entry : model.demo)
-  {
-    if (!(entry.seconds > 0))
-      continue;
-    add(period_);
-    target.assign(muscles_.size(), 0);
-    if (entry.expression >= 0)
-      for (const auto& [muscle, activation] : model.expressions.at(entry.expression).activation)
-        target.at(muscle) = activation;
-    add(period_ + std::min(entry.ramp, entry.seconds));
-    period_ += entry.seconds;
-  }
-  // the first round starts relaxed, later ones from the expression of the last phase
-  later_rounds_ = first_round_;
-  if (!empty())
-    later_rounds_.activation.front() = target;
+  const Controls rest{ std::vector<float>(model_->muscles.size(), 0),
+                       std::vector<RigidTransform>(model_->bones.size()) };
+  first_round_ = demo_curve(*model_, rest);
+  later_rounds_ = demo_curve(*model_, first_round_.controls.back());
+  period_ = first_round_.time.back();
+  for (std::size_t bone = 0; bone < model_->bones.size(); ++bone)
+    if (std::any_of(model_->demo.begin(), model_->demo.end(),
+                    [&](const Model::DemoPhase& phase)
+                    {
+                      return std::any_of(phase.bones.begin(), phase.bones.end(),
+                                         [&](const Model::BonePose& pose)
+                                         { return pose.bone == static_cast<std::int32_t>(bone); });
+                    }))
+      moved_.push_back(bone);
+}
+
+bool DemoPlayer::moves(const std::string& bone) const
+{
+  return std::any_of(moved_.begin(), moved_.end(), [&](std::size_t moved) { return model_->bones[moved] == bone; });
+}
+
+Controls DemoPlayer::at(double time) const
+{
+  const double since = std::max(0.0, time), round = std::floor(since / period_);
+  return (round < 1 ? first_round_ : later_rounds_).at(since - round * period_);
 }
 
 std::map<std::string, double> DemoPlayer::activation(double time) const
@@ -39,11 +40,20 @@ std::map<std::string, double> DemoPlayer::activation(double time) const
   std::map<std::string, double> out;
   if (empty())
     return out;
-  const double since = std::max(0.0, time);
-  const double round = std::floor(since / period_);
-  const std::vector<float> value = (round < 1 ? first_round_ : later_rounds_).at(since - round * period_);
-  for (std::size_t muscle = 0; muscle < muscles_.size(); ++muscle)
-    out[muscles_[muscle]] = std::clamp(value[muscle], 0.0f, 1.0f);
+  const Controls now = at(time);
+  for (std::size_t muscle = 0; muscle < now.activation.size(); ++muscle)
+    out[model_->muscles[muscle].name] = std::clamp(now.activation[muscle], 0.0f, 1.0f);
+  return out;
+}
+
+std::map<std::string, RigidTransform> DemoPlayer::bones(double time) const
+{
+  std::map<std::string, RigidTransform> out;
+  if (moved_.empty())
+    return out;
+  const Controls now = at(time);
+  for (const std::size_t bone : moved_)
+    out[model_->bones[bone]] = motion_in_face(*model_, now.bone[bone]);
   return out;
 }
 

@@ -107,7 +107,13 @@ void FaceNode::on_expression(const std_msgs::String& message)
 void FaceNode::on_bone_pose(const geometry_msgs::TransformStamped& message)
 {
   take_message("bone_pose",
-               [&](Runner& running) { running.set_bone(message.child_frame_id, to_motion(message.transform)); });
+               [&](Runner& running)
+               {
+                 const std::lock_guard<std::mutex> lock(target_mutex_);
+                 running.set_bone(message.child_frame_id, to_motion(message.transform));
+                 if (demo_->moves(message.child_frame_id))
+                   end_demo("bone_pose");
+               });
 }
 
 bool FaceNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)

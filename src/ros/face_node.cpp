@@ -103,7 +103,7 @@ void FaceNode::load()
   {
     const FaceParameters parameters = read_parameters(private_handle_);
     const auto model = make_model(parameters);
-    const auto demo = std::make_shared<const DemoPlayer>(*model);
+    const auto demo = std::make_shared<const DemoPlayer>(model);
     if (parameters.demo && demo->empty())
       ROS_WARN_STREAM(name_ << ": ~demo is true, but the scene has no demo");
     {
@@ -217,6 +217,8 @@ void FaceNode::play_demo(double time)
     return;
   const auto activation = demo_->activation(time);
   running->set_activation(activation);
+  for (const auto& [bone, motion] : demo_->bones(time))
+    running->set_bone(bone, motion);
   target_ = activation;
 }
 

@@ -29,7 +29,9 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       field_(private_handle, "skin_field"),
       landmarks_(private_handle, "landmarks"),
       state_(private_handle, "state"),
-      topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true))
+      topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
+      bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
+      handle_(private_handle)
 {
 }
 
@@ -42,6 +44,10 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(*model_));
   rest_ = rest_in_face(*model_);
   topology_.publish(to_mesh(*model_));
+  bodies_.publish(to_bodies(*model_, face_frame_));
+  shapes_ = body_shapes(*model_);
+  for (const BodyShape& shape : shapes_)
+    wrenches_.emplace_back(handle_, "wrench/" + shape.name);
   if (!parent_frame.empty())
   {
     geometry_msgs::TransformStamped transform;
@@ -72,8 +78,14 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                    state.paused = paused;
                    state.backend = backend_;
                  });
-  to_transforms(*model_, frame.skin, face_frame_, stamp, landmark_transforms_);
-  transforms_.sendTransform(landmark_transforms_);
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+  {
+    const BodyShape& shape = shapes_[b];
+    wrenches_[b].publish(body_frame(face_frame_, shape), stamp,
+                         [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, frame.bodies[b]); });
+  }
+  to_transforms(*model_, frame, face_frame_, stamp, frame_transforms_);
+  transforms_.sendTransform(frame_transforms_);
   return true;
 }
 

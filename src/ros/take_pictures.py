@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again.
+"""Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again; or at moments of its demo.
 
-usage: take_pictures.py SCENE FOLDER [LAUNCH_ARGUMENT:=VALUE ...]
+usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [LAUNCH_ARGUMENT:=VALUE ...]
 
 Launches SCENE.launch of this package in lock-step, with rviz full screen, under Xvfb if there is no display. Moves the face by
 ~expression and ~step, so that each picture shows an exact simulated time, and prints the path of each picture and how far the
@@ -18,6 +18,7 @@ import time
 
 SCREEN = "1280x900x24"
 RAMP = 0.3  # [s] simulated time from one expression to the next
+DEMO_STEP = 0.05  # [s] simulated time per step of a demo, over which activations and bones move linearly
 HOLD = 0.9  # [s] simulated time from then to the picture
 START_TIMEOUT = 300  # [s] wall time, for baking and for rviz to start
 DRAW_TIMEOUT = 60  # [s] wall time, for rviz to show a new skin
@@ -158,12 +159,31 @@ def movement(face, rest):
     return "landmarks up [mm]: " + ", ".join(moved) if moved else ""
 
 
-def take(folder, launch):
+def take_demo(face, folder, moments):
+    """Plays the demo in short steps: in each, activations and bones move linearly to where the demo has them at its end."""
+    picture = None
+    time_now = 0
+    for moment in moments:
+        while moment - time_now > 1e-6:
+            answer = face.advance(min(DEMO_STEP, moment - time_now))
+            if not answer.success:
+                fail("the simulation failed after %g s: %s" % (time_now, answer.message))
+            time_now = answer.time
+        picture = settled_picture(picture)
+        path = os.path.join(folder, "demo_%04.1f.png" % moment)
+        save(picture, path)
+        print("%s  at %.1f s" % (path, time_now), flush=True)
+
+
+def take(folder, launch, moments):
     face = Face()
     wait_for("the face", lambda: is_ready(face), launch, START_TIMEOUT)
     wait_for("rviz", face.is_seen, launch, START_TIMEOUT)
-    names = [name for name in face.muscles().expressions if name != "relax"]
     rest = face.landmarks
+    if moments:
+        take_demo(face, folder, moments)
+        return
+    names = [name for name in face.muscles().expressions if name != "relax"]
     picture = None
     for title, expression in [("neutral", None)] + [(name, name) for name in names] + [("relaxed", "relax")]:
         moment = face.express(expression) if expression else 0
@@ -177,7 +197,9 @@ def main():
     if len(sys.argv) < 3:
         sys.stderr.write(__doc__)
         sys.exit(2)
-    scene, folder, arguments = sys.argv[1], os.path.abspath(sys.argv[2]), sys.argv[3:]
+    scene, folder = sys.argv[1], os.path.abspath(sys.argv[2])
+    moments = [float(t) for a in sys.argv[3:] if a.startswith("at:=") for t in a[4:].split(",")]
+    arguments = [a for a in sys.argv[3:] if not a.startswith("at:=")]
     enter_display()
     os.makedirs(folder, exist_ok=True)
 
@@ -186,11 +208,11 @@ def main():
     port = str(free_port())
     os.environ["ROS_MASTER_URI"] = "http://localhost:" + port
     launch = subprocess.Popen(
-        ["roslaunch", "-p", port, "frontalis", scene + ".launch", "pace:=lock_step", "demo:=false", "rviz:=true",
-         "rviz_args:=--fullscreen"] + arguments
+        ["roslaunch", "-p", port, "frontalis", scene + ".launch", "pace:=lock_step", "rviz:=true",
+         "demo:=" + ("true" if moments else "false"), "rviz_args:=--fullscreen"] + arguments
     )
     try:
-        take(folder, launch)
+        take(folder, launch, moments)
     finally:
         if launch.poll() is None:
             launch.send_signal(signal.SIGINT)

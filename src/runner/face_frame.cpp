@@ -1,5 +1,10 @@
 #include "frontalis/runner/face_frame.hpp"
 
+#include "frontalis/model/effects.hpp"
+#include "frontalis/physics/number.hpp"
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +35,30 @@ void to_face_frame(const Model& model, SkinState& skin)
     normal = rounded(model.to_face.turned(normal));
   for (std::array<float, 3>& landmark : skin.landmarks)
     landmark = rounded(model.to_face(landmark));
+}
+
+std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model)
+{
+  using Vector = physics::Vec3<double>;
+  const auto vector = [](const std::array<double, 3>& a) { return Vector{ a[0], a[1], a[2] }; };
+  const std::vector<Reaction> reactions = solver.reactions();
+  const std::vector<TouchedBody> touched = touched_bodies(model);
+  std::vector<RigidTransform> poses = solver.bodies();
+  // a backend that knows of no body that is pushed leaves them where their bones are
+  for (std::size_t c = poses.size(); c < reactions.size(); ++c)
+    poses.push_back(touched[c].bone < 0 ? RigidTransform() : solver.controls().bone[touched[c].bone]);
+  const std::array<double, 3> origin = inverse(model.to_face).translation;
+  std::vector<BodyFrame> bodies;
+  for (std::size_t c = 0; c < reactions.size(); ++c)
+  {
+    const auto& [force, moment] = reactions[c];
+    // from the origin of the local frame to that of the face frame, both carried by the body
+    const Vector about_face = vector(moment) - cross(vector(poses[c].turned(origin)), vector(force));
+    bodies.push_back({ { model.to_face.turned(force),
+                         model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } }) },
+                       motion_in_face(model, poses[c]) });
+  }
+  return bodies;
 }
 
 bool is_finite(const SkinState& skin)

@@ -82,16 +82,47 @@ void set_bone_motion(const Model& model, const std::string& name, const RigidTra
   bones[bone] = composed(inverse(model.to_face), composed(motion, model.to_face));
 }
 
-std::vector<float> ActivationCurve::at(double seconds) const
+RigidTransform motion_in_face(const Model& model, const RigidTransform& local)
+{
+  return composed(model.to_face, composed(local, inverse(model.to_face)));
+}
+
+Controls ControlCurve::at(double seconds) const
 {
   const auto after = std::upper_bound(time.begin(), time.end(), seconds) - time.begin();
   if (after == static_cast<std::ptrdiff_t>(time.size()))
-    return activation.back();
-  std::vector<float> value = activation[after - 1];
-  const auto part = static_cast<float>((seconds - time[after - 1]) / (time[after] - time[after - 1]));
-  for (std::size_t m = 0; m < value.size(); ++m)
-    value[m] += part * (activation[after][m] - value[m]);
-  return value;
+    return controls.back();
+  if (after == 0)
+    return controls.front();
+  return interpolate(controls[after - 1], controls[after],
+                     (seconds - time[after - 1]) / (time[after] - time[after - 1]));
+}
+
+ControlCurve demo_curve(const Model& model, const Controls& begin)
+{
+  ControlCurve curve{ { 0 }, { begin } };
+  Controls target = begin;
+  double end = 0;
+  for (const Model::DemoPhase& phase : model.demo)
+  {
+    if (!(phase.seconds > 0))
+      continue;
+    curve.time.push_back(end);
+    curve.controls.push_back(target);
+    if (phase.expression > -2)
+      target.activation.assign(target.activation.size(), 0);
+    if (phase.expression >= 0)
+      for (const auto& [muscle, activation] : model.expressions.at(phase.expression).activation)
+        target.activation.at(muscle) = activation;
+    for (const Model::BonePose& pose : phase.bones)
+      set_bone_motion(model, model.bones.at(pose.bone), rigid_motion(pose.turn, pose.shift), target.bone);
+    curve.time.push_back(end + std::min(phase.ramp, phase.seconds));
+    end += phase.seconds;
+    curve.controls.push_back(target);
+  }
+  curve.time.push_back(end);
+  curve.controls.push_back(target);
+  return curve;
 }
 
 }  // namespace frontalis

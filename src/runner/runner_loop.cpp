@@ -98,6 +98,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   frame.time_step = solver->time_step();
   frame.steps = solver->profile().steps;
   frame.activation = solver->activation();
+  frame.bodies = bodies_in_face_frame(*solver, *model);
   if (guard)
     frame.guard = guard->counts();
   ++frame.sequence;

@@ -1,6 +1,7 @@
 #include "scene/quantity.hpp"
 
 #include "frontalis/scene/content_hash.hpp"
+#include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/read_scene.hpp"
 
 #include <fmt/format.h>
@@ -85,11 +86,16 @@ void add_surface(const Surface& surface, Content& content)
     // the extension of the file name determines the mesh format
     content.add("file", std::filesystem::path(surface.file).extension().string(), surface.unit,
                 hash_of_file(surface.file));
+    if (surface.subdivide > 0 || surface.mirror >= 0)
+      content.add("subdivide", surface.subdivide, surface.mirror);
     return;
   }
   const Shape& shape = *surface.shape;
   content.add("shape", shape.kind, shape.centre, shape.size, shape.axis, shape.radius, shape.minor_radius, shape.length,
               shape.edge, shape.part, shape.dimensions);
+  if (shape.head)
+    for (const std::string& file : shape.head->files)
+      content.add(hash_of_file(file));
 }
 
 void add_muscle(const SceneMuscle& muscle, Content& content)
@@ -126,10 +132,13 @@ void add_anatomy(const Scene& scene, Content& content)
 void add_restrictions(const Scene& scene, Content& content)
 {
   for (const SceneConstraint& c : scene.constraints)
-    if (c.on.empty())
-      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
-    else
-      content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction, c.on);
+  {
+    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    if (!c.on.empty())
+      content.add(c.on);
+    if (c.pushed)
+      content.add("pushed", c.pushed->mass, c.pushed->force, c.pushed->spring, c.pushed->damping);
+  }
   for (const SceneLoad& load : scene.loads)
     content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp, load.crop);
   content.line("gravity", scene.gravity);
@@ -145,7 +154,11 @@ void add_output(const Scene& scene, Content& content)
   for (const auto& [name, activation] : scene.expressions)
     content.line("expression", name, activation);
   for (const DemoPhase& phase : scene.demo)
+  {
     content.line("demo", phase.expression, phase.ramp, phase.seconds);
+    for (const BonePose& pose : phase.bones)
+      content.add(pose.bone, pose.shift, pose.turn);
+  }
 }
 
 void add_numerics(const Scene& scene, Content& content)

@@ -22,13 +22,18 @@ struct Unit
   double factor;  ///< value of one unit in SI units
 };
 
+constexpr double degree = 3.14159265358979323846 / 180;  // [rad]
+
 constexpr Unit units[] = {
   { Dimension::length, "m", 1 },        { Dimension::length, "cm", 1e-2 },      { Dimension::length, "mm", 1e-3 },
   { Dimension::length, "um", 1e-6 },    { Dimension::length, "in", 0.0254 },    { Dimension::time, "s", 1 },
   { Dimension::time, "ms", 1e-3 },      { Dimension::time, "us", 1e-6 },        { Dimension::rate, "1/s", 1 },
   { Dimension::rate, "Hz", 1 },         { Dimension::pressure, "Pa", 1 },       { Dimension::pressure, "kPa", 1e3 },
   { Dimension::pressure, "MPa", 1e6 },  { Dimension::pressure, "GPa", 1e9 },    { Dimension::density, "kg/m3", 1 },
-  { Dimension::density, "g/cm3", 1e3 }, { Dimension::acceleration, "m/s2", 1 },
+  { Dimension::density, "g/cm3", 1e3 }, { Dimension::acceleration, "m/s2", 1 }, { Dimension::angle, "deg", degree },
+  { Dimension::angle, "rad", 1 },       { Dimension::mass, "kg", 1 },           { Dimension::mass, "g", 1e-3 },
+  { Dimension::force, "N", 1 },         { Dimension::force, "mN", 1e-3 },       { Dimension::spring, "N/m", 1 },
+  { Dimension::spring, "N/mm", 1e3 },   { Dimension::drag, "Ns/m", 1 },         { Dimension::drag, "kg/s", 1 },
 };
 
 /// Returns null if the unit does not exist.
@@ -100,7 +105,7 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
 
   const std::string unit = trimmed(std::string(number.ptr, end));
   if (unit.empty())
-    value *= dimension == Dimension::length ? length_unit : 1;
+    value *= dimension == Dimension::length ? length_unit : dimension == Dimension::angle ? degree : 1;
   else if (const Unit* known = find_unit(dimension, unit); known != nullptr)
     value *= known->factor;
   else

@@ -9,13 +9,18 @@ namespace frontalis
 /// Physical dimension of a number in a scene file, with the allowed units and the default unit.
 enum class Dimension
 {
-  number,       ///< without a unit
-  length,       ///< m, cm, mm, um, in; default: the scene's length unit
-  time,         ///< s, ms, us; default: s
-  rate,         ///< 1/s, Hz; default: 1/s
-  pressure,     ///< Pa, kPa, MPa, GPa; default: Pa
-  density,      ///< kg/m3, g/cm3; default: kg/m3
-  acceleration  ///< m/s2; default: m/s2
+  number,        ///< without a unit
+  length,        ///< m, cm, mm, um, in; default: the scene's length unit
+  time,          ///< s, ms, us; default: s
+  rate,          ///< 1/s, Hz; default: 1/s
+  pressure,      ///< Pa, kPa, MPa, GPa; default: Pa
+  density,       ///< kg/m3, g/cm3; default: kg/m3
+  acceleration,  ///< m/s2; default: m/s2
+  angle,         ///< deg, rad; default: deg, as in the options of the command line; in rad
+  mass,          ///< kg, g; default: kg
+  force,         ///< N, mN; default: N
+  spring,        ///< N/m, N/mm; default: N/m
+  drag           ///< force over velocity: Ns/m, kg/s; default: Ns/m
 };
 
 /// Range of allowed numbers.

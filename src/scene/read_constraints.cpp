@@ -19,6 +19,19 @@ void read_displacement(const Node& node, SceneLoad& load)
     node.fault("found null for all three; at least one must be a length");
 }
 
+std::optional<ScenePush> read_push(const Node& node)
+{
+  if (!node.given())
+    return {};
+  ScenePush push;
+  Mapping mapping(node);
+  push.mass = mapping.required("mass", "the mass of the body").number(Dimension::mass, positive, push.mass);
+  push.force = mapping.optional("force").vector(Dimension::force, any_number, push.force);
+  push.spring = mapping.optional("spring").number(Dimension::spring, not_negative, push.spring);
+  push.damping = mapping.optional("damping").number(Dimension::drag, not_negative, push.damping);
+  return push;
+}
+
 void read_within(Mapping& mapping, SceneConstraint& constraint)
 {
   constraint.within = mapping.optional("within").number(Dimension::length, positive, constraint.within);
@@ -63,12 +76,19 @@ constexpr ConstraintKind constraint_kinds[] = {
       constraint.on = mapping.optional("on").reference(names.surfaces);
       read_place(mapping, constraint);
       read_friction(mapping, constraint);
+      constraint.pushed = read_push(mapping.optional("pushed"));
+    } },
+  { SceneConstraint::Kind::self_contact, "self_contact",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      constraint.crop = read_region(mapping.optional("crop"));
+      read_friction(mapping, constraint);
     } },
 };
 
 }  // namespace
 
-void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
+void read_constraints(const Node& node, Scene& scene, SceneNames& names)
 {
   const auto read = [&](const Node& entry, Mapping& mapping, SceneConstraint& constraint)
   {
@@ -82,9 +102,12 @@ void read_constraints(const Node& node, Scene& scene, const SceneNames& names)
         constraint.kind = kind.kind;
         constraint.surfaces = mapping.optional(key).references(names.surfaces);
         kind.read(mapping, constraint, names);
+        if (!constraint.bone.empty())
+          names.bones.names.push_back(constraint.bone);
       }
   };
   read_list(node, scene.constraints, read);
+  names.bones.complete = !node.faulty();
 }
 
 void read_loads(const Node& node, Scene& scene, const SceneNames& names)

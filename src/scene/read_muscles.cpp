@@ -127,13 +127,31 @@ void read_expressions(const Node& node, Scene& scene, SceneNames& names)
   names.expressions.complete = !node.given() || node.is_mapping();
 }
 
+static void read_poses(const Node& node, const SceneNames& names, std::vector<BonePose>& poses)
+{
+  if (!node.given())
+    return;
+  for (const auto& [bone, entry] : node.named_pairs())
+  {
+    entry.check_known(bone, names.bones);
+    BonePose& pose = poses.emplace_back();
+    pose.bone = bone;
+    Mapping mapping(entry);
+    pose.shift = mapping.optional("shift").vector(Dimension::length, any_number, pose.shift);
+    pose.turn = mapping.optional("turn").vector(Dimension::angle, any_number, pose.turn);
+  }
+}
+
 void read_demo(const Node& node, Scene& scene, const SceneNames& names)
 {
   for (const Node& entry : node.entries())
   {
     DemoPhase phase;
     Mapping mapping(entry);
-    phase.expression = mapping.required("expression", "the name of an expression").reference(names.expressions);
+    phase.expression = mapping.optional("expression").reference(names.expressions);
+    read_poses(mapping.optional("bones"), names, phase.bones);
+    if (!mapping.has("expression") && !mapping.has("bones"))
+      entry.fault("has neither 'expression' nor 'bones'; must have at least one of them");
     const Node ramp = mapping.optional("ramp");
     phase.ramp = ramp.number(Dimension::time, not_negative, phase.ramp);
     phase.seconds = mapping.optional("seconds").number(Dimension::time, positive, phase.seconds);

@@ -20,6 +20,7 @@ struct SceneNames
   Names tissue_volumes{ "tissue volume", {}, true };
   Names muscles{ "muscle", {}, true };
   Names expressions{ "expression", { "relax" }, true };
+  Names bones{ "bone", {}, true };
 };
 
 // One function per section, in the order in which the file is read. The section may be absent.
@@ -30,7 +31,7 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names);
 void read_volumes(const Node& node, Scene& scene, SceneNames& names);
 void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);
-void read_constraints(const Node& node, Scene& scene, const SceneNames& names);
+void read_constraints(const Node& node, Scene& scene, SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), because friction is an effect.
 void read_effects(const Node& node, Scene& scene);

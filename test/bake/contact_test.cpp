@@ -80,6 +80,8 @@ TEST(BakedContact, OtherBodiesAreSampledAsOneAroundTheirSurfaces)
   EXPECT_NEAR(model.contacts[0].reach, 2e-3, 1e-15);
   for (const double z : { 7.1e-3, 8e-3, 8.9e-3, 9.2e-3, 10.9e-3 })
     EXPECT_NEAR(level_at(field, local(model, { 7.5e-3, 6e-3, z })), 9e-3 - z, 0.03e-3) << z;
+  // the inside of a body is all there
+  EXPECT_LT(level_at(field, local(model, { 10e-3, 6e-3, 16e-3 })), -2.5e-3);
   // at this height only the ball has samples
   EXPECT_NEAR(level_at(field, local(model, { 10e-3, 6e-3, 20e-3 })), 1e-3, 0.05e-3);
   EXPECT_TRUE(std::isnan(level_at(field, local(model, { 10e-3, 6e-3, 60e-3 }))));
@@ -119,6 +121,8 @@ TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
   };
   Scene scene = touched_block();
   scene.constraints[0].surfaces = { "plate" };
+  scene.constraints[0].pushed = ScenePush{ 0.02, { 0, 0, -1 }, 200, 3 };
+  scene.demo.push_back({ "", { { "finger", { 1e-3, 0, 0 }, { 0, 0.1, 0 } } }, 0.1, 1 });
   Model model = bake(scene);
   const std::string whole = bytes_of(model);
   EXPECT_NE(whole.find("contacts"), std::string::npos);
@@ -133,6 +137,16 @@ TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
   EXPECT_EQ(a.field.samples, b.field.samples);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.area, b.area);
+  EXPECT_EQ(a.centre, b.centre);
+  EXPECT_FALSE(b.shape.triangles.empty());
+  EXPECT_EQ(a.shape.vertices, b.shape.vertices);
+  EXPECT_EQ(b.mass, 0.02);
+  EXPECT_EQ(a.force, b.force);
+  EXPECT_EQ(b.spring, 200);
+  EXPECT_EQ(b.damping, 3);
+  ASSERT_EQ(b.demo.at(0).bones.size(), 1u);
+  EXPECT_EQ(b.demo[0].expression, -2);
+  EXPECT_EQ(b.demo[0].bones[0].shift[0], 1e-3);
   EXPECT_EQ(a.binding.voxel, b.binding.voxel);
   EXPECT_EQ(a.binding.coordinates, b.binding.coordinates);
   EXPECT_EQ(bytes_of(read), whole);

@@ -1,9 +1,11 @@
 #include "frontalis/error.hpp"
+#include "frontalis/model/sample_field.hpp"
 
 #include "bake/scene_pieces.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace
@@ -57,6 +59,41 @@ TEST(RestrictedNodes, RigidFloorSlidingRoof)
   }
   ASSERT_EQ(model.constraint_surfaces.size(), 1u);
   EXPECT_EQ(model.constraint_surfaces[0].name, "roof");
+}
+
+// Two bones with a gap of 0.4 mm and a step of 0.2 mm between them.
+TEST(RestrictedNodes, SlideFromOneBoneToTheNext)
+{
+  Scene scene = block_scene();
+  scene.surfaces.push_back(box_surface("left", { -10.2e-3, 6e-3, -5e-3 }, { 40e-3, 60e-3, 10e-3 }, 1e-3));
+  scene.surfaces.push_back(box_surface("right", { 30.2e-3, 6e-3, -5.2e-3 }, { 40e-3, 60e-3, 10e-3 }, 1e-3));
+  scene.constraints = { constraint("glide", SceneConstraint::Kind::sliding, "left") };
+  scene.constraints[0].surfaces = { "left", "right" };
+  const Model model = bake(scene);
+  EXPECT_EQ(model.sliding.size(), 21u * 13u);
+  ASSERT_EQ(model.constraint_surfaces.size(), 1u);
+  EXPECT_EQ(model.constraint_surfaces[0].name, "left, right");
+  const auto local = [&](const std::array<double, 3>& p)
+  {
+    std::array<double, 3> q{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        q[i] += model.to_scene.rotation[3 * j + i] * (p[j] - model.to_scene.translation[j]);
+    return q;
+  };
+  for (const double z : { 0.0, -0.2e-3, 0.4e-3 })
+  {
+    double before = z;
+    for (double x = 4e-3; x < 16e-3; x += 0.1e-3)
+    {
+      const double level = level_at(model.constraint_surfaces[0].field, local({ { x, 6e-3, z } }));
+      EXPECT_GT(level, z - 0.03e-3) << x;
+      EXPECT_LT(level, z + 0.23e-3) << x;
+      EXPECT_LT(std::abs(level - before), 0.03e-3) << x;
+      before = level;
+    }
+    EXPECT_NEAR(before, z + 0.2e-3, 0.01e-3);
+  }
 }
 
 TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)

@@ -9,15 +9,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace frontalis
 {
 namespace
 {
 
-TEST(Reactions, are_printed_and_written_in_the_face_frame)
+Model bar_and_finger()
 {
-  const TemporaryFolder folder;
   Model model = bar_model();
   model.bones = { "finger" };
   Contact contact;
@@ -27,7 +28,13 @@ TEST(Reactions, are_printed_and_written_in_the_face_frame)
   contact.field = sphere_field({ { 16.2e-3 + 1000, 0, 0 } }, 1000);
   set_points(contact, model.skin, model.skin_binding);
   model.contacts = { contact };
-  write_model(model, folder / "bar.vtkhdf");
+  return model;
+}
+
+TEST(Reactions, are_printed_and_written_in_the_face_frame)
+{
+  const TemporaryFolder folder;
+  write_model(bar_and_finger(), folder / "bar.vtkhdf");
   const ProgramResult result =
       run_program({ "run", folder / "bar.vtkhdf", "--backend", "cpu", "--bone", "finger=0,0,-0.7,0,0,0", "--ramp",
                     "0.1", "--seconds", "0.4", "--frames", folder / "frames", "--ledger" });
@@ -49,6 +56,37 @@ TEST(Reactions, are_printed_and_written_in_the_face_frame)
   expect_contains(table, "frame,time_s,body,force_x_N,");
   expect_contains(table, "\n0,0.000000,touch,0,0,0,0,0,0\n");
   expect_contains(table, "\n20,0.400000,touch,");
+}
+
+// The same motion as a demo, as a table and by options.
+TEST(Reactions, come_from_poses_over_time)
+{
+  const TemporaryFolder folder;
+  Model model = bar_and_finger();
+  model.demo = { { 0, 0.1, 0.2, { { 0, { { 0, 0, -0.7e-3 } }, { { 0.01, 0, 0 } } } } }, { -2, 0, 0.1 } };
+  write_model(model, folder / "bar.vtkhdf");
+  folder.write("table.csv", "time,pull,finger.z,finger.rx\n0,0,0,0\n0.1,0.5,-0.7,0.572957795130823\n");
+  const std::vector<std::vector<std::string>> ways{ { "--demo" },
+                                                    { "--activations", folder / "table.csv", "--seconds", "0.3" },
+                                                    { "--expression", "shorten", "--bone",
+                                                      "finger=0,0,-0.7,0.572957795130823,0,0", "--ramp", "0.1",
+                                                      "--seconds", "0.3" } };
+  std::string first;
+  for (const auto& way : ways)
+  {
+    std::vector<std::string> arguments{
+      "run", folder / "bar.vtkhdf", "--backend", "cpu", "--frames", folder / "frames"
+    };
+    arguments.insert(arguments.end(), way.begin(), way.end());
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.code, 0) << result.errors;
+    const std::string table = text_of(folder / "frames" + "/reactions.csv");
+    expect_contains(table, "\n15,0.300000,touch,");
+    if (first.empty())
+      first = table;
+    EXPECT_EQ(table, first) << way[0];
+  }
+  EXPECT_EQ(run_program({ "run", folder / "bar.vtkhdf", "--demo", "--expression", "shorten" }).code, 2);
 }
 
 }  // namespace

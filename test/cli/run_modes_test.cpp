@@ -113,6 +113,8 @@ TEST_F(RunModes, wrong_tables_are_told_with_their_line)
     { "time,pull\n", ": has no row below its header" },
     { "time,pull\n\n", ": has no row below its header" },
     { "time,pull\n0.1,\n", ":2: found ''; must be a number" },
+    { "time,jaw.up\n0,0\n", ":1: 'jaw.up' is no muscle, nor a bone's .x, .y, .z, .rx, .ry or .rz" },
+    { "time,jaw.x\n0,0\n", ":1: no bone is called 'jaw'; the bones are none" },
     { "seconds,pull\n", ":1: the first column must be called time" },
     { "", ": cannot be read, or is empty" },
   };

@@ -32,9 +32,11 @@ TEST(ModelEffects, are_those_that_something_has_cause_for)
 {
   EXPECT_EQ(names_of(effects_of(scene_of(0))), "elasticity, rigid_nodes");
   const Model whole = scene_of(everything);
-  EXPECT_EQ(
-      effects_of(whole),
-      EffectSet::all().with(Effect::output_fields, false).with(Effect::contact, false).with(Effect::attachment, false));
+  EXPECT_EQ(effects_of(whole), EffectSet::all()
+                                   .with(Effect::output_fields, false)
+                                   .with(Effect::contact, false)
+                                   .with(Effect::self_contact, false)
+                                   .with(Effect::attachment, false));
   EXPECT_EQ(presence_of(whole, Effect::contraction).voxels, whole.voxels.size());
   EXPECT_EQ(presence_of(whole, Effect::friction).nodes, whole.sliding.size());
   EXPECT_LT(presence_of(whole, Effect::viscosity).voxels, whole.voxels.size() / 2);
@@ -98,7 +100,7 @@ TEST(ModelEffects, what_others_need_stays_and_unknown_names_are_told_what_there_
     EXPECT_STREQ(error.what(),
                  "there is no effect 'magic'; the effects are elasticity, fibre_stiffness, contraction, viscosity, "
                  "gravity, surface_loads, prescribed_displacement, rigid_nodes, sliding, friction, contact, "
-                 "attachment, output_fields");
+                 "self_contact, attachment, output_fields");
   }
 }
 

@@ -74,7 +74,7 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   model.profiles = { { "draft", 0.3e-3, 0.8, "a bench" }, { "fine", 0, 0, "" } };
   model.profile = "draft";
   model.expressions = { { "raise", { { 0, 0.75f } } }, { "nothing", {} } };
-  model.demo = { { 0, 0.2, 1.5 }, { -1, 0.3, 1 } };
+  model.demo = { { 0, 0.2, 1.5 }, { -1, 0.3, 1, { { 1, { { 1e-3, 0, 0 } }, { { 0, 0.1, 0 } } } } } };
   model.scene_hash = "0123456789abcdef";
   return model;
 }

@@ -133,6 +133,11 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_TRUE(b.expressions[1].activation.empty());
   ASSERT_EQ(b.demo.size(), 2u);
   EXPECT_EQ(b.demo[1].expression, -1);
+  EXPECT_TRUE(b.demo[0].bones.empty());
+  ASSERT_EQ(b.demo[1].bones.size(), 1u);
+  EXPECT_EQ(b.demo[1].bones[0].bone, 1);
+  EXPECT_EQ(b.demo[1].bones[0].shift[0], 1e-3);
+  EXPECT_EQ(b.demo[1].bones[0].turn[1], 0.1);
   ASSERT_EQ(b.profiles.size(), 2u);
   EXPECT_EQ(b.profiles[0].error, 0.3e-3);
   EXPECT_EQ(b.profiles[0].machine, "a bench");

@@ -103,3 +103,17 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
     EXPECT_NEAR(there.value, level, physics::plane_error);
   }
 }
+
+// The nearest point of a surface may jump.
+TEST(SampleField, MakesASlopeOfAJump)
+{
+  const auto jumps = [](const Point& p) { return 0.5 * p[2] + (p[0] > 5.1e-3 ? 2e-3 : 0); };
+  const SampledField field = sample_band({ { -6e-3, -2e-3, -1e-3 } }, { { 16e-3, 2e-3, 1e-3 } }, jumps, 0.5e-3, 4e-3);
+  for (double x = -2e-3; x < 12e-3; x += 0.13e-3)
+  {
+    const auto found = value_at<double>(field, { 5e-3, 0, 0 }, { x - 5e-3, 0, 0.1e-3 });
+    EXPECT_LT(std::abs(found.gradient.x), 1.02) << x;
+    const double expected = 0.05e-3 + (x > 5.1e-3 ? 2e-3 : 0);
+    EXPECT_NEAR(found.value, expected, std::abs(x - 5.1e-3) > 2e-3 ? 0.01e-3 : 1.2e-3) << x;
+  }
+}

@@ -101,7 +101,9 @@ TEST(Conversions, LandmarksBecomePosesAndFrames)
   EXPECT_EQ(poses.poses[0].orientation.w, 1);
 
   std::vector<geometry_msgs::TransformStamped> transforms;
-  to_transforms(model, lifted(model, 0.002f), "face_7", ros::Time(5), transforms);
+  Frame frame;
+  frame.skin = lifted(model, 0.002f);
+  to_transforms(model, frame, "face_7", ros::Time(5), transforms);
   ASSERT_EQ(transforms.size(), 1u);
   EXPECT_EQ(transforms[0].header.frame_id, "face_7");
   EXPECT_EQ(transforms[0].child_frame_id, "face_7/brow");

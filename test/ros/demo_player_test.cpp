@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace frontalis
 {
 namespace
@@ -23,7 +25,7 @@ Model with_demo()
 
 TEST(DemoPlayer, RampsAndHoldsEachPhase)
 {
-  const DemoPlayer demo(with_demo());
+  const DemoPlayer demo(std::make_shared<const Model>(with_demo()));
   EXPECT_DOUBLE_EQ(demo.period(), 2.5);
   EXPECT_NEAR(demo.activation(0).at("raiser"), 0, 1e-6);
   EXPECT_NEAR(demo.activation(0.2).at("raiser"), 0.4, 1e-6);
@@ -34,7 +36,7 @@ TEST(DemoPlayer, RampsAndHoldsEachPhase)
 
 TEST(DemoPlayer, CutsARampToItsPhase)
 {
-  const DemoPlayer demo(with_demo());
+  const DemoPlayer demo(std::make_shared<const Model>(with_demo()));
   EXPECT_NEAR(demo.activation(1.25).at("raiser"), 0.4, 1e-6);
   EXPECT_NEAR(demo.activation(1.5).at("raiser"), 0, 1e-6);
   EXPECT_NEAR(demo.activation(1.5).at("knitter"), 0.5, 1e-6);
@@ -42,19 +44,40 @@ TEST(DemoPlayer, CutsARampToItsPhase)
 
 TEST(DemoPlayer, RepeatsFromWhereTheLastPhaseEnded)
 {
-  const DemoPlayer demo(with_demo());
+  const DemoPlayer demo(std::make_shared<const Model>(with_demo()));
   const auto later = demo.activation(2.5 * 4 + 0.2);
   EXPECT_NEAR(later.at("raiser"), 0.4, 1e-6);
   EXPECT_NEAR(later.at("knitter"), 0.25, 1e-6);
   EXPECT_NEAR(demo.activation(2.5 * 4 + 0.7).at("knitter"), 0, 1e-6);
 }
 
+TEST(DemoPlayer, MovesBones)
+{
+  Model model = with_demo();
+  model.bones = { "jaw", "finger" };
+  model.demo[0].bones = { { 1, { { 0.01, 0, 0 } }, {} } };
+  model.demo[1].bones = { { 1, {}, { { 0, 0, 0.5 } } } };
+  model.demo[2].bones = { { 1, { { 0, 0, 0.02 } }, {} } };
+  model.demo[2].expression = -2;
+  const DemoPlayer demo(std::make_shared<const Model>(model));
+  EXPECT_EQ(demo.bones(0.2).count("jaw"), 0u);
+  EXPECT_NEAR(demo.bones(0.2).at("finger").translation[0], 0.005, 1e-12);
+  // half of the turn, about z of the face frame, and none in the next phase
+  EXPECT_NEAR(demo.bones(1.25).at("finger").rotation[3], std::sin(0.25), 1e-12);
+  EXPECT_NEAR(demo.bones(1.5).at("finger").rotation[3], 0, 1e-12);
+  // a phase without an expression keeps that
+  EXPECT_NEAR(demo.bones(1.6).at("finger").translation[2], 0.02, 1e-12);
+  EXPECT_NEAR(demo.activation(1.6).at("knitter"), 0, 1e-12);
+  // the next round begins there
+  EXPECT_NEAR(demo.bones(2.7).at("finger").translation[2], 0.01, 1e-12);
+}
+
 TEST(DemoPlayer, IsEmptyWithoutPhases)
 {
-  const DemoPlayer demo(small_model());
+  const DemoPlayer demo(std::make_shared<const Model>(small_model()));
   EXPECT_TRUE(demo.empty());
   EXPECT_TRUE(demo.activation(1).empty());
-  EXPECT_FALSE(DemoPlayer(with_demo()).empty());
+  EXPECT_FALSE(DemoPlayer(std::make_shared<const Model>(with_demo())).empty());
 }
 
 }  // namespace

@@ -233,17 +233,24 @@ TEST(EveryKey, muscles_and_expressions)
   ASSERT_EQ(scene.expressions.size(), 2U);
   EXPECT_EQ(scene.expressions.at("raise_brows").at("fibres"), 0.75);
   EXPECT_EQ(scene.expressions.at("frown").at("other"), 0);
-  ASSERT_EQ(scene.demo.size(), 2U);
+  ASSERT_EQ(scene.demo.size(), 3U);
   EXPECT_NEAR(scene.demo[0].ramp, 0.2, 1e-15);
   EXPECT_EQ(scene.demo[0].seconds, 2);
   EXPECT_EQ(scene.demo[1].expression, "relax");
   EXPECT_EQ(scene.demo[1].ramp, 0.1);
+  EXPECT_TRUE(scene.demo[1].bones.empty());
+  EXPECT_EQ(scene.demo[2].expression, "");
+  ASSERT_EQ(scene.demo[2].bones.size(), 2U);
+  EXPECT_EQ(scene.demo[2].bones[0].bone, "finger");
+  expect_vector(scene.demo[2].bones[0].shift, { 0.01, 0, -0.002 });
+  expect_vector(scene.demo[2].bones[0].turn, { 0, 1.5707963267948966, 0 });
+  expect_vector(scene.demo[2].bones[1].turn, { 0.5, 0, 0 });
 }
 
 TEST(EveryKey, constraints_and_loads)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.constraints.size(), 3U);
+  ASSERT_EQ(scene.constraints.size(), 4U);
   EXPECT_EQ(scene.constraints[0].kind, SceneConstraint::Kind::rigid);
   EXPECT_EQ(scene.constraints[0].surfaces, std::vector<std::string>{ "torus" });
   EXPECT_NEAR(scene.constraints[0].within, 1.5e-3, 1e-15);
@@ -258,6 +265,15 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[2].on, "box");
   EXPECT_EQ(scene.constraints[2].bone, "finger");
   EXPECT_EQ(scene.constraints[2].friction, 0.3);
+  ASSERT_TRUE(scene.constraints[2].pushed);
+  const ScenePush& pushed = *scene.constraints[2].pushed;
+  EXPECT_NEAR(pushed.mass, 0.02, 1e-15);
+  expect_vector(pushed.force, { 0, 0, -0.5 });
+  EXPECT_NEAR(pushed.spring, 2000, 1e-9);
+  EXPECT_NEAR(pushed.damping, 0.5, 1e-15);
+  EXPECT_EQ(scene.constraints[3].kind, SceneConstraint::Kind::self_contact);
+  EXPECT_EQ(scene.constraints[3].surfaces, (std::vector<std::string>{ "box", "sphere" }));
+  EXPECT_EQ(scene.constraints[3].friction, 0.4);
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);

@@ -369,8 +369,8 @@ TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
     }
     EXPECT_GE(counted, 5);
     EXPECT_NE(report.find("sliding on surface plane: continue the surface"), std::string::npos) << report;
-    EXPECT_GT(mean_x(u), 11e-3);
-    EXPECT_LT(mean_x(u), 16e-3);
+    EXPECT_GT(mean_x(u), 3e-3);
+    EXPECT_LT(mean_x(u), 8e-3);
   }
 }
 

@@ -38,8 +38,8 @@ std::vector<Effect> live_effects()
 {
   std::vector<Effect> effects;
   for (const Effect effect : every_effect())
-    // contact has a test of its own, because not every backend has it
-    if (traits_of(effect).not_live[0] == '\0' && effect != Effect::contact)
+    // contact has tests of its own, because not every backend has it
+    if (traits_of(effect).not_live[0] == '\0' && effect != Effect::contact && effect != Effect::self_contact)
       effects.push_back(effect);
   return effects;
 }

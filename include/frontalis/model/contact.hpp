@@ -13,17 +13,28 @@ namespace frontalis
 /// A rigid body that tissue may touch and leave, and the points of the tissue that touch it.
 struct Contact
 {
-  std::string name;        ///< of the constraint in the scene
-  std::int32_t bone = -1;  ///< index into Model::bones of the body; -1: the body stands still
-  double friction = 0;     ///< Coulomb's coefficient
-  SampledField field;      ///< distance from the body, negative inside
-  double reach = 0;        ///< samples are stored at least this far from the surface [m]
+  std::string name;                ///< of the constraint in the scene
+  std::int32_t bone = -1;          ///< index into Model::bones of the body; -1: the body stands still
+  double friction = 0;             ///< Coulomb's coefficient
+  SampledField field;              ///< distance from the body, negative inside
+  double reach = 0;                ///< samples are stored at least this far from the surface [m]
+  std::array<double, 3> centre{};  ///< of the body at rest, local: origin of the frame in which it is published [m]
+  TriangleMesh shape{};            ///< the body's surface at rest, local, to be shown [m]; may be empty
+
+  // a body that is pushed: it does not turn against its bone, but moves freely against it
+  double mass = 0;                ///< [kg]; 0: it is not pushed, but goes where its bone is
+  std::array<double, 3> force{};  ///< constant, local axes [N]
+  double spring = 0;              ///< stiffness of the spring to where its bone holds it [N/m]
+  double damping = 0;             ///< force over velocity against that place [N s/m]
 
   // points of the tissue: vertices of its surface
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
   std::vector<double> area;                   ///< of the surface, a third of each triangle at the vertex [m2]
   Binding binding;                            ///< one entry per point
 };
+
+/// Area of each vertex [m2]: a third of each of its triangles.
+std::vector<double> vertex_areas(const TriangleMesh& surface);
 
 /// Sets the points of a contact: the vertices of a bound surface, with their areas.
 void set_points(Contact& contact, const TriangleMesh& surface, const Binding& binding);

@@ -2,6 +2,7 @@
 
 #include "frontalis/model/contact.hpp"
 #include "frontalis/model/restriction.hpp"
+#include "frontalis/model/self_contact.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
 
@@ -55,6 +56,7 @@ struct Model
   std::vector<SlidingNode> sliding;
   std::vector<AttachedNode> attached;
   std::vector<Contact> contacts;
+  std::vector<SelfContact> self_contacts;
 
   // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]
@@ -93,11 +95,19 @@ struct Model
     std::vector<std::pair<std::int32_t, float>> activation;
   };
   std::vector<Expression> expressions;
+  /// Motion of a bone from its rest pose, in the face frame.
+  struct BonePose
+  {
+    std::int32_t bone = -1;         ///< index into bones
+    std::array<double, 3> shift{};  ///< [m], after the turn
+    std::array<double, 3> turn{};   ///< rotation vector about the origin of the face frame [rad]
+  };
   struct DemoPhase
   {
-    std::int32_t expression = -1;  ///< index into expressions; -1: relax
-    double ramp = 0.3;             ///< [s] simulated
-    double seconds = 1;            ///< [s] simulated
+    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: that of the phase before
+    double ramp = 0.3;              ///< [s] simulated
+    double seconds = 1;             ///< [s] simulated
+    std::vector<BonePose> bones{};  ///< other bones stay where they are
   };
   std::vector<DemoPhase> demo;
 

@@ -27,10 +27,11 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
 SampledField sample_field(const std::vector<std::array<double, 3>>& rest, const Distance& distance, double spacing,
                           double travel, const Loop& loop = one_by_one);
 
-/// Samples a distance in all bricks that come within `reach` [m] of a surface, on either side. `lower`, `upper`:
-/// corners of a box around the surface.
+/// Samples a distance in all bricks that come within `reach` [m] of a surface, on its inner side within `inside` [m] if
+/// that is more. `lower`, `upper`: corners of a box around the surface.
 SampledField sample_band(const std::array<double, 3>& lower, const std::array<double, 3>& upper,
-                         const Distance& distance, double spacing, double reach, const Loop& loop = one_by_one);
+                         const Distance& distance, double spacing, double reach, const Loop& loop = one_by_one,
+                         double inside = 0);
 
 /// The field of a sphere [m].
 SampledField sphere_field(const std::array<double, 3>& centre, double radius);

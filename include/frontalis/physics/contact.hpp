@@ -32,7 +32,8 @@ enum class Touching : std::uint8_t
 {
   no,
   yes,
-  let_go  ///< in this step
+  let_go,  ///< in this step
+  lost     ///< deeper in the body than its field has samples
 };
 
 /// State of friction at a point, kept from step to step.

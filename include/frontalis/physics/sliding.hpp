@@ -38,9 +38,11 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
 }
 
 /// A sliding node off its plane moves back by half of the error per step. An error above twice this value is reduced to
-/// this value at once [m]. It arises suddenly when the tangent plane of a node is replaced. Removing it within one step
-/// would add half the stiffness of the tissue times its square to the energy and excite vibrations.
-constexpr double error_left = 4.5e-6;
+/// this value at once [m]: 5 um less what a plane that is kept for some steps may be off, which is plane_error and,
+/// where the curvature grows along the way, about as much again. It arises suddenly when the tangent plane of a node is
+/// replaced. Removing it within one step would add half the stiffness of the tissue times its square to the energy and
+/// excite vibrations.
+constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
 /// 2019) and most of the distance from the plane. Returns the removed normal velocity; times the node's mass it is the

@@ -1,14 +1,16 @@
 #pragma once
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/runner/runner.hpp"
 #include "frontalis/ros/shading.hpp"
 
 #include <frontalis/SimulationState.h>
 #include <geometry_msgs/PoseArray.h>
 #include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/Wrench.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <shape_msgs/Mesh.h>
-#include <visualization_msgs/Marker.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <string>
 #include <vector>
@@ -39,9 +41,20 @@ void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, 
 /// One pose per landmark, in the order of the model, with the axes of the face frame. Fills all but the header.
 void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out);
 
-/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>.
-void to_transforms(const Model& model, const SkinState& skin, const std::string& face_frame, const ros::Time& stamp,
+/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body.
+void to_transforms(const Model& model, const Frame& frame, const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
+
+/// Name of the frame of a body that tissue touches. Its origin is the body's centre, and it lies as the face frame does
+/// while the body is at rest.
+std::string body_frame(const std::string& face_frame, const BodyShape& shape);
+/// From the face frame to that of a body.
+geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);
+/// What tissue does to a body, in the body's frame and about its origin.
+geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
+/// The surfaces of all bodies, each in the frame of its own, which it follows. Without a stamp: it is shown with the
+/// latest transform.
+visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more
 /// than 1e-3.

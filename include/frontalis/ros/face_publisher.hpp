@@ -2,6 +2,7 @@
 
 #include "frontalis/ros/conversions.hpp"
 
+#include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <tf2_ros/static_transform_broadcaster.h>
@@ -16,17 +17,17 @@
 namespace frontalis
 {
 
-/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks and ~state, and the transforms. A
-/// message is built only while its topic has subscribers, and its memory is reused once no subscriber holds it. Only
-/// one thread at a time may call these functions, except for shows_field().
+/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~bodies, ~wrench/... and ~state,
+/// and the transforms. A message is built only while its topic has subscribers, and its memory is reused once no
+/// subscriber holds it. Only one thread at a time may call these functions, except for shows_field().
 class FacePublisher
 {
 public:
   /// Advertises the topics; nothing is published yet.
   explicit FacePublisher(ros::NodeHandle private_handle);
 
-  /// Sets the model and publishes its topology (latched). If `parent_frame` is not empty, it also publishes an identity
-  /// transform from that frame to the face frame.
+  /// Sets the model and publishes its topology and its bodies (latched). If `parent_frame` is not empty, it also
+  /// publishes an identity transform from that frame to the face frame.
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
@@ -47,7 +48,7 @@ private:
   template <typename Message>
   struct Topic
   {
-    Topic(ros::NodeHandle& handle, const char* name) : publisher(handle.advertise<Message>(name, 1)) {}
+    Topic(ros::NodeHandle& handle, const std::string& name) : publisher(handle.advertise<Message>(name, 1)) {}
 
     /// Publishes a message that `fill` fills, if the topic has subscribers. If a subscriber in this process still holds
     /// the latest message, a new one takes its place.
@@ -62,7 +63,9 @@ private:
   Topic<sensor_msgs::PointCloud2> points_, field_;
   Topic<geometry_msgs::PoseArray> landmarks_;
   Topic<SimulationState> state_;
-  ros::Publisher topology_;
+  std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per body
+  ros::Publisher topology_, bodies_;
+  ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 
@@ -71,7 +74,8 @@ private:
   std::string backend_;
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
-  std::vector<geometry_msgs::TransformStamped> landmark_transforms_;
+  std::vector<BodyShape> shapes_;
+  std::vector<geometry_msgs::TransformStamped> frame_transforms_;
 };
 
 }  // namespace frontalis

@@ -23,13 +23,21 @@ std::vector<float> expression_activation(const Model& model, const std::string& 
 void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
                      std::vector<RigidTransform>& bones);
 
-/// Activations over time, linear between knots and constant after the last one.
-struct ActivationCurve
-{
-  std::vector<double> time;  ///< ascending from 0 [s], on the clock of the activations
-  std::vector<std::vector<float>> activation;
+/// The same in the other direction: the motion of a bone in the face frame from that in the local frame.
+RigidTransform motion_in_face(const Model& model, const RigidTransform& local);
 
-  std::vector<float> at(double seconds) const;
+/// Controls over time, linear between knots and constant after the last one.
+struct ControlCurve
+{
+  std::vector<double> time;  ///< not descending, from 0 [s], on the clock of the activations
+  std::vector<Controls> controls;
+
+  Controls at(double seconds) const;
 };
+
+/// One round of the model's demo from given controls: each phase ramps from those at the end of the phase before. A
+/// ramp that is longer than its phase is shortened to the phase. The last knot is the end; a model without a demo has
+/// none but the first.
+ControlCurve demo_curve(const Model& model, const Controls& begin);
 
 }  // namespace frontalis

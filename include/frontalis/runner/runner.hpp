@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/solver/solver.hpp"
 
@@ -24,6 +25,7 @@ struct Frame
   std::uint64_t sequence = 0;   ///< number of the frame
   SkinState skin;
   std::vector<float> field;       ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
+  std::vector<BodyFrame> bodies;  ///< that tissue touches, one per entry of touched_bodies(model)
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   GuardCounts guard;              ///< since the runner started

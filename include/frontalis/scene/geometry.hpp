@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@ namespace frontalis
 {
 
 using Vector3 = std::array<double, 3>;
+
+struct HeadTemplate;
 
 /// Axis-aligned box in scene coordinates [m]. By default all sides lie at infinity.
 struct Region
@@ -31,7 +34,8 @@ struct Shape
     ellipsoid,  ///< centre, size (semi-axes)
     cylinder,   ///< centre, axis, radius, length; closed by caps
     torus,      ///< centre, axis, radius (of the ring), minor_radius (of the tube)
-    forehead    ///< part (one of forehead_parts()), dimensions
+    forehead,   ///< part (one of forehead_parts()), dimensions
+    head        ///< head, part (one of its parts()), dimensions
   };
   Kind kind = Kind::box;
   Vector3 centre{ 0, 0, 0 };
@@ -41,8 +45,9 @@ struct Shape
   double minor_radius = 0;
   double length = 0;
   double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size
-  std::string part;  ///< forehead only
-  /// Dimensions of the generated forehead [m] by name; those not given have the defaults of doc/scene.md.
+  std::string part;  ///< forehead and head only
+  std::shared_ptr<const HeadTemplate> head;
+  /// Dimensions of the generated forehead or head [m] by name; those not given have their defaults.
   std::map<std::string, double> dimensions;
 };
 
@@ -52,6 +57,8 @@ struct Surface
   std::string file;            ///< path, relative to the mesh directory or the scene's folder; empty for a shape
   std::optional<Shape> shape;  ///< set if `file` is empty
   double unit = 1;             ///< metres per unit of the mesh (files only)
+  int subdivide = 0;           ///< steps of Catmull-Clark subdivision (files only)
+  int mirror = -1;             ///< axis whose plane at 0 the file is mirrored at; -1: none
   int line = 0;                ///< line in the scene file, for messages of the bake
 };
 

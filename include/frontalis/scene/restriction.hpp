@@ -3,11 +3,21 @@
 #include "frontalis/scene/geometry.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
+
+/// A body that moves freely under forces instead of along a path.
+struct ScenePush
+{
+  double mass = 0;           ///< [kg]
+  Vector3 force{ 0, 0, 0 };  ///< constant, scene axes [N]
+  double spring = 0;         ///< stiffness of the spring to where the body's bone holds it [N/m]
+  double damping = 0;        ///< force over velocity against that place [N s/m]
+};
 
 struct SceneConstraint
 {
@@ -15,7 +25,8 @@ struct SceneConstraint
   {
     rigid,
     sliding,
-    contact
+    contact,
+    self_contact
   };
   std::string name;
   Kind kind = Kind::rigid;
@@ -23,9 +34,13 @@ struct SceneConstraint
   double within = -1;  ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
   Region crop;
   std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
-  double friction = 0;  ///< sliding and contact: Coulomb friction coefficient
+  double friction = 0;  ///< sliding, contact and self_contact: Coulomb friction coefficient
   std::string on;       ///< contact: surface of the tissue that touches; empty: the skin
+  std::optional<ScenePush> pushed;  ///< contact: empty: the body goes where its bone is
   int line = 0;
+
+  /// Whether it is not a contact.
+  bool restricts_nodes() const { return kind == Kind::rigid || kind == Kind::sliding; }
 };
 
 /// Load or prescribed displacement on a surface. It grows linearly from 0 during the first `ramp` seconds.

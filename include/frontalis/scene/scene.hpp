@@ -83,12 +83,21 @@ struct SceneTime
   double activation_slew = 0;
 };
 
-/// One phase of the demonstration: a linear ramp to an expression, which is then held.
+/// Motion of a bone from its rest pose, in the face frame.
+struct BonePose
+{
+  std::string bone;
+  Vector3 shift{ 0, 0, 0 };  ///< [m], after the turn
+  Vector3 turn{ 0, 0, 0 };   ///< rotation vector about the origin of the face frame [rad]
+};
+
+/// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
 struct DemoPhase
 {
-  std::string expression;
-  double ramp = 0.3;     ///< duration of the ramp [simulated s]
-  double seconds = 1.0;  ///< duration of the phase, including the ramp [simulated s]
+  std::string expression;       ///< empty: as in the phase before
+  std::vector<BonePose> bones;  ///< other bones stay where they are
+  double ramp = 0.3;            ///< duration of the ramp [simulated s]
+  double seconds = 1.0;         ///< duration of the phase, including the ramp [simulated s]
 };
 
 /// Contents of a scene file, in SI units. doc/scene.md documents every key of the file.

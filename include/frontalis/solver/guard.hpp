@@ -20,7 +20,8 @@ enum class Instability
   hourglass,   ///< the same, in hourglass modes only
   inverted,    ///< more voxels are inverted than allowed
   time_step,   ///< steps were longer than critical
-  past_rim     ///< a sliding node is far past the rim of its surface's field
+  past_rim,    ///< a sliding node is far past the rim of its surface's field
+  inside_body  ///< tissue is deeper inside of a body than its field reaches
 };
 
 /// The finding in words that complete the sentence "the motion is unstable: ".

@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 11;
+constexpr int motion_generation = 12;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, the reference of every test), "cpu" (SIMD, all cores), "cuda".
@@ -127,6 +127,8 @@ public:
   virtual EnergyLedger ledger() = 0;
   /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Present poses of these bodies, in the local frame; none if the backend does not compute them.
+  virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 
   /// Nodal displacements [m] in the order of Model::nodes; for tests and studies.

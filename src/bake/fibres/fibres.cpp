@@ -2,6 +2,8 @@
 
 #include "bake/fibres/fit_nurbs.hpp"
 #include "bake/messages.hpp"
+#include "bake/shapes/head/head.hpp"
+#include "bake/shapes/head/muscle_net.hpp"
 
 namespace frontalis
 {
@@ -17,13 +19,18 @@ constexpr double farthest_end = 0.5;     // distance of an origin or insertion o
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
-NurbsVolume volume_of(const ControlNet& net)
+/// The control net that a muscle's only surface was made from, if it is a part of a head.
+std::optional<ControlNet> made_net(const Scene& scene, const SceneMuscle& muscle)
 {
-  const auto axis = [&net](std::size_t a)
-  { return SplineAxis(std::min(3, net.size[a] - 1), net.size[a], a == 0 && net.ring); };
-  std::vector<Vector3d> points(net.points.size());
-  std::transform(net.points.begin(), net.points.end(), points.begin(), to_vector);
-  return NurbsVolume({ { axis(0), axis(1), axis(2) } }, points, net.weights);
+  const auto named = [](const auto& list, const std::string& name)
+  { return std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == name; }); };
+  const auto volume = named(scene.volumes, muscle.volume);
+  if (muscle.origin.given() || muscle.ring || volume == scene.volumes.end() || volume->inside.size() != 1)
+    return std::nullopt;
+  const auto surface = named(scene.surfaces, volume->inside.front());
+  if (surface == scene.surfaces.end() || !surface->shape || surface->shape->kind != Shape::Kind::head)
+    return std::nullopt;
+  return head_muscle_net(*surface->shape);
 }
 
 /// All surfaces that bound a muscle's volume, as one mesh.
@@ -137,6 +144,8 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
                      fibres[m].volume = volume_of(*muscle.net);
                    else if (to_vector(muscle.fibre).norm() > 0)
                      fibres[m].direction = to_vector(muscle.fibre).normalized();
+                   else if (const auto net = made_net(scene, muscle))
+                     fibres[m].volume = volume_of(*net);
                    else
                    {
                      const auto entry = std::find_if(volumes.entries().begin(), volumes.entries().end(),

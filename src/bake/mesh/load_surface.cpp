@@ -3,6 +3,8 @@
 #include "frontalis/bake/forehead_shape.hpp"
 #include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
+#include "bake/mesh/subdivide.hpp"
+#include "bake/shapes/head/head.hpp"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -49,6 +51,15 @@ constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
+
+/// The surface of a control cage: polygons, of which only OBJ files are asked, mirrored and subdivided as told.
+TriangleMesh import_cage(const Surface& surface)
+{
+  PolygonMesh cage = read_polygons(surface.file, surface.unit);
+  if (surface.mirror >= 0)
+    cage = with_mirror_image(cage, surface.mirror);
+  return subdivide(cage, surface.subdivide);
+}
 
 /// Whether an open mesh is inside-out: the winding number with the largest magnitude in its bounding box is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
@@ -207,14 +218,16 @@ LoadedSurface load_surface(const Surface& surface, double unit)
   TriangleMesh& mesh = loaded.mesh;
   if (surface.shape)
   {
-    mesh = surface.shape->kind == Shape::Kind::forehead ? make_forehead(*surface.shape) : make_shape(*surface.shape);
+    mesh = surface.shape->kind == Shape::Kind::forehead ? make_forehead(*surface.shape)
+           : surface.shape->kind == Shape::Kind::head   ? make_head(*surface.shape)
+                                                        : make_shape(*surface.shape);
     join_vertices(mesh);
     make_orientation_consistent(mesh);
     if (unbalanced_edges(mesh).empty() ? signed_volume(mesh) < 0 : open_and_inside_out(mesh))
       flip(mesh);
     return loaded;
   }
-  mesh = import_mesh(surface.file, surface.unit);
+  mesh = surface.subdivide > 0 || surface.mirror >= 0 ? import_cage(surface) : import_mesh(surface.file, surface.unit);
   const Vector3d first_corner = vertex(mesh, mesh.triangles.front()[0]);
   const auto found = [&](const std::string& text)
   { loaded.findings.push_back(fmt::format("surface '{}': {}", surface.name, text)); };

@@ -140,6 +140,7 @@ TriangleMesh make_shape(const Shape& shape)
               "torus: 'minor_radius' must be above 0 and below 'radius'");
       return torus(shape, shape.edge > 0 ? shape.edge : shape.minor_radius / 3);
     case Shape::Kind::forehead:
+    case Shape::Kind::head:
       break;
   }
   throw Error("no mesh can be made of this shape");

@@ -16,8 +16,7 @@ namespace
 bool attaches(const Scene& scene, const SceneConstraint& constraint)
 {
   // a constraint with a `within` of its own holds the nodes that it asks for
-  return scene.accuracy.boundary == "true" && constraint.kind != SceneConstraint::Kind::contact &&
-         constraint.within < 0;
+  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
 }
 
 /// A node and the surface that it is to be attached to.

@@ -13,6 +13,7 @@ namespace
 constexpr double largest_spacing = 0.5e-3;  // of samples [m]
 constexpr double spacing_share = 0.5;       // the same in shortest voxel edges
 constexpr double reach_share = 2;           // how far from a surface there are samples, in longest voxel edges
+constexpr double deepest_inside = 20e-3;    // how deep in a body there are samples, more than any tissue is thick [m]
 constexpr double overlap_share = 0.5;       // how deep tissue may lie in a body at rest, in shortest voxel edges
 
 // A closed surface, outwards positive.
@@ -55,14 +56,15 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
     for (const Vector3& v : body.surface->mesh().vertices)
       box.extend(frame.to_local(to_vector(v)));
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  return sample_band(to_array(box.min()), to_array(box.max()), distance_from(bodies, frame),
-                     std::min(largest_spacing, spacing_share * edge), reach,
-                     [&](std::size_t count, const std::function<void(std::size_t)>& body)
-                     { parallel_for(monitor, count, 1, body); });
+  return sample_band(
+      to_array(box.min()), to_array(box.max()), distance_from(bodies, frame),
+      std::min(largest_spacing, spacing_share * edge), reach,
+      [&](std::size_t count, const std::function<void(std::size_t)>& body) { parallel_for(monitor, count, 1, body); },
+      deepest_inside);
 }
 
-// The part of a surface in a box, with its triangles halved until no edge is longer than `longest` [m], because contact
-// is found at vertices only. New vertices may be on edges of other triangles, which changes neither area nor shape.
+}  // namespace
+
 TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
 {
   TriangleMesh mesh;
@@ -99,6 +101,26 @@ TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest
   }
   join_vertices(mesh);
   return mesh;
+}
+
+namespace
+{
+void add_shape(const TriangleMesh& mesh, const LocalFrame& frame, Contact& contact)
+{
+  const auto first = static_cast<std::int32_t>(contact.shape.vertices.size());
+  for (const Vector3& v : mesh.vertices)
+    contact.shape.vertices.push_back(to_array(frame.to_local(to_vector(v))));
+  for (const Triangle& t : mesh.triangles)
+    contact.shape.triangles.push_back({ t[0] + first, t[1] + first, t[2] + first });
+}
+
+// Centre of the box around a mesh.
+Vector3 centre_of(const TriangleMesh& mesh)
+{
+  Box box;
+  for (const Vector3& v : mesh.vertices)
+    box.extend(to_vector(v));
+  return to_array(box.center());
 }
 
 // Index in the model of the bone of this name, added if it is new; -1: none.
@@ -160,6 +182,16 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
                           [&](const Surface& surface) { return surface.name == name; })
           ->shape;
     };
+    for (const Body& body : bodies)
+      add_shape(body.surface->mesh(), frame, contact);
+    contact.centre = centre_of(contact.shape);
+    if (const auto& push = constraint.pushed)
+    {
+      contact.mass = push->mass;
+      contact.force = frame.turn(push->force);
+      contact.spring = push->spring;
+      contact.damping = push->damping;
+    }
     const auto shape = shape_of(constraint.surfaces.front());
     if (bodies.size() == 1 && shape && shape->kind == Shape::Kind::sphere)
       contact.field = sphere_field(to_array(frame.to_local(to_vector(shape->centre))), shape->radius);

@@ -10,4 +10,8 @@ namespace frontalis
 void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
+/// The part of a surface in a box, its triangles halved until no edge is longer than `longest` [m], because only
+/// vertices touch. Halves of an edge are the same for both of its triangles.
+TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest);
+
 }  // namespace frontalis

@@ -57,6 +57,8 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
 
 /// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.
 void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
+/// The poses of the demo, once the model has its bones.
+void copy_poses(const Scene& scene, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the

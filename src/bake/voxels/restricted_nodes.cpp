@@ -227,6 +227,25 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
         true);
   }
 
+  // Nodes may also slide on to bones that hold others.
+  for (std::size_t s = 0; s < sheets.size(); ++s)
+    for (const SceneConstraint& constraint : scene.constraints)
+      if (constraint.kind == SceneConstraint::Kind::rigid &&
+          bone_of(constraint, model) == model.constraint_surfaces[s].bone)
+        for (const std::string& name : constraint.surfaces)
+        {
+          const PreparedSurface& first = *sheets[s].front().whole;
+          const PreparedSurface& whole = named_surface(surfaces, name, "");
+          const auto is_it = [&](const SlidingSurface& other) { return other.whole == &whole; };
+          if (is_sphere(first) || is_sphere(whole) || finder.tissue_side(first) != finder.tissue_side(whole) ||
+              std::any_of(sheets[s].begin(), sheets[s].end(), is_it))
+            continue;
+          const PreparedSurface& sheet = finder.sheet_of(whole, bones);
+          // no tissue faces it if it is whole
+          if (sheet.mesh().triangles.size() < whole.mesh().triangles.size())
+            sheets[s].push_back({ &whole, &sheet });
+        }
+
   std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes that slide on each
   for (std::size_t n = 0; n < nodes; ++n)
     if (restrictions[n].kind == Kind::sliding)

@@ -198,7 +198,7 @@ private:
 /// the next across a gap between their sheets, and sheets that face each other stay separate.
 SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Vector3d& p)
 {
-  constexpr double hardly_farther = 1e-3;  // [m]
+  constexpr double hardly_farther = 1e-3, widest_gap = 5e-3;  // [m]
   // start each search at the triangles found last, because successive samples are neighbours
   thread_local std::vector<std::int32_t> hint;
   hint.resize(sheets.size(), -1);
@@ -206,7 +206,7 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Ve
   std::size_t nearest = 0;
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
-    const double bound = s == 0 ? 1e300 : closest[nearest].distance + hardly_farther;
+    const double bound = s == 0 ? 1e300 : closest[nearest].distance + widest_gap;
     closest.push_back(sheets[s].closest(p, bound, hint[s]));
     if (closest[s].triangle >= 0 && closest[s].distance < closest[nearest].distance)
       nearest = s;
@@ -216,15 +216,21 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Ve
   double weights = 1;
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
-    const double farther = closest[s].distance - closest[nearest].distance;
-    if (s == nearest || closest[s].triangle < 0 || farther >= hardly_farther)
+    if (s == nearest || closest[s].triangle < 0)
       continue;
-    const double share = (1 - farther / hardly_farther) * std::max(0.0, normal.dot(sheets[s].normal(closest[s])));
-    sum.value += share * share * sheets[s].at(p, closest[s]).value;
-    weights += share * share;
+    const double alike = std::max(0.0, normal.dot(sheets[s].normal(closest[s])));
+    const double farther = (closest[s].distance - closest[nearest].distance) / hardly_farther;
+    // a point between two sheets is not past their rims
+    if (alike > 0)
+      sum.past_rim = 0;
+    if (farther >= 1)
+      continue;
+    const double weight = std::pow((1 - farther) * alike, 2);
+    sum.value += weight * sheets[s].at(p, closest[s]).value;
+    weights += weight;
   }
-  // a point between two sheets is not past their rims
-  return { sum.value / weights, weights > 1 ? 0 : sum.past_rim };
+  sum.value /= weights;
+  return sum;
 }
 
 }  // namespace
@@ -269,13 +275,16 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std
     return mesh;
   const VoxelIndex tissue(model.voxels, model.size);
   const Vector3d spacing = to_vector(model.spacing);
+  // an almost empty voxel may be bone on the other side of a suture
+  constexpr double least_fill = 0.2;
   const auto is_tissue = [&](const Vector3d& p)
   {
     const Vector3d cell = frame.to_local(p).cwiseQuotient(spacing).array().floor();
     if (cell.cwiseAbs().maxCoeff() > 1e6)
       return false;
-    return tissue.find({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
-                           static_cast<std::int32_t>(cell[2]) } }) >= 0;
+    const std::int32_t e = tissue.find({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
+                                           static_cast<std::int32_t>(cell[2]) } });
+    return e >= 0 && double(model.fill[e]) >= least_fill;
   };
   std::vector<bool> facing(mesh.triangles.size(), false);
   const auto is_wall = [&](std::size_t t)

@@ -15,12 +15,6 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Runs of bound nodes are merged if at most this many other nodes are between them.
-constexpr std::int32_t largest_gap = 8;
-
-// Factor on distances found in single precision that outweighs their rounding errors.
-constexpr double rounding = 1.00001;
-
 }  // namespace
 
 template <class Real>
@@ -31,6 +25,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
   {
     const Contact& contact = model.contacts[c];
     fields_.push_back(view(contact.field));
+    any_pushed_ = any_pushed_ || contact.mass > 0;
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       if (contact.area[p] > 0)
         points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
@@ -41,33 +36,15 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
   std::stable_sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.voxel < b.voxel; });
   const auto planes = static_cast<std::size_t>(model.size[2]);
   plane_points_.assign(planes + 2, 0);
-  std::vector<std::int32_t> nodes;
+  Binding bound;
   for (const Point& point : points_)
   {
     ++plane_points_[model.voxels[point.voxel][2] + 1];
-    nodes.insert(nodes.end(), model.voxel_nodes[point.voxel].begin(), model.voxel_nodes[point.voxel].end());
-    float weight[8], sum = 0;
-    physics::trilinear_weights(point.coordinates[0], point.coordinates[1], point.coordinates[2], weight);
-    for (const float w : weight)
-      sum += std::abs(w);
-    spread_ = std::max(spread_, double(sum));
+    bound.voxel.push_back(point.voxel);
+    bound.coordinates.push_back(point.coordinates);
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
-  std::sort(nodes.begin(), nodes.end());
-  plane_runs_.assign(planes + 2, 0);
-  for (const auto node : nodes)
-  {
-    const auto plane = model.nodes[node][2];
-    const bool goes_on = !runs_of_nodes_.empty() && node <= runs_of_nodes_.back().last + largest_gap &&
-                         model.nodes[runs_of_nodes_.back().first][2] == plane;
-    if (!goes_on)
-    {
-      runs_of_nodes_.push_back({ node, node });
-      ++plane_runs_[plane + 1];
-    }
-    runs_of_nodes_.back().last = node + 1;
-  }
-  std::partial_sum(plane_runs_.begin(), plane_runs_.end(), plane_runs_.begin());
+  nodes_ = BoundNodeWay(model, bound);
   reset();
 }
 
@@ -104,8 +81,7 @@ void BodyContact<Real>::list_arrays(ArrayList& list)
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
   list.add(effect, "points", plane_points_);
-  list.add(effect, "bound nodes", runs_of_nodes_);
-  list.add(effect, "bound nodes", plane_runs_);
+  nodes_.list_arrays(list, effect);
   list.add(effect, "bodies", fields_);
   list.add(effect, "forces", forces_);
   list.add(effect, "bodies", next_);
@@ -134,23 +110,30 @@ Vector BodyContact<Real>::place(const Point& point, const Real* const u[3]) cons
 }
 
 template <class Real>
-RigidTransform BodyContact<Real>::body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const
+std::vector<RigidTransform> BodyContact<Real>::bodies(const std::vector<RigidTransform>& bones) const
 {
-  const std::int32_t bone = model_.contacts[body].bone;
-  return bone < 0 ? RigidTransform() : bones[bone];
+  const std::vector<Reaction> latest = reactions();
+  std::vector<RigidTransform> poses;
+  for (std::size_t b = 0; b < model_.contacts.size(); ++b)
+    poses.push_back(idle() ? held_pose(model_.contacts[b], bones)
+                           : moved_on(model_.contacts[b], bodies_[b], latest[b], bones).pose);
+  return poses;
 }
 
 template <class Real>
-std::vector<typename BodyContact<Real>::BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
+std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 {
   std::vector<BodyState> now;
   double way = 0;
+  const std::vector<Reaction> latest = any_pushed_ ? reactions() : std::vector<Reaction>(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b)
   {
-    now.push_back({ body_pose(b, step.bone_before), 0, step.dt });
+    now.push_back(moved_on(model_.contacts[b], bodies_[b], latest[b], step.bone_before));
+    now[b].dt = step.dt;
+    now[b].kick = bodies_[b].dt > 0 ? 0.5 * (bodies_[b].dt + step.dt) : step.dt;
     way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
   }
-  way += bodies_.front().way + spread_ * *std::max_element(node_way_.begin(), node_way_.end());
+  way += bodies_.front().way + nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
   for (BodyState& body : now)
     body.way = bodies_.front().dt > 0 ? way : 0;
   return now;
@@ -178,7 +161,8 @@ void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const Bod
     return;
   }
   forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };
-  touches_[p] = touches_[p] == Touching::yes ? Touching::let_go : Touching::no;
+  const bool was_inside = touches_[p] == Touching::yes || touches_[p] == Touching::lost;
+  touches_[p] = was_inside && !sampled ? Touching::lost : was_inside ? Touching::let_go : Touching::no;
   if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
@@ -281,28 +265,7 @@ template <class Real>
 void BodyContact<Real>::after_step(const NodeShare& share, const Real* const before[3], const Real* const after[3])
 {
   for (auto k = share.first_plane; k < share.end_plane; ++k)
-  {
-    // squared lengths, in lanes that the compiler can vectorise
-    constexpr std::int32_t width = 8;
-    Real longest[width] = {};
-    const auto compare = [&](std::int32_t lane, std::int32_t n)
-    {
-      const Real x = after[0][n] - before[0][n], y = after[1][n] - before[1][n], z = after[2][n] - before[2][n];
-      const Real squared = x * x + y * y + z * z;
-      longest[lane] = squared > longest[lane] ? squared : longest[lane];
-    };
-    for (auto run = plane_runs_[k]; run < plane_runs_[k + 1]; ++run)
-    {
-      const auto [begin, end] = runs_of_nodes_[run];
-      std::int32_t n = begin;
-      for (; n + width <= end; n += width)
-        for (std::int32_t lane = 0; lane < width; ++lane)
-          compare(lane, n + lane);
-      for (; n < end; ++n)
-        compare(0, n);
-    }
-    node_way_[k] = rounding * std::sqrt(double(*std::max_element(longest, longest + width)));
-  }
+    node_way_[k] = nodes_.in_plane(k, before, after);
 }
 
 template <class Real>
@@ -331,12 +294,13 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.lost += sum.lost;
   }
   // The sums end at the start of the latest step: add what the next step will add.
+  const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
     const Point& point = points_[p];
     const physics::DistanceField& field = fields_[point.body];
-    const physics::Pose pose = pose_of(body_pose(point.body, bones));
+    const physics::Pose pose = pose_of(present[point.body]);
     const Vector x = pose.inwards(place(point, u));
     physics::FieldValue<double> value{};
     const double stiffness = double(point.stiffness), response = physics::friction_response(bodies_[point.body].dt);
@@ -359,7 +323,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
   const std::vector<Reaction> before = reactions();
   for (std::size_t b = 0; b < now.size(); ++b)
     if (bodies_[b].dt > 0)
-      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, body_pose(b, bones)));
+      energy.work += work_between(before[b], now[b], motion_between(bodies_[b].pose, present[b]));
   return energy;
 }
 

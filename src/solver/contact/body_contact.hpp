@@ -4,7 +4,8 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/body_motion.hpp"
+#include "solver/contact/bound_node_way.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <algorithm>
@@ -37,6 +38,8 @@ public:
   void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
+  std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
+  std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
   // For a backend that has the points in a memory of its own, finds their forces there, and leaves the account here.
 
@@ -67,12 +70,6 @@ public:
 
 private:
   using Touching = physics::Touching;
-  struct BodyState
-  {
-    RigidTransform pose;  // at the start of the latest step
-    double way;           // bound of how far any point and body have approached each other so far [m]
-    double dt;            // length of the latest step [s]; 0: there was none
-  };
   struct Energy
   {
     double stored = 0;  // present [J]
@@ -91,11 +88,6 @@ private:
   {
     double due = 0;            // BodyState::way at which the first of its points is due
     std::int64_t touches = 0;  // not 0: one of its points touches
-  };
-  // nodes [first, last), of which nearly all are bound
-  struct Run
-  {
-    std::int32_t first, last;
   };
   /// Calls visit(p) for the points in [first, last) that touch.
   template <class Visit>
@@ -121,7 +113,6 @@ private:
         push(nodes[b], weight[b] * force);
   }
   Vector place(const Point& point, const Real* const u[3]) const;
-  RigidTransform body_pose(std::size_t body, const std::vector<RigidTransform>& bones) const;
   /// Energies up to the present displacements.
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
@@ -136,12 +127,10 @@ private:
   void add_up(int thread, std::int32_t first, std::int32_t last);
 
   const Model& model_;
-  bool runs_ = true;
-  double spread_ = 1;                       // largest ratio of a point's motion to that of the nodes of its voxel
+  bool runs_ = true, any_pushed_ = false;
   std::vector<Point> points_;               // sorted by voxel
   std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
-  std::vector<Run> runs_of_nodes_;          // runs that contain all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;    // first run in each plane of nodes, then twice the number of runs
+  BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
   // values of the present step
   std::vector<PointForce> forces_;  // one per point
@@ -153,7 +142,7 @@ private:
   std::vector<double> due_;                   // BodyState::way at which a point must be evaluated again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
-  std::vector<BodyState> bodies_;
+  std::vector<BodyState> bodies_;  // at the start of the latest step
   std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;    // one per plane of voxels and body
   std::vector<Energy> opened_;    // energies when the account was opened; one entry

@@ -3,15 +3,23 @@
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
+#include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace frontalis
 {
 namespace
 {
+
+// Where other nodes bound the frequency, contact is stiffer than its law asks for, up to this factor: thin tissue on
+// bone resists a finger several times as much as its Young's modulus says. Bounds stay below this share of the largest.
+constexpr double stiffest_factor = 10;
+constexpr double share_of_largest = 0.95;
 
 // Limit of the stiffness of contact at a node, over that on a flat side of whole voxels with as much tissue. Points
 // that lie far outside of their voxel have large weights, and many points may be bound to a voxel with little tissue.
@@ -28,41 +36,47 @@ double young_modulus(const VoxelProperties& voxel)
 }  // namespace
 
 ContactStiffness::ContactStiffness(const Model& model, const Discretisation& discretisation)
+    : bodies_(model.contacts.size())
 {
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
   // Of each node: the bound of the stiffness of its voxels, and the stiffness of contact if it were on a flat side of
   // whole voxels, whose four at the node carry a quarter of an edge^2 each.
   std::vector<double> of_voxels(model.nodes.size(), 0), of_flat_side(model.nodes.size(), 0);
-  std::vector<double> young(model.voxels.size());
+  std::vector<double> per_area(model.voxels.size());
   voxels_.resize(model.voxels.size());
   VoxelProperties properties;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     discretisation.voxel(e, properties);
-    young[e] = young_modulus(properties);
+    per_area[e] = physics::contact_stiffness * young_modulus(properties) / edge;
     voxels_[e] = static_cast<float>(properties.stiffness);
     for (const auto node : model.voxel_nodes[e])
     {
       of_voxels[node] += properties.stiffness;
-      of_flat_side[node] += physics::contact_stiffness * young[e] * properties.tissue_volume / (4 * edge * edge);
+      of_flat_side[node] += per_area[e] * properties.tissue_volume / (4 * edge);
     }
   }
   for (const Contact& contact : model.contacts)
-  {
-    auto& points = points_.emplace_back();
-    for (std::size_t p = 0; p < contact.points.size(); ++p)
-      points.push_back(
-          static_cast<float>(physics::contact_stiffness * young[contact.binding.voxel[p]] / edge * contact.area[p]));
-  }
-  const std::vector<double> asked = rows(model);
-  for (std::size_t c = 0; c < points_.size(); ++c)
-    for (std::size_t p = 0; p < points_[c].size(); ++p)
-      for (const auto node : model.voxel_nodes[model.contacts[c].binding.voxel[p]])
+    add(contact.binding, contact.area, per_area, counted(contact));
+  for (const SelfContact& contact : model.self_contacts)
+    add(contact.binding, vertex_areas(contact.surface), per_area, 2);
+  const std::vector<double> asked = rows(model, true);
+  for (Surface& surface : surfaces_)
+    for (std::size_t p = 0; p < surface.points.size(); ++p)
+    {
+      double share = 1;
+      for (const auto node : model.voxel_nodes[surface.binding->voxel[p]])
         if (asked[node] > stiffest_node * of_flat_side[node])
-          points_[c][p] = std::min(
-              points_[c][p], static_cast<float>(points_[c][p] * stiffest_node * of_flat_side[node] / asked[node]));
-  // What contact adds to a node is shared by its voxels in proportion to their own bounds.
-  const std::vector<double> added = rows(model);
+          share = std::min(share, stiffest_node * of_flat_side[node] / asked[node]);
+      surface.points[p] = static_cast<float>(share * double(surface.points[p]));
+    }
+  share_out(model, of_voxels);
+}
+
+// What contact adds to a node is shared by its voxels in proportion to their own bounds, which voxels_ holds before.
+void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
+{
+  const std::vector<double> added = rows(model, false);
   for (std::size_t e = 0; e < voxels_.size(); ++e)
   {
     double share = 0;
@@ -70,24 +84,83 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
       share = std::max(share, added[node] / of_voxels[node]);
     voxels_[e] *= static_cast<float>(share);
   }
+  for (std::size_t c = 0; c < bodies_; ++c)
+    if (model.contacts[c].mass > 0)
+    {
+      const auto& points = surfaces_[c].points;
+      longest_step_ = std::min(
+          longest_step_, longest_pushed_step(model.contacts[c], std::accumulate(points.begin(), points.end(), 0.0)));
+    }
+}
+
+void ContactStiffness::stiffen(const Model& model, const Discretisation& discretisation)
+{
+  if (bodies_ == 0)
+    return;
+  // bounds of nodes with and without contact; held ones count for nothing
+  std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
+  VoxelProperties properties;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    discretisation.voxel(e, properties);
+    const double own = properties.stiffness - in_voxel(e);
+    for (const auto node : model.voxel_nodes[e])
+    {
+      of_voxels[node] += own;
+      squared[node] += properties.stiffness / discretisation.node_mass[node];
+    }
+    voxels_[e] = static_cast<float>(own);
+  }
+  for (const auto node : discretisation.held)
+    squared[node] = 0;
+  // If no voxel's bound grows by more than its nodes and those of its neighbours allow, no node's does.
+  const double limit = share_of_largest * discretisation.frequency_squared_max;
+  std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
+  for (const auto& nodes : model.voxel_nodes)
+  {
+    double largest = 0;
+    for (const auto node : nodes)
+      largest = std::max(largest, squared[node]);
+    for (const auto node : nodes)
+      growth[node] = std::min(growth[node], std::max(1.0, limit / largest));
+  }
+  const std::vector<double> added = rows(model, false);
+  for (std::size_t c = 0; c < bodies_; ++c)
+    for (std::size_t p = 0; p < surfaces_[c].points.size(); ++p)
+    {
+      double factor = stiffest_factor;
+      for (const auto node : model.voxel_nodes[surfaces_[c].binding->voxel[p]])
+        factor = std::min(factor, 1 + (growth[node] - 1) * of_voxels[node] / added[node]);
+      surfaces_[c].points[p] *= static_cast<float>(factor);
+    }
+  share_out(model, of_voxels);
+}
+
+void ContactStiffness::add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area,
+                           double moves)
+{
+  Surface surface{ &binding, {}, moves };
+  for (std::size_t p = 0; p < area.size(); ++p)
+    surface.points.push_back(static_cast<float>(per_area[binding.voxel[p]] * area[p]));
+  surfaces_.push_back(std::move(surface));
 }
 
 // The stiffness of a point on the nodes of its voxel is k w w^T, w its weights. The rows of these matrices, added over
 // all points, bound the eigenvalues of their sum divided by the masses (Gershgorin).
-std::vector<double> ContactStiffness::rows(const Model& model) const
+std::vector<double> ContactStiffness::rows(const Model& model, bool alone) const
 {
   std::vector<double> rows(model.nodes.size(), 0);
-  for (std::size_t c = 0; c < points_.size(); ++c)
-    for (std::size_t p = 0; p < points_[c].size(); ++p)
+  for (const Surface& surface : surfaces_)
+    for (std::size_t p = 0; p < surface.points.size(); ++p)
     {
-      const Binding& binding = model.contacts[c].binding;
-      const auto& at = binding.coordinates[p];
+      const auto& at = surface.binding->coordinates[p];
       double weight[8], sum = 0;
       physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
       for (const double w : weight)
         sum += std::abs(w);
       for (std::size_t b = 0; b < 8; ++b)
-        rows[model.voxel_nodes[binding.voxel[p]][b]] += double(points_[c][p]) * std::abs(weight[b]) * sum;
+        rows[model.voxel_nodes[surface.binding->voxel[p]][b]] +=
+            (alone ? 1 : surface.moves) * double(surface.points[p]) * std::abs(weight[b]) * sum;
     }
   return rows;
 }
@@ -95,12 +168,11 @@ std::vector<double> ContactStiffness::rows(const Model& model) const
 void ContactStiffness::add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                                   std::vector<std::array<double, 3>>& forces) const
 {
-  for (std::size_t c = 0; c < points_.size(); ++c)
-    for (std::size_t p = 0; p < points_[c].size(); ++p)
+  for (const Surface& surface : surfaces_)
+    for (std::size_t p = 0; p < surface.points.size(); ++p)
     {
-      const Binding& binding = model.contacts[c].binding;
-      const auto& at = binding.coordinates[p];
-      const auto& nodes = model.voxel_nodes[binding.voxel[p]];
+      const auto& at = surface.binding->coordinates[p];
+      const auto& nodes = model.voxel_nodes[surface.binding->voxel[p]];
       double weight[8];
       physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -109,7 +181,7 @@ void ContactStiffness::add_forces(const Model& model, const std::vector<std::arr
         for (std::size_t b = 0; b < 8; ++b)
           moved += weight[b] * displacements[nodes[b]][axis];
         for (std::size_t b = 0; b < 8; ++b)
-          forces[nodes[b]][axis] += double(points_[c][p]) * weight[b] * moved;
+          forces[nodes[b]][axis] += surface.moves * double(surface.points[p]) * weight[b] * moved;
       }
     }
 }

@@ -15,8 +15,13 @@ public:
   /// From the mixtures of the points' voxels, with bounds of their stiffness that do not include contact.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
-  /// Of a point [N/m].
-  double of(std::size_t contact, std::size_t point) const { return points_[contact][point]; }
+  /// Makes points up to ten times as stiff, of Model::contacts alone.
+  void stiffen(const Model& model, const Discretisation& discretisation) override;
+
+  /// Of a point [N/m], of Model::contacts.
+  double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
+  /// Of a vertex [N/m], of Model::self_contacts.
+  double of_self(std::size_t contact, std::size_t vertex) const { return of(bodies_ + contact, vertex); }
   /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue of Poisson's ratio 0.49 it is at most 7 % of
   /// the voxel's own.
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
@@ -25,11 +30,25 @@ public:
   void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                   std::vector<std::array<double, 3>>& forces) const override;
 
-private:
-  std::vector<double> rows(const Model& model) const;
+  /// That of bodies that are pushed.
+  double longest_step() const override { return longest_step_; }
 
-  std::vector<std::vector<float>> points_;  // [N/m] of each contact's points
-  std::vector<float> voxels_;               // [N/m]
+private:
+  struct Surface
+  {
+    const Binding* binding;
+    std::vector<float> points;  // [N/m]
+    double moves;  // how often it counts if the other side moves: 2 where it is tissue, as two masses joined by a spring
+  };
+  void add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area, double moves);
+  void share_out(const Model& model, const std::vector<double>& of_voxels);
+  /// `alone`: as if the other side stood still.
+  std::vector<double> rows(const Model& model, bool alone) const;
+
+  std::vector<Surface> surfaces_;  // first those of bodies
+  std::size_t bodies_;
+  std::vector<float> voxels_;  // [N/m]
+  double longest_step_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace frontalis

@@ -9,8 +9,9 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor)
 {
-  // Over this distance [m], a tangent plane departs from a head (radius about 80 mm) by 0.6 mm.
-  constexpr double far = 10e-3;
+  // Edge of a brick of samples every 0.5 mm: over this way a plane leaves a head, whose radius is about 80 mm, by 0.1
+  // mm [m].
+  constexpr double far = 4e-3;
   for (const SlidingNode& node : model.sliding)
   {
     const ConstraintSurface& surface = model.constraint_surfaces[node.surface];

@@ -109,6 +109,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
     constraint_steps.push_back(plan.constraint_step(step));
   }
   const std::vector<NodePart<Real>*> parts = this->active_parts();
+  const bool prepared = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->prepares(); });
   const bool pushed = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->pushes(); });
   const bool grouped = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->groups(); });
   std::vector<Real> seen(team_.size(), 0);
@@ -129,6 +130,10 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           g.activation = activation.data() + step * muscles;
           if (account_)
             account_->before(begin, end, g.v);
+          for (NodePart<Real>* const part : parts)
+            part->prepare_step(share, g.u);
+          if (prepared)
+            team_.barrier();
           for (NodePart<Real>* const part : parts)
             part->before_step(share, g.u, constraint_steps[step]);
           if (pushed)

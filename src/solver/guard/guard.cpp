@@ -94,6 +94,8 @@ Instability Guard::Implementation::judged(const Monitor& m, double imbalance, do
     return Instability::inverted;
   if (m.lost_node >= 0)
     return Instability::past_rim;
+  if (m.lost_points > 0)
+    return Instability::inside_body;
   const double most =
       bound.most({ energy(good.monitor), good.time, solver.time(), activation, bone_way, good.largest_internal });
   if (m.hourglass > most)

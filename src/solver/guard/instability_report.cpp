@@ -49,6 +49,8 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
   if (kind == Instability::past_rim)
     return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
              "continue the surface beyond the tissue, or hold the tissue near its rim" };
+  if (kind == Instability::inside_body)
+    return { "contact", "press less deep, or move the body more slowly" };
   const auto rigid = held(model.rigid, corners);
   if (rigid != model.rigid.end() && rigid->bone >= 0 && moved[rigid->bone])
     return { "the motion of bone " + model.bones[rigid->bone], "move it in smaller parts" };
@@ -100,7 +102,8 @@ std::string words_for(Instability instability)
                                     "hourglass energy grows without a cause",
                                     "voxels turn inside out",
                                     "the time step is longer than critical",
-                                    "nodes have slid past the rim of their surface" };
+                                    "nodes have slid past the rim of their surface",
+                                    "tissue is deep inside of a body that it touches" };
   return words[static_cast<int>(instability)];
 }
 

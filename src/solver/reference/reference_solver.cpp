@@ -118,6 +118,8 @@ double ReferenceSolver::run(const StepPlan& plan)
     forces(u_, activation);
     const ConstraintStep constraint_step = plan.constraint_step(step);
     for (NodePart<double>* const part : parts)
+      part->prepare_step(share, pointers(u_).data());
+    for (NodePart<double>* const part : parts)
       part->before_step(share, pointers(u_).data(), constraint_step);
     for (NodePart<double>* const part : parts)
       part->add_forces(share, ForceSink<double>(f));

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace frontalis
 {
+
+class Discretisation;
 
 /// Stiffness that an effect adds to that of voxels, for the bound of the highest frequency.
 class AddedStiffness
@@ -20,6 +23,12 @@ public:
   /// Adds the internal forces [N] of this stiffness at its largest, at displacements [m].
   virtual void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                           std::vector<std::array<double, 3>>& forces) const = 0;
+
+  /// Uses what nodes elsewhere leave: where they set the bound of the highest frequency, stiffness may grow as far as
+  /// that bound does not. To be called once masses and this bound are known.
+  virtual void stiffen(const Model& /*model*/, const Discretisation& /*discretisation*/) {}
+  /// Longest stable step of masses that are not nodes [s].
+  virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
 
 protected:
   AddedStiffness() = default;

@@ -193,6 +193,11 @@ Discretisation::Discretisation(const Model& model)
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
   bound_at_rest();
+  if (added.empty())
+    return;
+  for (const auto& stiffness : added)
+    stiffness->stiffen(model, *this);
+  bound_at_rest();
 }
 
 void Discretisation::mix(std::size_t e, VoxelProperties& out) const

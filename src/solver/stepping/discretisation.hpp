@@ -63,19 +63,19 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                         ///< of a whole voxel [m3]
-  bool assumed_strain = false;               ///< hourglass control by assumed strain
-  bool selective_reduced = false;            ///< no hourglass control
-  bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
-  int viscous_terms = 0;                     ///< 0..2
-  double viscous_time_min = 0;               ///< [s]
-  std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
-  std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
-  double stretch_half_sum = 0;               ///< half of that sum [1/m2]
-  std::vector<double> node_mass;             ///< lumped [kg]
-  std::vector<float> weight_share;           ///< mass before mass scaling over node_mass; empty: 1
-  std::vector<std::int32_t> held;            ///< nodes whose motion is prescribed along all axes, ascending
-  std::vector<std::shared_ptr<const AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
+  double volume = 0;                                   ///< of a whole voxel [m3]
+  bool assumed_strain = false;                         ///< hourglass control by assumed strain
+  bool selective_reduced = false;                      ///< no hourglass control
+  bool laws = false;                                   ///< whether a voxel has a law other than neo-Hookean
+  int viscous_terms = 0;                               ///< 0..2
+  double viscous_time_min = 0;                         ///< [s]
+  std::array<double, 3> hourglass_weight{};            ///< 1 / (4 sqrt(3) h) [1/m]
+  std::array<double, 3> stretch_weight{};              ///< 1/h^2 over the sum of the three
+  double stretch_half_sum = 0;                         ///< half of that sum [1/m2]
+  std::vector<double> node_mass;                       ///< lumped [kg]
+  std::vector<float> weight_share;                     ///< mass before mass scaling over node_mass; empty: 1
+  std::vector<std::int32_t> held;                      ///< nodes whose motion is prescribed along all axes, ascending
+  std::vector<std::shared_ptr<AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
   double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

@@ -2,6 +2,7 @@
 
 #include "solver/contact/body_contact.hpp"
 #include "solver/contact/contact_stiffness.hpp"
+#include "solver/contact/tissue_contact.hpp"
 #include "solver/stepping/attached_nodes.hpp"
 #include "solver/stepping/nodal_loads.hpp"
 #include "solver/stepping/restricted_nodes.hpp"
@@ -18,6 +19,7 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
   parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass));
   parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
   parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));
+  parts.push_back(std::make_unique<TissueContact<Real>>(model, discretisation));
   return parts;
 }
 
@@ -35,12 +37,11 @@ std::vector<EnergyTerm> energy_terms_of_effects()
   };
 }
 
-std::vector<std::shared_ptr<const AddedStiffness>> added_stiffness(const Model& model,
-                                                                   const Discretisation& discretisation)
+std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation)
 {
-  std::vector<std::shared_ptr<const AddedStiffness>> added;
-  if (!model.contacts.empty())
-    added.push_back(std::make_shared<const ContactStiffness>(model, discretisation));
+  std::vector<std::shared_ptr<AddedStiffness>> added;
+  if (!model.contacts.empty() || !model.self_contacts.empty())
+    added.push_back(std::make_shared<ContactStiffness>(model, discretisation));
   return added;
 }
 

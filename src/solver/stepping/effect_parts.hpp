@@ -18,7 +18,6 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
 std::vector<EnergyTerm> energy_terms_of_effects();
 
 /// Stiffness that effects of a model add to its voxels. The voxels' bounds must not include it yet.
-std::vector<std::shared_ptr<const AddedStiffness>> added_stiffness(const Model& model,
-                                                                   const Discretisation& discretisation);
+std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation);
 
 }  // namespace frontalis

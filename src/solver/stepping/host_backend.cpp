@@ -96,6 +96,25 @@ std::vector<Reaction> HostBackend<Real, Relaxed>::reactions() const
 }
 
 template <class Real, class Relaxed>
+std::vector<RigidTransform> HostBackend<Real, Relaxed>::bodies() const
+{
+  std::vector<RigidTransform> all;
+  for (const auto& part : parts_)
+    for (const RigidTransform& pose : part->bodies(conditions_.bone))
+      all.push_back(pose);
+  return all;
+}
+
+template <class Real, class Relaxed>
+std::int64_t HostBackend<Real, Relaxed>::lost_points() const
+{
+  std::int64_t lost = 0;
+  for (const auto& part : parts_)
+    lost += part->lost_points();
+  return lost;
+}
+
+template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::save(std::unique_ptr<BackendState>& to)
 {
   if (!to)

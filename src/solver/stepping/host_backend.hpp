@@ -43,6 +43,8 @@ public:
   void restore(const BackendState& from) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
+  std::vector<RigidTransform> bodies() const override;
+  std::int64_t lost_points() const override;
   void skin(SkinState& out) override;
 
 protected:

@@ -59,9 +59,12 @@ class NodePart : public EffectPart
 public:
   /// If true, none of the other functions is called.
   virtual bool idle() const = 0;
+  /// Whether prepare_step() does anything. If so, threads wait for each other between it and before_step().
+  virtual bool prepares() const { return false; }
   /// Whether add_forces() adds any. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// Called with the displacements at the start of the step.
+  /// Both are called with the displacements at the start of the step.
+  virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
   /// Overwrites displacements and velocities after the update. `before`: displacements before it.
@@ -95,6 +98,10 @@ public:
   }
   /// Reactions of the latest step, one per entry of touched_bodies(model) that belongs to this effect.
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Present poses of these bodies, from those of the bones.
+  virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
+  /// Monitor::lost_points.
+  virtual std::int64_t lost_points() const { return 0; }
 };
 
 }  // namespace frontalis

@@ -83,6 +83,10 @@ public:
   /// See NodePart::add_energies.
   virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// Monitor::lost_points.
+  virtual std::int64_t lost_points() const { return 0; }
+  /// Present poses of the same bodies. One that is pushed has a pose of its own.
+  virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual void skin(SkinState& out) = 0;
 
 protected:

@@ -136,7 +136,9 @@ void TimeStepper::advance(double seconds, const Controls& target)
   const Stopwatch stopwatch(profile_.stepping);
   const double begin = motion_.time, end = begin + seconds;
   const Controls from = motion_.controls;
-  const double longest_step = motion_.bones.longest_step(from.bone, target.bone, seconds);
+  double longest_step = motion_.bones.longest_step(from.bone, target.bone, seconds);
+  for (const auto& stiffness : discretisation_.added)
+    longest_step = std::min(longest_step, model_->time_step_share * stiffness->longest_step());
   if (motion_.bones.jumps(from.bone, target.bone, seconds, time_step()))
     controller_.bone_jumped();
   if (seconds > 0)
@@ -310,6 +312,7 @@ Monitor TimeStepper::monitor()
   Monitor result = backend_->monitor();
   result.step_share =
       motion_.latest_step * std::sqrt(controller_.state().assembled.share()) / result.critical_time_step;
+  result.lost_points = backend_->lost_points();
   if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
   {
     NodalVectors u;

@@ -43,6 +43,7 @@ public:
   Monitor monitor() override;
   EnergyLedger ledger() override;
   std::vector<Reaction> reactions() const override { return backend_->reactions(); }
+  std::vector<RigidTransform> bodies() const override { return backend_->bodies(); }
   Profile profile() const override { return profile_; }
   void displacements(NodalVectors& out) const override { backend_->get(NodalField::displacements, out); }
   void set_displacements(const NodalVectors& in) override;

@@ -1,0 +1,38 @@
+#include "frontalis/bake/write_surfaces.hpp"
+
+#include "bake/mesh/surface.hpp"
+#include "bake/messages.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+namespace frontalis
+{
+
+void write_surfaces(const Scene& scene, const std::string& folder)
+{
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  for (const Surface& surface : scene.surfaces)
+  {
+    TriangleMesh mesh;
+    try
+    {
+      mesh = load_surface(surface, scene.unit).mesh;
+    }
+    catch (const Error& error)
+    {
+      throw Error(place_in_scene(scene, "surface", surface) + ": " + error.what());
+    }
+    const std::string path = (std::filesystem::path(folder) / (surface.name + ".obj")).string();
+    std::ofstream file(path);
+    for (const Vector3& p : mesh.vertices)
+      file << fmt::format("v {:.6f} {:.6f} {:.6f}\n", p[0], p[1], p[2]);
+    for (const Triangle& t : mesh.triangles)
+      file << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    if (!file.flush())
+      throw Error(path + ": cannot be written");
+  }
+}
+
+}  // namespace frontalis

@@ -1,0 +1,213 @@
+#include "bake/shapes/head/head.hpp"
+#include "bake/shapes/head/muscle_net.hpp"
+
+#include "bake/messages.hpp"
+#include "bake/mesh/surface.hpp"
+
+#include <mutex>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double default_edge = 1.75e-3;  // [m]
+constexpr int default_levels = 2;         // of the skin that depths are measured from
+
+/// Steps of subdivision after which edges are at most `edge` long on average.
+int levels_for(const PolygonMesh& cage, double edge)
+{
+  double sum = 0, count = 0;
+  for (const auto& face : cage.faces)
+    for (std::size_t c = 0; c < face.size(); ++c, ++count)
+      sum += (cage.vertices[face[c]] - cage.vertices[face[(c + 1) % face.size()]]).norm();
+  return std::min(5, std::max(1, static_cast<int>(std::ceil(std::log2(sum / count / edge) - 0.2))));
+}
+
+std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
+{
+  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
+  for (const Triangle& t : mesh.triangles)
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    for (const std::int32_t v : t)
+      normals[v] += (b - a).cross(c - a);
+  }
+  for (Vector3d& n : normals)
+    n.normalize();
+  return normals;
+}
+
+}  // namespace
+
+Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions)
+    : head_(std::move(head))
+{
+  cage_ = with_mirror_image(read_polygons(head_->cage, head_->unit), 1, &mirror_);
+  default_skin_ = subdivide(cage_, default_levels);
+  normals_ = vertex_normals(default_skin_);
+  tree_.emplace(default_skin_);
+  for (const auto& [name, v] : head_->landmarks)
+  {
+    if (v >= static_cast<int>(mirror_.size()))
+      throw failure("{}: landmark '{}' is vertex {}; {} has {}", head_->file, name, v + 1, head_->cage, mirror_.size());
+    landmarks_[name] = vertex(default_skin_, v);
+    if (mirror_[v] == v)
+      landmarks_[name][1] = 0;
+  }
+  warp_.emplace(*head_, landmarks_, dimensions);
+  bones_.emplace(*head_, *tree_);
+}
+
+TriangleMesh Head::skin(const std::string& name, double edge) const
+{
+  // `face` is what has a dermis; `visible` also lines nostrils and lips; `skin` is closed by the mouth and the sacs
+  // behind the lids
+  std::vector<std::string> groups;
+  if (name != "skin")
+    groups = { "face", "scalp", "neck", "ear", "lid", "lid_margin", "lips" };
+  if (name == "visible")
+    groups.insert(groups.end(), { "nostril", "mucosa" });
+  TriangleMesh mesh = subdivide(cage_, levels_for(cage_, edge), groups);
+  if (!groups.empty())
+    mesh = keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
+  for (Vector3& p : mesh.vertices)
+    p = to_array((*warp_)(to_vector(p)));
+  return mesh;
+}
+
+TriangleMesh Head::eye(bool left, double edge) const
+{
+  Shape sphere;
+  sphere.kind = Shape::Kind::sphere;
+  Vector3d centre = (*warp_)(to_vector(head_->eye));
+  centre[1] = left ? centre[1] : -centre[1];
+  sphere.centre = to_array(centre);
+  sphere.radius = head_->eye_radius;
+  sphere.edge = std::min(edge, 1e-3);
+  return make_shape(sphere);
+}
+
+TriangleMesh Head::bone(const std::string& name, double edge) const
+{
+  // a margin of bone beyond the skin is never reached
+  Box half = bounding_box(default_skin_);
+  half.min()[1] = 0;
+  half.min()[2] = name == "skull" ? -90e-3 : -122e-3;
+  if (name != "skull")
+  {
+    half.min()[0] = -100e-3;
+    half.max()[2] = -24e-3;
+    half.max()[1] = 70e-3;
+  }
+  TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge);
+  for (Vector3& p : mesh.vertices)
+  {
+    const bool middle = p[1] == 0;
+    p = to_array((*warp_)(to_vector(p)));
+    if (middle)
+      p[1] = 0;
+  }
+  return mesh;
+}
+
+TriangleMesh Head::part(const std::string& name, double wanted_edge) const
+{
+  const double edge = wanted_edge > 0 ? wanted_edge : default_edge;
+  if (name == "skin" || name == "face" || name == "visible")
+    return skin(name, edge);
+  if (name == "eye_left" || name == "eye_right")
+    return eye(name == "eye_left", edge);
+  if (name == "skull" || name == "mandible" || name == "teeth_upper" || name == "teeth_lower")
+    return bone(name, edge);
+  if (const auto muscle = net(name))
+    return net_surface(*muscle, edge);
+  throw failure("head: there is no part '{}'; there are {}", name, fmt::join(head_->parts(), ", "));
+}
+
+Vector3d Head::landmark(const std::string& name, bool right) const
+{
+  const auto found = landmarks_.find(name);
+  if (found == landmarks_.end())
+    throw failure("head: there is no landmark '{}'", name);
+  Vector3d p = found->second;
+  p[1] = right ? -p[1] : p[1];
+  return (*warp_)(p);
+}
+
+double Head::dimension(const std::string& name) const
+{
+  for (const auto& d : head_->dimensions)
+    if (d.name == name)
+      return (landmark(d.from) - (d.to.empty() ? landmark(d.from, true) : landmark(d.to))).norm();
+  throw failure("head: there is no dimension '{}'", name);
+}
+
+Head::Below Head::below(const Vector3d& p) const
+{
+  constexpr double most = 20e-3, step = 0.25e-3;  // [m]
+  const ClosestPoint closest = tree_->closest(p);
+  Below found;
+  found.skin = closest.point;
+  // a mean of the corners' normals, which varies smoothly
+  const Triangle& t = default_skin_.triangles[closest.triangle];
+  const auto [a, b, c] = corners(default_skin_, t);
+  found.normal = ((b - closest.point).cross(c - closest.point).norm() * normals_[t[0]] +
+                  (c - closest.point).cross(a - closest.point).norm() * normals_[t[1]] +
+                  (a - closest.point).cross(b - closest.point).norm() * normals_[t[2]])
+                     .normalized();
+  // down to the bone, or to the mucosa that lines lids and mouth
+  const Vector3d start = found.skin - step * found.normal;
+  found.thickness = 2 * step;
+  while (found.thickness < most)
+  {
+    const Vector3d at = found.skin - found.thickness * found.normal;
+    if (bones_->any(at) < 0 || tree_->crossed_by(start, at))
+      break;
+    found.thickness += step;
+  }
+  return found;
+}
+
+std::optional<ControlNet> Head::net(const std::string& part) const
+{
+  for (const auto& muscle : head_->muscles)
+  {
+    const bool left = muscle.sided && part == muscle.name + "_left";
+    const bool right = muscle.sided && part == muscle.name + "_right";
+    if (!left && !right && (muscle.sided || part != muscle.name))
+      continue;
+    ControlNet net = left_net(muscle);
+    for (Vector3& p : net.points)
+    {
+      if (right)
+        p[1] = -p[1];
+      p = to_array((*warp_)(to_vector(p)));
+    }
+    return net;
+  }
+  return std::nullopt;
+}
+
+std::shared_ptr<const Head> head_of(const Shape& shape)
+{
+  // a scene has some sixty parts of one head; those of the last scene are kept
+  static std::mutex mutex;
+  static std::shared_ptr<const HeadTemplate> last_template;
+  static std::map<std::string, double> last_dimensions;
+  static std::shared_ptr<const Head> last;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (!last || last_template != shape.head || last_dimensions != shape.dimensions)
+  {
+    last = std::make_shared<Head>(shape.head, shape.dimensions);
+    last_template = shape.head;
+    last_dimensions = shape.dimensions;
+  }
+  return last;
+}
+
+TriangleMesh make_head(const Shape& shape) { return head_of(shape)->part(shape.part, shape.edge); }
+
+std::optional<ControlNet> head_muscle_net(const Shape& shape) { return head_of(shape)->net(shape.part); }
+
+}  // namespace frontalis

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "solver/stepping/array_list.hpp"
+
+#include "frontalis/model/model.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+
+/// Finds how far the nodes of bound points move in a step.
+class BoundNodeWay
+{
+public:
+  BoundNodeWay() = default;
+  BoundNodeWay(const Model& model, const Binding& points);
+
+  /// Longest way [m] of a bound node in a plane of nodes, from displacements before and after the step.
+  template <class Real>
+  double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
+  /// Largest ratio of a point's way to that of the nodes of its voxel.
+  double spread() const { return spread_; }
+  void list_arrays(ArrayList& list, Effect effect) const;
+
+private:
+  // nodes [first, last), of which nearly all are bound
+  struct Run
+  {
+    std::int32_t first, last;
+  };
+  double spread_ = 1;
+  std::vector<Run> runs_;                 // runs that contain all bound nodes, ascending
+  std::vector<std::int32_t> plane_runs_;  // first run in each plane of nodes, then twice the number of runs
+};
+
+}  // namespace frontalis

@@ -1,0 +1,299 @@
+#include "solver/contact/touching_surface.hpp"
+
+#include "frontalis/physics/trilinear.hpp"
+#include "solver/contact/body_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <queue>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = TouchingSurface::Vector;
+
+// Lengths in voxel edges: parts of a surface that are nearer to each other along it never touch; points at most this
+// far behind a triangle at rest may touch it, those that are deeper and within the reach of a sheet are its other side.
+constexpr double joined_within = 2;
+constexpr double overlap_at_rest = 0.25;
+constexpr double thickest_sheet = 3;
+
+// Cosine of the angle from a triangle's inward normal within which the other side of its sheet lies.
+constexpr double across_sheet = 0.5;
+
+// Cosine of the angle between two triangles from which on their edge is a crease: there the surface has two normals.
+constexpr double crease = 0.5;
+
+struct Facet
+{
+  Vector area;    // normal as long as the triangle is large [m2]
+  Vector normal;  // unit vector
+};
+
+std::vector<Facet> facets_of(const TriangleMesh& mesh)
+{
+  std::vector<Facet> facets;
+  for (const auto& t : mesh.triangles)
+  {
+    const Vector a = vector(mesh.vertices[t[0]]);
+    const Vector area = 0.5 * cross(vector(mesh.vertices[t[1]]) - a, vector(mesh.vertices[t[2]]) - a);
+    facets.push_back({ area, (1 / std::max(norm(area), 1e-30)) * area });
+  }
+  return facets;
+}
+
+// The triangle across the edge opposite to each corner, if the two are the only ones there, turn the same way and meet
+// smoothly; else -1.
+std::vector<std::array<std::int32_t, 3>> smooth_neighbours(const TriangleMesh& mesh, const std::vector<Facet>& facets)
+{
+  using Side = std::pair<std::int32_t, std::size_t>;  // triangle and corner
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Side>> edges;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const auto from = mesh.triangles[t][(i + 1) % 3], to = mesh.triangles[t][(i + 2) % 3];
+      edges[std::minmax(from, to)].push_back({ static_cast<std::int32_t>(t), i });
+    }
+  std::vector<std::array<std::int32_t, 3>> neighbours(mesh.triangles.size(), { { -1, -1, -1 } });
+  for (const auto& [ends, sides] : edges)
+  {
+    if (sides.size() != 2)
+      continue;
+    const auto [t, i] = sides[0];
+    const auto [s, j] = sides[1];
+    const bool same_turn = mesh.triangles[t][(i + 1) % 3] == mesh.triangles[s][(j + 2) % 3];
+    if (!same_turn || dot(facets[t].normal, facets[s].normal) < crease)
+      continue;
+    neighbours[t][i] = s;
+    neighbours[s][j] = t;
+  }
+  return neighbours;
+}
+
+void set_frame(TouchingSurface::Vertex& v, const std::array<double, 3>& spacing)
+{
+  const Vector& n = v.normal;
+  const Vector axis = std::abs(n.x) < 0.7 ? Vector{ 1, 0, 0 } : Vector{ 0, 1, 0 };
+  const Vector first = cross(axis, n);
+  v.tangent[0] = (1 / norm(first)) * first;
+  v.tangent[1] = cross(n, v.tangent[0]);
+  const double c[3] = { double(v.coordinates[0]), double(v.coordinates[1]), double(v.coordinates[2]) };
+  for (std::size_t k = 0; k < 2; ++k)
+  {
+    const Vector& t = v.tangent[k];
+    const double direction[3] = { t.x / spacing[0], t.y / spacing[1], t.z / spacing[2] };
+    for (int b = 0; b < 8; ++b)
+    {
+      double sum = 0;
+      for (int axis_of = 0; axis_of < 3; ++axis_of)
+      {
+        double product = ((b >> axis_of) & 1) != 0 ? direction[axis_of] : -direction[axis_of];
+        for (int other = 0; other < 3; ++other)
+          if (other != axis_of)
+            product *= ((b >> other) & 1) != 0 ? c[other] : 1 - c[other];
+        sum += product;
+      }
+      v.along[k][b] = static_cast<float>(sum);
+    }
+  }
+}
+
+}  // namespace
+
+TouchingSurface::TouchingSurface(const Model& model)
+    : edge(*std::min_element(model.spacing.begin(), model.spacing.end())), model_(model)
+{
+  std::int32_t sources = 0;
+  joined_begin_.assign(1, 0);
+  for (std::size_t c = 0; c < model.self_contacts.size(); ++c)
+  {
+    add(static_cast<std::int32_t>(c), sources);
+    sources += static_cast<std::int32_t>(model.self_contacts[c].surface.vertices.size());
+  }
+  sort_vertices();
+}
+
+void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
+{
+  const SelfContact& from = model_.self_contacts[contact];
+  const TriangleMesh& mesh = from.surface;
+  const std::vector<Facet> facets = facets_of(mesh);
+  const auto neighbours = smooth_neighbours(mesh, facets);
+  const auto first_triangle = static_cast<std::int32_t>(triangles.size());
+  for (const auto& around : neighbours)
+  {
+    triangles.push_back({ { { -1, -1, -1 } }, { { -1, -1, -1 } } });
+    for (std::size_t i = 0; i < 3; ++i)
+      triangles.back().neighbour[i] = around[i] < 0 ? -1 : first_triangle + around[i];
+  }
+  const std::vector<double> areas = vertex_areas(mesh);
+  std::vector<std::int32_t> fan;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      if (triangles[first_triangle + t].vertex[i] >= 0)
+        continue;
+      // the triangles around this corner that meet smoothly share a vertex
+      const std::int32_t source = mesh.triangles[t][i];
+      Vector normal{ 0, 0, 0 };
+      double area = 0;
+      fan.assign(1, static_cast<std::int32_t>(t));
+      for (std::size_t f = 0; f < fan.size(); ++f)
+      {
+        const auto& corners = mesh.triangles[fan[f]];
+        const std::size_t corner = std::find(corners.begin(), corners.end(), source) - corners.begin();
+        auto& vertex = triangles[first_triangle + fan[f]].vertex[corner];
+        if (vertex >= 0)
+          continue;
+        vertex = static_cast<std::int32_t>(vertices.size());
+        normal = normal + facets[fan[f]].area;
+        area += norm(facets[fan[f]].area) / 3;
+        for (const std::size_t side : { (corner + 1) % 3, (corner + 2) % 3 })
+          if (neighbours[fan[f]][side] >= 0)
+            fan.push_back(neighbours[fan[f]][side]);
+      }
+      Vertex v;
+      v.voxel = from.binding.voxel[source];
+      v.contact = contact;
+      v.source_in_contact = source;
+      v.source = first_source + source;
+      v.coordinates = from.binding.coordinates[source];
+      v.area_share = static_cast<float>(area / std::max(areas[source], 1e-30));
+      v.rest = vector(mesh.vertices[source]);
+      v.normal = (1 / std::max(norm(normal), 1e-30)) * normal;
+      set_frame(v, model_.spacing);
+      vertices.push_back(v);
+    }
+  join(mesh, first_source, joined_within * *std::max_element(model_.spacing.begin(), model_.spacing.end()));
+}
+
+// The shortest ways along edges from each vertex, as far as `within` [m].
+void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, double within)
+{
+  std::vector<std::vector<std::int32_t>> around(mesh.vertices.size());
+  for (const auto& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (const std::size_t other : { (i + 1) % 3, (i + 2) % 3 })
+        around[t[i]].push_back(t[other]);
+  std::vector<double> way(mesh.vertices.size(), within);
+  using Reached = std::pair<double, std::int32_t>;
+  for (std::size_t v = 0; v < around.size(); ++v)
+  {
+    std::vector<std::int32_t> reached;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
+    front.push({ 0, static_cast<std::int32_t>(v) });
+    way[v] = 0;
+    while (!front.empty())
+    {
+      const auto [at, from] = front.top();
+      front.pop();
+      if (at > way[from])
+        continue;
+      reached.push_back(from);
+      for (const auto to : around[from])
+      {
+        const double next = at + norm(vector(mesh.vertices[to]) - vector(mesh.vertices[from]));
+        if (next < way[to])
+        {
+          way[to] = next;
+          front.push({ next, to });
+        }
+      }
+    }
+    std::sort(reached.begin(), reached.end());
+    reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    for (const auto r : reached)
+    {
+      way[r] = within;
+      joined_.push_back(first_source + r);
+    }
+    joined_begin_.push_back(static_cast<std::int32_t>(joined_.size()));
+  }
+}
+
+void TouchingSurface::sort_vertices()
+{
+  std::vector<std::int32_t> order(vertices.size()), rank(vertices.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return vertices[a].voxel < vertices[b].voxel; });
+  std::vector<Vertex> sorted;
+  for (const auto v : order)
+  {
+    rank[v] = static_cast<std::int32_t>(sorted.size());
+    sorted.push_back(vertices[v]);
+  }
+  vertices = std::move(sorted);
+  for (Triangle& t : triangles)
+    for (auto& v : t.vertex)
+      v = rank[v];
+}
+
+Binding TouchingSurface::binding() const
+{
+  Binding all;
+  for (const Vertex& vertex : vertices)
+  {
+    all.voxel.push_back(vertex.voxel);
+    all.coordinates.push_back(vertex.coordinates);
+  }
+  return all;
+}
+
+void TouchingSurface::list_arrays(ArrayList& list, Effect effect) const
+{
+  if (vertices.empty())
+    return;
+  list.add(effect, "vertices", vertices);
+  list.add(effect, "triangles", triangles);
+  list.add(effect, "joined vertices", joined_begin_);
+  list.add(effect, "joined vertices", joined_);
+}
+
+bool TouchingSurface::inseparable(std::size_t v, std::int32_t t) const
+{
+  const Vertex& point = vertices[v];
+  const auto begin = joined_.begin() + joined_begin_[point.source];
+  const auto end = joined_.begin() + joined_begin_[point.source + 1];
+  const auto& corners = triangles[t].vertex;
+  for (const auto corner : corners)
+    if (std::binary_search(begin, end, vertices[corner].source))
+      return true;
+  const Vector &a = vertices[corners[0]].rest, &b = vertices[corners[1]].rest, &c = vertices[corners[2]].rest;
+  const Vector normal = cross(b - a, c - a), way = point.rest - (1.0 / 3) * (a + b + c);
+  const double length = norm(way);
+  return length < thickest_sheet * edge &&
+         dot(way, normal) < -std::max(overlap_at_rest * edge, across_sheet * length) * norm(normal);
+}
+
+template <class Real>
+void TouchingSurface::place(std::size_t v, const Real* const u[3], Placed& at) const
+{
+  const Vertex& vertex = vertices[v];
+  const auto& nodes = model_.voxel_nodes[vertex.voxel];
+  double weight[8];
+  physics::trilinear_weights<double>(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
+  Vector place = vertex.rest, first = vertex.tangent[0], second = vertex.tangent[1];
+  for (std::size_t b = 0; b < 8; ++b)
+  {
+    const Vector moved{ double(u[0][nodes[b]]), double(u[1][nodes[b]]), double(u[2][nodes[b]]) };
+    place = place + weight[b] * moved;
+    first = first + double(vertex.along[0][b]) * moved;
+    second = second + double(vertex.along[1][b]) * moved;
+  }
+  const Vector area = cross(first, second);
+  at.before = at.place;
+  at.place = place;
+  const double scale = 1 / std::max(norm(area), 1e-12);
+  at.normal = scale * area;
+  at.dual = { { scale * cross(second, at.normal), scale * cross(at.normal, first) } };
+}
+
+template void TouchingSurface::place(std::size_t, const float* const[3], Placed&) const;
+template void TouchingSurface::place(std::size_t, const double* const[3], Placed&) const;
+
+}  // namespace frontalis

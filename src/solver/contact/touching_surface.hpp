@@ -1,0 +1,83 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/physics/surface_foot.hpp"
+#include "solver/stepping/array_list.hpp"
+
+#include <array>
+#include <vector>
+
+namespace frontalis
+{
+
+/// The surfaces of a model that touch each other, made ready for contact: vertices sorted by voxel, one for each smooth
+/// part of the surface at a crease, neighbours of triangles, and which of them are joined at rest.
+class TouchingSurface
+{
+public:
+  using Vector = physics::Vec3<double>;
+  struct Vertex
+  {
+    std::int32_t voxel;
+    std::int32_t contact;              // index into Model::self_contacts
+    std::int32_t source_in_contact;    // the vertex of the contact's surface that it is
+    std::int32_t source;               // the same, counted over all contacts
+    std::array<float, 3> coordinates;  // in the voxel
+    float area_share;                  // of its source's area
+    Vector rest;
+    Vector normal;                  // at rest, unit vector
+    std::array<Vector, 2> tangent;  // their cross product is the normal
+    // weights of the voxel's nodes for the derivatives of the displacement along the tangents [1/m]
+    std::array<std::array<float, 8>, 2> along;
+  };
+  struct Triangle
+  {
+    std::array<std::int32_t, 3> vertex;
+    /// Triangle across the edge opposite to each corner; -1: the surface ends there or has a crease.
+    std::array<std::int32_t, 3> neighbour;
+  };
+  /// A vertex in motion.
+  struct Placed
+  {
+    Vector place, normal;
+    Vector before;  // its place in the step before
+    std::array<Vector, 2>
+        dual;  // to the tangents: the normal turns by minus their sum, each times normal . tangent's change
+  };
+
+  explicit TouchingSurface(const Model& model);
+
+  template <class Real>
+  void place(std::size_t v, const Real* const u[3], Placed& at) const;
+  physics::SurfaceTriangle<double> triangle(std::int32_t t, const std::vector<Placed>& placed) const
+  {
+    physics::SurfaceTriangle<double> out;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const Placed& corner = placed[triangles[t].vertex[i]];
+      out.corner[i] = corner.place;
+      out.normal[i] = corner.normal;
+    }
+    return out;
+  }
+  /// Whether a vertex and a triangle never touch: they are joined along the surface by less than `joined_within`, or
+  /// are two sides of one sheet of tissue.
+  bool inseparable(std::size_t v, std::int32_t t) const;
+
+  Binding binding() const;  ///< of the vertices
+  void list_arrays(ArrayList& list, Effect effect) const;
+
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  double edge;  ///< shortest voxel edge [m]
+
+private:
+  void add(std::int32_t contact, std::int32_t first_source);
+  void join(const TriangleMesh& mesh, std::int32_t first_source, double within);
+  void sort_vertices();
+
+  const Model& model_;
+  std::vector<std::int32_t> joined_begin_, joined_;  // of each source: the sources near it along the surface, ascending
+};
+
+}  // namespace frontalis

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+#include "solver/stepping/array_list.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// A uniform grid of points whose cells are hashed into a table, so that memory does not depend on how far they spread.
+class TriangleGrid
+{
+public:
+  using Vector = physics::Vec3<double>;
+
+  void resize(std::size_t count);
+  void list_arrays(ArrayList& list, Effect effect);
+  /// Sorts points into cells of edge `reach` [m].
+  void build(double reach, const std::vector<Vector>& points);
+  double reach() const { return edge_[0]; }
+  /// Calls visit(index) for all points within the reach of p, and others; some twice.
+  template <class Visit>
+  void near(const Vector& p, const Visit& visit) const
+  {
+    const auto [i, j, k] = cell(p);
+    for (std::int64_t z = k - 1; z <= k + 1; ++z)
+      for (std::int64_t y = j - 1; y <= j + 1; ++y)
+        for (std::int64_t x = i - 1; x <= i + 1; ++x)
+        {
+          const std::size_t bucket = hash(x, y, z);
+          for (auto e = begin_[bucket]; e < begin_[bucket + 1]; ++e)
+            visit(entries_[e]);
+        }
+  }
+
+private:
+  std::array<std::int64_t, 3> cell(const Vector& p) const
+  {
+    // what is not finite is anywhere
+    const auto index = [&](double x)
+    { return std::abs(x) < 1e9 * edge_[0] ? static_cast<std::int64_t>(std::floor(x / edge_[0])) : std::int64_t(0); };
+    return { { index(p.x), index(p.y), index(p.z) } };
+  }
+  // primes of Teschner et al., Optimized spatial hashing for collision detection of deformable objects, VMV 2003
+  std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    const auto mixed = static_cast<std::uint64_t>(x) * 73856093u ^ static_cast<std::uint64_t>(y) * 19349663u ^
+                       static_cast<std::uint64_t>(z) * 83492791u;
+    return static_cast<std::size_t>(mixed & (begin_.size() - 2));
+  }
+
+  std::vector<double> edge_ = std::vector<double>(1, 1.0);  // one entry [m]
+  std::vector<std::int32_t> begin_;                         // of each bucket; their number is a power of 2
+  std::vector<std::int32_t> entries_;
+};
+
+}  // namespace frontalis

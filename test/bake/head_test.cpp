@@ -1,0 +1,213 @@
+// The parametric head of config/head/: its skin, dimensions, bones and muscles, and the subdivision that makes its
+// skin.
+
+#include "bake/mesh/surface.hpp"
+#include "bake/shapes/head/head.hpp"
+
+#include "frontalis/error.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace
+{
+
+using namespace frontalis;
+
+std::shared_ptr<const HeadTemplate> shipped()
+{
+  static const auto head = read_head_template(FRONTALIS_SOURCE_DIRECTORY "/config/head/head.yaml");
+  return head;
+}
+
+const Head& default_head()
+{
+  static const Head head(shipped(), {});
+  return head;
+}
+
+/// Largest distance [m] of a mirrored vertex from the closest point of the mesh.
+double asymmetry(const TriangleMesh& mesh, const TriangleMesh& image)
+{
+  const TriangleTree tree(mesh);
+  double worst = 0;
+  for (const Vector3& p : image.vertices)
+    worst = std::max(worst, tree.closest({ p[0], -p[1], p[2] }).distance);
+  return worst;
+}
+
+TEST(Head, HasDimensionsWithinOneDeviationOfTheMeans)
+{
+  EXPECT_GE(shipped()->dimensions.size(), 25u);
+  for (const auto& d : shipped()->dimensions)
+    EXPECT_LE(std::abs(default_head().dimension(d.name) - d.mean), d.deviation) << d.name;
+}
+
+TEST(Head, TakesEachDimensionThatIsAskedFor)
+{
+  for (const auto& d : shipped()->dimensions)
+  {
+    if (!d.derived_from.empty())
+      continue;
+    for (const double side : { -1.0, 1.0 })
+    {
+      const double wanted = d.mean + side * d.deviation;
+      SCOPED_TRACE(d.name);
+      ASSERT_NO_THROW(EXPECT_NEAR(Head(shipped(), { { d.name, wanted } }).dimension(d.name), wanted, 1e-3));
+    }
+  }
+}
+
+TEST(Head, HasItsLandmarksOnTheSkinAlsoWhenChanged)
+{
+  const Head head(shipped(), { { "zy_zy", 0.145 }, { "n_sn", 0.056 } });
+  const TriangleMesh skin = head.part("skin", 2e-3);
+  const TriangleTree tree(skin);
+  for (const auto& [name, v] : shipped()->landmarks)
+    EXPECT_LT(tree.closest(head.landmark(name)).distance, 2e-4) << name;
+}
+
+TEST(Head, RefusesDimensionsThatContradictEachOther)
+{
+  try
+  {
+    const Head head(shipped(), { { "n_gn", 0.105 } });
+    FAIL();
+  }
+  catch (const Error& error)
+  {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("n_gn"), std::string::npos) << text;
+    EXPECT_NE(text.find("n_sn"), std::string::npos) << text;
+  }
+  EXPECT_THROW(Head(shipped(), { { "nose", 0.05 } }), Error);
+  EXPECT_THROW(Head(shipped(), { { "zy_zy", 0.25 } }), Error);
+}
+
+TEST(Head, IsClosedAndMirrorsItself)
+{
+  for (const char* part : { "skin", "skull", "mandible", "teeth_upper", "teeth_lower" })
+  {
+    TriangleMesh mesh = default_head().part(part, 3e-3);
+    join_vertices(mesh);
+    EXPECT_TRUE(unbalanced_edges(mesh).empty()) << part;
+    EXPECT_GT(signed_volume(mesh), 0) << part;
+    double middle = 0;
+    for (const Vector3& p : mesh.vertices)
+      middle += p[1];
+    EXPECT_LT(std::abs(middle), 1e-9 * static_cast<double>(mesh.vertices.size())) << part;
+  }
+  // vertices of the skin have images; its triangles need not, because a square has two diagonals
+  const TriangleMesh skin = default_head().part("skin", 3e-3);
+  const auto less = [](const Vector3& a, const Vector3& b) { return a < b; };
+  const auto rounded = [](const Vector3& p, double side) {
+    return Vector3{ std::round(p[0] * 1e8), std::round(side * p[1] * 1e8) + 0.0, std::round(p[2] * 1e8) };
+  };
+  std::vector<Vector3> there, image;
+  for (const Vector3& p : skin.vertices)
+  {
+    there.push_back(rounded(p, 1));
+    image.push_back(rounded(p, -1));
+  }
+  std::sort(there.begin(), there.end(), less);
+  std::sort(image.begin(), image.end(), less);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < there.size(); ++i)
+    different += there[i] != image[i] ? 1 : 0;
+  EXPECT_LE(different, there.size() / 500) << "rounding alone may part a few";
+}
+
+TEST(Head, HasBonesAtTheDepthsOfItsTable)
+{
+  const TriangleMesh bones = [&]
+  {
+    TriangleMesh all = default_head().part("skull", 1.5e-3);
+    append(all, default_head().part("mandible", 1.5e-3));
+    return all;
+  }();
+  const TriangleTree tree(bones);
+  const TriangleMesh skin = default_head().part("skin", 2e-3);
+  const TriangleTree skin_tree(skin);
+  for (const auto& site : shipped()->depths)
+    for (const char* name : { "glabella", "supraglabella", "frontal", "nasion", "malar", "zygion", "euryon",
+                              "mental_eminence", "chin_side", "gonion", "opisthocranion" })
+      if (site.name == name)
+      {
+        const Vector3d p = skin_tree.closest(to_vector(site.at)).point;
+        // the closest bone is nearer than the depth where it is measured along a direction of its own
+        EXPECT_NEAR(tree.closest(p).distance, site.depth, 0.15 * site.depth + 0.5e-3) << site.name;
+      }
+}
+
+TEST(Head, HasClosedMusclesThatMirrorEachOther)
+{
+  for (const auto& muscle : shipped()->muscles)
+  {
+    TriangleMesh left = default_head().part(muscle.name + (muscle.sided ? "_left" : ""), 2e-3);
+    join_vertices(left);
+    EXPECT_TRUE(unbalanced_edges(left).empty()) << muscle.name;
+    EXPECT_GT(std::abs(signed_volume(left)), 1e-9) << muscle.name;
+    if (muscle.sided)
+    {
+      const TriangleMesh right = default_head().part(muscle.name + "_right", 2e-3);
+      EXPECT_LT(asymmetry(left, right), 1e-9) << muscle.name;
+    }
+  }
+  EXPECT_THROW(default_head().part("tail", 0), Error);
+}
+
+PolygonMesh cube()
+{
+  PolygonMesh mesh;
+  for (int c = 0; c < 8; ++c)
+    mesh.vertices.emplace_back(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1);
+  mesh.faces = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+  mesh.groups.assign(6, 0);
+  mesh.groups[1] = 1;
+  mesh.group_names = { "rest", "top" };
+  return mesh;
+}
+
+TEST(Subdivision, HasTheSameLimitAtEveryLevel)
+{
+  const TriangleMesh coarse = subdivide(cube(), 1), fine = subdivide(cube(), 4);
+  EXPECT_EQ(coarse.triangles.size(), 6u * 4 * 2);
+  EXPECT_TRUE(unbalanced_edges(fine).empty());
+  // valence 3: (9 v + 4 sum of neighbours + sum of opposite corners) / 24, each sum of which is 1 and -1 along an axis
+  const double corner = (9.0 + 4 * 1 - 1) / 24;
+  for (std::size_t v = 0; v < coarse.vertices.size(); ++v)
+    EXPECT_LT((vertex(coarse, static_cast<std::int32_t>(v)) - vertex(fine, static_cast<std::int32_t>(v))).norm(),
+              1e-12);
+  EXPECT_NEAR(fine.vertices[7][0], corner, 1e-12);
+  EXPECT_EQ(subdivide(cube(), 2, { "top" }).triangles.size(), 16u * 2);
+}
+
+TEST(Subdivision, RefusesACageThatIsNoManifold)
+{
+  PolygonMesh twice = cube();
+  twice.faces.push_back(twice.faces.front());
+  twice.groups.push_back(0);
+  EXPECT_THROW(subdivide(twice, 1), Error);
+}
+
+TEST(Subdivision, MirrorsAndSmoothsAFile)
+{
+  const std::string file = (std::filesystem::temp_directory_path() / "frontalis_half_cube.obj").string();
+  std::ofstream(file) << "v 0 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv 0 1 -1\nv 0 -1 1\nv 1 -1 1\nv 1 1 1\nv 0 1 1\n"
+                         "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 2 3 7 6\n";
+  Surface surface = file_surface("cube", file);
+  surface.subdivide = 3;
+  surface.mirror = 0;
+  const TriangleMesh mesh = load_surface(surface, 1).mesh;
+  EXPECT_TRUE(unbalanced_edges(mesh).empty());
+  EXPECT_EQ(mesh.triangles.size(), 10u * 64 * 2);
+  EXPECT_LT(signed_volume(mesh), 8);
+  EXPECT_GT(signed_volume(mesh), 3.5);
+  std::filesystem::remove(file);
+}
+
+}  // namespace

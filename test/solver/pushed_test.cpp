@@ -1,0 +1,171 @@
+// Bodies that are pushed into tissue by forces, and bodies that get too deep into it.
+
+#include "bodies_touch.hpp"
+
+#include "frontalis/solver/guard.hpp"
+#include "solver/stepping/discretisation.hpp"
+
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+using namespace test;
+
+// The finger of block_and_finger(), pushed.
+Model block_and_pushed_finger(double mass, double spring, double damping)
+{
+  Model model = block_and_finger(0.3);
+  Contact& contact = model.contacts[0];
+  contact.centre = { { 4e-3, 4e-3, 8.2e-3 } };
+  contact.mass = mass;
+  contact.spring = spring;
+  contact.damping = damping;
+  return model;
+}
+
+std::array<double, 3> offset(const Solver& solver)
+{
+  std::array<double, 3> way = solver.bodies()[0].translation;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    way[axis] -= solver.controls().bone[1].translation[axis];
+  return way;
+}
+
+// A block flies against a free plate.
+TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
+{
+  BlockSettings settings;
+  settings.voxels = { { 5, 4, 4 } };
+  Model model = block_model(settings);
+  model.contacts.push_back(touching_side(model, true, plate(4.05e-3, 1)));
+  model.contacts[0].mass = 40e-6;
+  model.contacts[0].friction = 0.4;
+  const Discretisation discretisation(model);
+  const auto solver = make(model);
+  const std::array<double, 3> velocity{ { 0.05, -0.02, 0.3 } };
+  solver->set_velocities(Vectors(model.nodes.size(), velocity));
+  const auto weighted = [&]
+  {
+    std::array<double, 3> sum{};
+    const Vectors u = displacements(*solver);
+    for (std::size_t n = 0; n < u.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum[axis] += discretisation.node_mass[n] * u[n][axis];
+    return sum;
+  };
+  solver->advance(4e-3, solver->controls());
+  EXPECT_EQ(solver->reactions()[0].force[2], 0);  // they have parted
+  const double mass = std::accumulate(discretisation.node_mass.begin(), discretisation.node_mass.end(), 0.0);
+  const double initial = mass * 0.3, time = 2e-3;
+  const auto block = weighted();
+  const auto body = solver->bodies()[0].translation;
+  solver->advance(time, solver->controls());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const double of_block = (weighted()[axis] - block[axis]) / time;
+    const double of_body = 40e-6 * (solver->bodies()[0].translation[axis] - body[axis]) / time;
+    EXPECT_NEAR(of_block + of_body, mass * velocity[axis], 1e-5 * initial) << axis;
+    if (axis == 2)
+    {
+      EXPECT_GT(of_body, 0.3 * initial);
+    }
+  }
+}
+
+TEST_P(BodiesTouch, a_pushed_body_comes_to_rest_where_its_forces_balance)
+{
+  // a constant force
+  Model model = block_and_pushed_finger(2e-3, 0, 0.5);
+  model.contacts[0].force = { { 0, 0, -0.02 } };
+  auto solver = make(model);
+  solver->advance(0.4, solver->controls());
+  EXPECT_NEAR(solver->reactions()[0].force[2], 0.02, 0.01 * 0.02);
+
+  // a spring to its bone, which goes down; the frame of the bone is elsewhere
+  model = block_and_pushed_finger(2e-3, 40, 0.5);
+  solver = make(model);
+  Controls controls = solver->controls();
+  controls.bone[1] = rigid_motion({ { 0, 0.02, 0 } }, { { 0, 0, -1e-3 } });
+  solver->advance(20e-3, controls);
+  solver->advance(0.4, controls);
+  for (const std::size_t axis : { 0, 2 })
+    EXPECT_NEAR(solver->reactions()[0].force[axis], 40 * offset(*solver)[axis], 1e-4) << axis;
+  EXPECT_GT(offset(*solver)[2], 0.1e-3);
+  // it turns as its bone does
+  EXPECT_EQ(solver->bodies()[0].rotation, controls.bone[1].rotation);
+}
+
+TEST_P(BodiesTouch, a_pushed_body_goes_on_with_the_same_bits)
+{
+  const Model model = block_and_pushed_finger(2e-3, 200, 0.5);
+  const auto solver = make(model), other = make(model, 3);
+  for (Solver* const one : { solver.get(), other.get() })
+    press_and_stroke(*one, 10e-3);
+  EXPECT_EQ(displacements(*solver), displacements(*other));
+  std::unique_ptr<Snapshot> snapshot;
+  solver->save(snapshot);
+  press_and_stroke(*solver, 4e-3);
+  const Vectors expected = displacements(*solver);
+  const RigidTransform body = solver->bodies()[0];
+  solver->restore(*snapshot);
+  press_and_stroke(*solver, 4e-3);
+  EXPECT_EQ(displacements(*solver), expected);
+  EXPECT_EQ(solver->bodies()[0].translation, body.translation);
+  solver->reset();
+  EXPECT_EQ(solver->bodies()[0].translation, RigidTransform().translation);
+}
+
+// A body that is light beside the stiffness of contact makes steps short, not the motion wild.
+TEST_P(BodiesTouch, a_light_body_is_pushed_in_short_steps)
+{
+  Model light = block_and_pushed_finger(0.5e-6, 40, 0), heavy = block_and_pushed_finger(2e-3, 40, 0);
+  light.damping = heavy.damping = 0;
+  const auto solver = make(light), other = make(heavy);
+  for (Solver* const one : { solver.get(), other.get() })
+    press_and_stroke(*one, 4e-3);
+  EXPECT_GT(solver->profile().steps, 2 * other->profile().steps);
+  for (int i = 0; i < 20; ++i)
+  {
+    solver->advance(0.5e-3, solver->controls());
+    for (const double way : offset(*solver))
+      EXPECT_LT(std::abs(way), 2e-3);
+  }
+}
+
+// The field of this plate has samples up to 0.3 mm below its surface.
+TEST_P(BodiesTouch, tissue_deep_inside_of_a_body_is_reported)
+{
+  Model model = block_and_finger(0);
+  model.contacts[0].field = sample_band(
+      { { -1e-3, -1e-3, 4.2e-3 } }, { { 11e-3, 9e-3, 4.3e-3 } }, [](const auto& p) { return 4.2e-3 - p[2]; }, 0.05e-3,
+      0.2e-3);
+  model.contacts[0].reach = 0.2e-3;
+  const auto shared = std::make_shared<const Model>(model);
+  const auto solver = make_solver(shared, { GetParam(), 2 });
+  Guard guard(*solver, shared);
+  Controls controls = solver->controls();
+  controls.bone[1].translation[2] = -2.5e-3;
+  std::string report;
+  try
+  {
+    for (int i = 0; i < 50; ++i)
+    {
+      guard.advance(1e-3, controls);
+      guard.check();
+    }
+  }
+  catch (const Unstable& why)
+  {
+    EXPECT_EQ(why.report.kind, Instability::inside_body);
+    report = why.what();
+  }
+  EXPECT_NE(report.find("press less deep"), std::string::npos) << report;
+}
+
+FRONTALIS_HOST_BACKENDS(BodiesTouch);
+
+}  // namespace
+}  // namespace frontalis
