@@ -24,6 +24,7 @@ enum class Effect : std::uint8_t
   friction,
   contact,
   self_contact,
+  attachment,
   output_fields
 };
 
@@ -36,7 +37,7 @@ struct EffectTraits
 };
 
 /// One entry per effect, in the order of the enumeration Effect.
-inline constexpr std::array<EffectTraits, 13> effect_traits{ {
+inline constexpr std::array<EffectTraits, 14> effect_traits{ {
     { "elasticity", "materials, and what stabilises their elements", "nothing else holds a voxel together",
       "nothing else holds a voxel together" },
     { "fibre_stiffness", "passive stress along muscle fibres", "", "" },
@@ -51,6 +52,8 @@ inline constexpr std::array<EffectTraits, 13> effect_traits{ {
     { "friction", "of sliding nodes, after Coulomb", "", "" },
     { "contact", "rigid bodies that tissue touches and leaves, with friction", "", "" },
     { "self_contact", "surfaces of the tissue that touch each other, with friction", "", "" },
+    { "attachment", "nodes near bones that follow others, so that tissue is attached at the surface of the bone", "",
+      "the tissue would come off its bones" },
     { "output_fields", "strain and stress of the skin", "", "it is computed only where somebody asks for it" },
 } };
 

@@ -103,7 +103,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   Model model;
   LocalFrame frame;
   {
-    const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min, monitor);
+    const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
+                                   attaching_surfaces(scene, surfaces), monitor);
     check_volumes(scene, volumes, voxels, monitor);
     check_layers(scene, volumes, voxels);
     if (voxels.place.empty())
@@ -118,6 +119,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("constraints");
   restrict_nodes(scene, surfaces, frame, model, monitor);
   remove_islands(model, monitor);
+  attach_nodes(scene, surfaces, frame, model, monitor);
 
   monitor.begin("fibres");
   const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);

@@ -1,5 +1,6 @@
 #include "cli/command_options.hpp"
 
+#include "frontalis/bake/bake.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/verification.hpp"
@@ -25,7 +26,8 @@ struct VerifyOptions
 
 void verify(const VerifyOptions& options)
 {
-  const auto cases = chosen_cases(verification_cases(), options.only, !options.quick);
+  const auto cases =
+      chosen_cases(verification_cases([](const Scene& scene) { return bake(scene); }), options.only, !options.quick);
   Findings findings;
   int failed = 0, bounded = 0;
   double seconds = 0;

@@ -33,6 +33,10 @@ struct EffectDescription
 /// Descriptions of the effects that have a file of their own.
 EffectDescription contact_description();
 EffectDescription self_contact_description();
+EffectDescription attachment_description();
+
+/// Removes the attached nodes that slide, or those that are held.
+void remove_attached(Model& model, bool sliding);
 
 /// These call the `write`, `read` or `check` of all effects.
 void exchange_effects(ModelWriter& archive, const Model& model);

@@ -212,7 +212,11 @@ EffectDescription rigid_nodes()
                            [](const Model& model) {
                              return on_nodes(distinct_nodes(model.rigid), "nodes at rigid surfaces", "nothing is held");
                            },
-                           [](Model& model, EffectSet) { model.rigid.clear(); } };
+                           [](Model& model, EffectSet)
+                           {
+                             model.rigid.clear();
+                             remove_attached(model, false);
+                           } };
   rigid.set_bones = [](const Model& model, std::vector<std::int32_t>& bone)
   {
     for (const RigidNode& node : model.rigid)
@@ -233,6 +237,7 @@ EffectDescription sliding()
                              [](Model& model, EffectSet)
                              {
                                model.sliding.clear();
+                               remove_attached(model, true);
                                model.constraint_surfaces.clear();
                              } };
   sliding.set_bones = [](const Model& model, std::vector<std::int32_t>& bone)
@@ -270,7 +275,8 @@ EffectDescription output_fields()
 // in the order of the enumeration Effect
 const std::array<EffectDescription, effect_traits.size()> descriptions{
   { elasticity(), fibre_stiffness(), contraction(), viscosity(), gravity(), surface_loads(), prescribed_displacement(),
-    rigid_nodes(), sliding(), friction(), contact_description(), self_contact_description(), output_fields() }
+    rigid_nodes(), sliding(), friction(), contact_description(), self_contact_description(), attachment_description(),
+    output_fields() }
 };
 
 const EffectDescription& description_of(Effect effect) { return descriptions[static_cast<std::size_t>(effect)]; }

@@ -73,8 +73,8 @@ void write_cell_data(Hdf5File& file, const Model& model)
 
 void write_point_data(Hdf5File& file, const Model& model)
 {
-  // constraint: 0 free, 1 rigid, 2 sliding, 3 prescribed; held_by: index of the constraint, or, after all constraints,
-  // of the load that prescribes it; -1: none
+  // constraint: 0 free, 1 rigid, 2 sliding, 3 prescribed, 4 attached; held_by: index of the constraint, or, after all
+  // constraints, of the load that prescribes it; -1: none
   std::vector<std::uint8_t> constraint(model.nodes.size(), 0);
   std::vector<std::int32_t> held_by(model.nodes.size(), -1);
   std::vector<float> distance(model.nodes.size(), 0);
@@ -88,6 +88,8 @@ void write_point_data(Hdf5File& file, const Model& model)
     hold(node.node, 2, node.constraint);
     distance[node.node] = static_cast<float>(node.distance);
   }
+  for (const AttachedNode& node : model.attached)
+    hold(node.node, 4, node.constraint);
   for (const PrescribedNode& node : model.prescribed)
     hold(node.node, 3, static_cast<std::int32_t>(model.constraints.size()) + node.load);
   for (const RigidNode& node : model.rigid)

@@ -103,6 +103,11 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.rigid[1].bone, 1);
   ASSERT_EQ(b.sliding.size(), 1u);
   EXPECT_EQ(b.sliding[0].distance, -0.00125);
+  ASSERT_EQ(b.attached.size(), 2u);
+  EXPECT_EQ(b.attached[0].master, 5);
+  EXPECT_EQ(b.attached[0].bone, 1);
+  EXPECT_EQ(b.attached[1].ratio, 0.5);
+  EXPECT_EQ(b.attached[1].surface, 0);
   EXPECT_EQ(a.gravity, b.gravity);
   ASSERT_EQ(b.loads.size(), 2u);
   EXPECT_EQ(b.loads[0].kind, Load::Kind::pressure);

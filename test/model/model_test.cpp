@@ -97,6 +97,9 @@ TEST(CheckModel, AcceptsAFullModelAndNamesTheArrayAtFault)
   EXPECT_NE(fault([](Model& m) { m.fibre_direction[0] = { 0, 0, 2 }; }).find("fibre_direction"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.rigid[0].bone = 2; }).find("rigid"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.sliding[0].surface = 1; }).find("sliding"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.attached[0].ratio = 1.5; }).find("attached (ratio)"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.attached[1].node = 2; }).find("attached (node)"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.attached[1].master = 4; }).find("attached (master)"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.prescribed[0].load = -1; }).find("prescribed"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.skin.triangles[0][1] = 3; }).find("skin"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.skin_binding.voxel[0] = 8; }).find("skin_binding"), std::string::npos);

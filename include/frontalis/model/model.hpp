@@ -54,6 +54,7 @@ struct Model
   std::vector<ConstraintSurface> constraint_surfaces;
   std::vector<RigidNode> rigid;
   std::vector<SlidingNode> sliding;
+  std::vector<AttachedNode> attached;
   std::vector<Contact> contacts;
   std::vector<SelfContact> self_contacts;
 

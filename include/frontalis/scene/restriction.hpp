@@ -38,6 +38,9 @@ struct SceneConstraint
   std::string on;       ///< contact: surface of the tissue that touches; empty: the skin
   std::optional<ScenePush> pushed;  ///< contact: empty: the body goes where its bone is
   int line = 0;
+
+  /// Whether it is not a contact.
+  bool restricts_nodes() const { return kind == Kind::rigid || kind == Kind::sliding; }
 };
 
 /// Load or prescribed displacement on a surface. It grows linearly from 0 during the first `ramp` seconds.

@@ -70,6 +70,7 @@ struct AccuracyProfile
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend
   std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
+  std::string boundary = "staircase";     ///< where bones attach tissue: nodes near them; true: at their surface
   MeasuredAccuracy measured;
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "frontalis/scene/scene.hpp"
 #include "frontalis/solver/solver.hpp"
 #include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,11 +27,14 @@ struct VerificationCase
   std::string name;
   bool quick;  ///< takes at most some seconds and belongs to the short set
   /// `backend` computes the motions; figures of single elements come from the reference backend.
-  void (*run)(const Backend& backend, Finding& finding);
+  std::function<void(const Backend& backend, Finding& finding)> run;
 };
 
-/// All cases, in the order of the manual.
-std::vector<VerificationCase> verification_cases();
+/// Makes the model of a scene, as bake() does.
+using BakeScene = std::function<Model(const Scene&)>;
+
+/// All cases, in the order of the manual. Those that start from scenes are skipped without a `bake`.
+std::vector<VerificationCase> verification_cases(const BakeScene& bake = {});
 
 /// Findings, each with the name of its case.
 using Findings = std::vector<std::pair<std::string, Finding>>;

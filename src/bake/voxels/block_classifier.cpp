@@ -5,10 +5,12 @@
 namespace frontalis
 {
 
-BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min)
+BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
+                                 const std::vector<const PreparedSurface*>& kept_at)
     : volumes_(volumes),
       grid_(grid),
       fill_min_(fill_min),
+      kept_at_(kept_at),
       voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
       reach_(0.5 * grid.spacing.norm()),
       nearby_body_(volumes.bodies()),
@@ -77,7 +79,8 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     sample(box, state);
     const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
     add_sizes(1);
-    if (fill > 0 && fill >= fill_min_)
+    const auto passes = [&box](const PreparedSurface* surface) { return surface->tree().overlaps(box); };
+    if (fill > 0 && (fill >= fill_min_ || std::any_of(kept_at_.begin(), kept_at_.end(), passes)))
       add_voxel(begin, fill);
     return;
   }

@@ -31,7 +31,9 @@ struct BlockState
 class BlockClassifier
 {
 public:
-  BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min);
+  /// The arguments are those of voxelise().
+  BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
+                  const std::vector<const PreparedSurface*>& kept_at);
 
   /// Adds the voxels of the block from `begin` to `end` (exclusive).
   void visit(const VoxelPlace& begin, const VoxelPlace& end);
@@ -63,6 +65,7 @@ private:
   const Volumes& volumes_;
   const Grid& grid_;
   double fill_min_;
+  const std::vector<const PreparedSurface*>& kept_at_;
   double voxel_volume_;
   double reach_;                   ///< half the diagonal of a voxel [m]
   std::vector<Vector3d> offsets_;  ///< from the voxel's lower corner to the samples, in voxel edges

@@ -68,6 +68,17 @@ void copy_poses(const Scene& scene, Model& model);
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                     BakeMonitor& monitor);
 
+/// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: those of constraints
+/// without a `within` of their own.
+std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
+
+/// With `boundary: true`, turns the rigid and sliding nodes of those constraints into attached nodes. The master of a
+/// node is a corner of the voxel that holds the nearest point up the surface's normal, one to three edges high, all of
+/// whose corners are free. Where there is none, tissue is too thin: nodes up to half an edge above the surface stay
+/// restricted, and the others become free. Sliding with friction stays as it is.
+void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                  BakeMonitor& monitor);
+
 /// Removes loose components. Only a common face connects voxels, not an edge or a corner. It keeps the largest
 /// component and all others with a restricted node and at least a hundredth of the largest one's voxels.
 void remove_islands(Model& model, BakeMonitor& monitor);

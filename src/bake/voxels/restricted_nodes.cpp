@@ -4,9 +4,6 @@
 #include "bake/messages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 namespace frontalis
 {
 namespace
@@ -56,6 +53,7 @@ public:
   }
 
   double reach_of(double within) const { return within < 0 ? 0.75 * edge_ : within; }
+  double edge() const { return edge_; }
 
   /// The part of a surface that nodes may slide on. `others`: surfaces that restrict nodes too; see tissue_sheet().
   const PreparedSurface& sheet_of(const PreparedSurface& surface, std::vector<const PreparedSurface*> others)
@@ -68,38 +66,13 @@ public:
     return *sheet;
   }
 
-  /// +1: the tissue lies on the side of the outward normals, -1: on the other, 0: on both.
+  /// tissue_side() of tissue_sheet.hpp, found once per surface
   double tissue_side(const PreparedSurface& surface)
   {
     const auto known = side_.find(&surface);
     if (known != side_.end())
       return known->second;
-    // tissue near the surface, and how much more of it lies on the outer side than on the other
-    using Sums = std::array<double, 2>;
-    const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, Sums sums)
-    {
-      for (std::size_t e = range.begin(); e < range.end(); ++e)
-      {
-        const Vector3d p = frame_.voxel_centre(model_, e);
-        if (surface.box().squaredExteriorDistance(p) > 4 * edge_ * edge_)
-          continue;
-        const ClosestPoint closest = surface.tree().closest(p, 2 * edge_);
-        if (closest.triangle < 0)
-          continue;
-        const auto fill = static_cast<double>(model_.fill[e]);
-        sums[0] += fill;
-        sums[1] += surface.signed_distance(p, closest) > 0 ? fill : -fill;
-      }
-      return sums;
-    };
-    const auto [all, surplus] = tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, model_.voxels.size(), grain), Sums{}, add_range,
-        [](const Sums& a, const Sums& b) {
-          return Sums{ a[0] + b[0], a[1] + b[1] };
-        });
-    const double side = std::abs(surplus) < 0.4 * all || all == 0 ? 0 : (surplus > 0 ? 1 : -1);
-    side_[&surface] = side;
-    return side;
+    return side_[&surface] = frontalis::tissue_side(surface, frame_, model_);
   }
 
 private:
@@ -277,6 +250,15 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   for (std::size_t n = 0; n < nodes; ++n)
     if (restrictions[n].kind == Kind::sliding)
       rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
+  // the masters of attached nodes too, which attach_nodes() finds later
+  for (std::size_t s = 0; s < sheets.size() && scene.accuracy.boundary == "true"; ++s)
+    for (const SlidingSurface& surface : sheets[s])
+    {
+      const Distances distances = finder.find(*surface.sheet, 3.5 * finder.edge(), Region());
+      for (std::size_t n = 0; n < nodes; ++n)
+        if (!std::isnan(distances[n]))
+          rest[s].push_back(rest_position(model, static_cast<std::int32_t>(n)));
+    }
   for (std::size_t s = 0; s < sheets.size(); ++s)
     model.constraint_surfaces[s].field = distance_field(sheets[s], rest[s], frame, model, monitor);
 

@@ -5,6 +5,8 @@
 #include "frontalis/model/sample_field.hpp"
 
 #include <Eigen/Dense>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,6 +234,36 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Ve
 }
 
 }  // namespace
+
+double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, const Model& model)
+{
+  constexpr std::size_t grain = 4096;
+  const double edge = to_vector(model.spacing).maxCoeff();
+  // tissue near the surface, and how much more of it lies on the outer side than on the other
+  using Sums = std::array<double, 2>;
+  const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, Sums sums)
+  {
+    for (std::size_t e = range.begin(); e < range.end(); ++e)
+    {
+      const Vector3d p = frame.voxel_centre(model, e);
+      if (surface.box().squaredExteriorDistance(p) > 4 * edge * edge)
+        continue;
+      const ClosestPoint closest = surface.tree().closest(p, 2 * edge);
+      if (closest.triangle < 0)
+        continue;
+      const auto fill = static_cast<double>(model.fill[e]);
+      sums[0] += fill;
+      sums[1] += surface.signed_distance(p, closest) > 0 ? fill : -fill;
+    }
+    return sums;
+  };
+  const auto [all, surplus] = tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::size_t>(0, model.voxels.size(), grain), Sums{}, add_range,
+      [](const Sums& a, const Sums& b) {
+        return Sums{ a[0] + b[0], a[1] + b[1] };
+      });
+  return std::abs(surplus) < 0.4 * all || all == 0 ? 0 : (surplus > 0 ? 1 : -1);
+}
 
 bool is_sphere(const PreparedSurface& surface) { return sphere_of(surface).has_value(); }
 

@@ -10,9 +10,12 @@ namespace frontalis
 /// Whether a surface is stored as centre and radius.
 bool is_sphere(const PreparedSurface& surface);
 
+/// +1: the tissue within two voxels of a surface lies on the side of its outward normals, -1: on the other, 0: on both.
+double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, const Model& model);
+
 /// The part of a surface that faces tissue, extended by the distance that sliding nodes may move beyond it: the outer
-/// table of a bone, for example, without the inner one. A closed sphere is returned unchanged. side: where the tissue
-/// is, +1: on the side of the outward normals, -1: on the other, 0: on both. bones: other surfaces that restrict nodes;
+/// table of a bone, for example, without the inner one. A closed sphere is returned unchanged. side: tissue_side().
+/// bones: other surfaces that restrict nodes;
 /// parts that face one of them within a voxel, such as the wall of a suture, are left out.
 TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std::vector<const PreparedSurface*>& bones,
                           const LocalFrame& frame, const Model& model);

@@ -52,7 +52,8 @@ void Voxels::append(const Voxels& other)
   }
 }
 
-Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeMonitor& monitor)
+Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
+                const std::vector<const PreparedSurface*>& kept_at, BakeMonitor& monitor)
 {
   std::array<std::size_t, 3> blocks{};
   for (std::size_t a = 0; a < 3; ++a)
@@ -70,7 +71,7 @@ Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fi
                    end[a] = std::min(begin[a] + block, grid.size[a]);
                    rest /= blocks[a];
                  }
-                 BlockClassifier classifier(volumes, grid, samples, fill_min);
+                 BlockClassifier classifier(volumes, grid, samples, fill_min, kept_at);
                  classifier.visit(begin, end);
                  parts[number] = classifier.take();
                });

@@ -54,7 +54,9 @@ struct Voxels
 /// Finds the materials and muscles in each voxel. A block of voxels through which no surface, depth threshold or crop
 /// passes is decided as a whole; others are halved down to single voxels, which are sampled at samples^3 points of the
 /// low-discrepancy sequence R3. Its projections on each axis are evenly spread too, so that surfaces along the axes are
-/// sampled as well as oblique ones. Voxels with a smaller proportion of tissue than `fill_min` are left out.
-Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min, BakeMonitor& monitor);
+/// sampled as well as oblique ones. Voxels with a smaller proportion of tissue than `fill_min` are left out, but for
+/// those that one of the surfaces `kept_at` passes through.
+Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
+                const std::vector<const PreparedSurface*>& kept_at, BakeMonitor& monitor);
 
 }  // namespace frontalis

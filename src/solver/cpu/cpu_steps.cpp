@@ -111,6 +111,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
   const std::vector<NodePart<Real>*> parts = this->active_parts();
   const bool prepared = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->prepares(); });
   const bool pushed = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->pushes(); });
+  const bool grouped = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->groups(); });
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
@@ -148,6 +149,13 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             account_->unconstrained(begin, end, g.v);
           for (NodePart<Real>* const part : parts)
             part->constrain(share, g.next, g.v, g.u, constraint_steps[step]);
+          if (grouped)
+          {
+            team_.barrier();
+            for (NodePart<Real>* const part : parts)
+              part->constrain_groups(share, g.next, g.v, constraint_steps[step]);
+            team_.barrier();
+          }
           for (NodePart<Real>* const part : parts)
             part->after_step(share, g.u, g.next);
           if (account_)

@@ -141,6 +141,8 @@ double ReferenceSolver::run(const StepPlan& plan)
     for (NodePart<double>* const part : parts)
       part->constrain(share, u, v, old, constraint_step);
     for (NodePart<double>* const part : parts)
+      part->constrain_groups(share, u, v, constraint_step);
+    for (NodePart<double>* const part : parts)
       part->after_step(share, old, u);
     if (account_)
       account_->after(0, model_->size[2] + 1, old, u, v, conditions_.damping, plan.dt, kick);

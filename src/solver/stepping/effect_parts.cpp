@@ -3,6 +3,7 @@
 #include "solver/contact/body_contact.hpp"
 #include "solver/contact/contact_stiffness.hpp"
 #include "solver/contact/tissue_contact.hpp"
+#include "solver/stepping/attached_nodes.hpp"
 #include "solver/stepping/nodal_loads.hpp"
 #include "solver/stepping/restricted_nodes.hpp"
 
@@ -15,6 +16,7 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
 {
   std::vector<std::unique_ptr<NodePart<Real>>> parts;
   parts.push_back(std::make_unique<RestrictedNodes<Real>>(model, slide));
+  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass));
   parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
   parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));
   parts.push_back(std::make_unique<TissueContact<Real>>(model, discretisation));

@@ -72,6 +72,14 @@ public:
                          const Real* const /*before*/[3], const ConstraintStep& /*step*/)
   {
   }
+  /// Whether constrain_groups() is needed. If so, threads wait for each other before and after it.
+  virtual bool groups() const { return false; }
+  /// Overwrites displacements and velocities of groups of nodes, which may belong to several threads: each group is
+  /// that of one thread.
+  virtual void constrain_groups(const NodeShare& /*share*/, Real* const /*u*/[3], Real* const /*v*/[3],
+                                const ConstraintStep& /*step*/)
+  {
+  }
   /// Called with the displacements before and after the step.
   virtual void after_step(const NodeShare& /*share*/, const Real* const /*before*/[3], const Real* const /*after*/[3])
   {

@@ -169,6 +169,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
   add(p.integration != s.integration, p.integration == "one_point" ? "one point" : "selective reduced");
   add(p.precision != s.precision, p.precision);
   add(p.time_step != s.time_step, p.time_step);
+  add(p.boundary != s.boundary, "boundary " + p.boundary);
   add(p.time_step_share != s.time_step_share, readable(p.time_step_share, 3) + " of the step");
   add(!same(p.mass_scaling, s.mass_scaling), text_of(p.mass_scaling));
   add(setting.poisson != standard.poisson, "Poisson " + readable(setting.poisson, 4));

@@ -12,8 +12,10 @@
 namespace frontalis
 {
 
-std::vector<VerificationCase> verification_cases()
+std::vector<VerificationCase> verification_cases(const BakeScene& bake)
 {
+  const auto baked = [&bake](void (&run)(const Backend&, const BakeScene&, Finding&))
+  { return [&run, bake](const Backend& backend, Finding& finding) { run(backend, bake, finding); }; };
   return { { "rigid_motion", true, verify_rigid_motion },
            { "affine_motion", true, verify_affine_motion },
            { "energy_gradient", true, verify_energy_gradient },
@@ -26,6 +28,8 @@ std::vector<VerificationCase> verification_cases()
            { "convergence", true, verify_convergence },
            { "cook_membrane", true, verify_cook },
            { "staircase", false, verify_staircase },
+           { "attachment", false, baked(verify_attachment) },
+           { "free_sides", false, baked(verify_free_sides) },
            { "wrinkling", true, verify_wrinkling },
            { "viscosity", true, verify_viscosity },
            { "hertz", false, verify_hertz },

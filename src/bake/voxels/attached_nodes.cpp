@@ -1,0 +1,276 @@
+#include "bake/messages.hpp"
+#include "bake/voxels/model_stages.hpp"
+#include "bake/voxels/tissue_sheet.hpp"
+#include "bake/voxels/voxel_index.hpp"
+#include "frontalis/model/sample_field.hpp"
+#include "frontalis/physics/sliding.hpp"
+
+#include <map>
+#include <optional>
+
+namespace frontalis
+{
+namespace
+{
+
+bool attaches(const Scene& scene, const SceneConstraint& constraint)
+{
+  // a constraint with a `within` of its own holds the nodes that it asks for
+  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
+}
+
+/// A node and the surface that it is to be attached to.
+struct Candidate
+{
+  AttachedNode node;
+  const PreparedSurface* surface = nullptr;
+  double side = 0;             ///< of the tissue
+  double distance = 0;         ///< from the surface, positive in the tissue [m]
+  Vector3d normal{ 0, 0, 0 };  ///< into the tissue, local axes
+};
+
+/// Finds the masters of nodes near a surface. Coordinates are local.
+class MasterFinder
+{
+public:
+  MasterFinder(const LocalFrame& frame, const Model& model)
+      : frame_(frame),
+        model_(model),
+        index_(model.voxels, model.size),
+        spacing_(to_vector(model.spacing)),
+        edge_(spacing_.maxCoeff()),
+        restricted_(model.nodes.size(), false)
+  {
+    mark(model.rigid);
+    mark(model.sliding);
+    mark(model.prescribed);
+  }
+
+  double edge() const { return edge_; }
+
+  /// Fills the master and the ratio. Returns whether there is a master.
+  bool find(Candidate& candidate) const
+  {
+    const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal;
+    for (double height = 1; height < 3.1; height += 0.25)
+    {
+      const Vector3d y = foot + height * edge_ * candidate.normal;
+      const Vector3d cell = (y.cwiseQuotient(spacing_).array() + 1e-9).floor();
+      if (take({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
+                   static_cast<std::int32_t>(cell[2]) } },
+               y, candidate))
+        return true;
+    }
+    return find_beside(foot + 1.5 * edge_ * candidate.normal, candidate);
+  }
+
+  /// Distance of a node from the candidate's surface, positive in the tissue [m]; not a number where it is not known.
+  double distance(const Candidate& candidate, std::int32_t node) const
+  {
+    if (candidate.node.surface >= 0)
+      return candidate.side *
+             level_at(model_.constraint_surfaces[candidate.node.surface].field, rest_position(model_, node));
+    const Vector3d p = frame_.grid_point(model_, model_.nodes[node][0], model_.nodes[node][1], model_.nodes[node][2]);
+    return candidate.side * candidate.surface->signed_distance(p, candidate.surface->tree().closest(p));
+  }
+
+private:
+  template <class Restricted>
+  void mark(const std::vector<Restricted>& nodes)
+  {
+    for (const Restricted& entry : nodes)
+      restricted_[entry.node] = true;
+  }
+
+  Vector3d rest(std::int32_t node) const { return to_vector(rest_position(model_, node)); }
+
+  /// The nearest voxel with free corners within 2.5 edges of a point above the surface.
+  bool find_beside(const Vector3d& above, Candidate& candidate) const
+  {
+    constexpr std::int32_t reach = 3;
+    std::vector<std::pair<double, VoxelPlace>> places;
+    for (std::int32_t k = -reach; k <= reach; ++k)
+      for (std::int32_t j = -reach; j <= reach; ++j)
+        for (std::int32_t i = -reach; i <= reach; ++i)
+        {
+          const Vector3d cell = above.cwiseQuotient(spacing_).array().floor() + Eigen::Array3d(i, j, k);
+          const Vector3d lower = cell.cwiseProduct(spacing_);
+          const double squared = Box(lower, lower + spacing_).squaredExteriorDistance(above);
+          if (squared < 2.5 * 2.5 * edge_ * edge_)
+            places.push_back({ squared,
+                               { { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
+                                   static_cast<std::int32_t>(cell[2]) } } });
+        }
+    std::sort(places.begin(), places.end());
+    return std::any_of(places.begin(), places.end(),
+                       [&](const auto& place) { return take(place.second, above, candidate); });
+  }
+
+  /// Takes the corner nearest to y of a voxel with free corners as master.
+  bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate) const
+  {
+    const std::int32_t voxel = index_.find(place);
+    if (voxel < 0)
+      return false;
+    const auto& corners = model_.voxel_nodes[voxel];
+    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t n) { return restricted_[n]; }))
+      return false;
+    const std::int32_t master = *std::min_element(
+        corners.begin(), corners.end(),
+        [&](std::int32_t a, std::int32_t b) { return (rest(a) - y).squaredNorm() < (rest(b) - y).squaredNorm(); });
+    // free corners are low only where a crop ends the constraint
+    const double height = distance(candidate, master);
+    if (!(height >= 0.5 * edge_))
+      return false;
+    candidate.node.master = master;
+    candidate.node.ratio = std::clamp(candidate.distance / height, -1.0, 1.0);
+    return true;
+  }
+
+  const LocalFrame& frame_;
+  const Model& model_;
+  VoxelIndex index_;
+  Vector3d spacing_;
+  double edge_;
+  std::vector<bool> restricted_;
+};
+
+/// Finds the candidates among a model's rigid and sliding nodes.
+class CandidateFinder
+{
+public:
+  CandidateFinder(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, const Model& model)
+      : scene_(scene), surfaces_(surfaces), frame_(frame), model_(model)
+  {
+  }
+
+  std::optional<Candidate> candidate(const RigidNode& rigid)
+  {
+    if (rigid.constraint < 0 || !attaches(scene_, scene_.constraints[rigid.constraint]))
+      return std::nullopt;
+    const auto& n = model_.nodes[rigid.node];
+    const Vector3d p = frame_.grid_point(model_, n[0], n[1], n[2]);
+    Candidate best;
+    const auto [surface, nearest] = nearest_surface(rigid.constraint, p);
+    best.surface = surface;
+    best.node = { rigid.node, 0, 0, rigid.bone, -1, rigid.constraint };
+    const double outwards = best.surface->signed_distance(p, nearest);
+    best.side = side_at(*best.surface, outwards);
+    best.distance = best.side * outwards;
+    const Vector3d& face = best.surface->pseudonormal(nearest);
+    const Vector3d away = nearest.distance > 1e-3 * to_vector(model_.spacing).minCoeff()
+                              ? Vector3d((p - nearest.point) / outwards)
+                              : face;
+    best.normal = frame_.turn(Vector3d(best.side * away.normalized()));
+    return best;
+  }
+
+  std::optional<Candidate> candidate(const SlidingNode& sliding)
+  {
+    const ConstraintSurface& surface = model_.constraint_surfaces[sliding.surface];
+    if (sliding.constraint < 0 || !attaches(scene_, scene_.constraints[sliding.constraint]) || surface.friction > 0)
+      return std::nullopt;
+    const auto rest = rest_position(model_, sliding.node);
+    const physics::DistanceField field = view(surface.field);
+    physics::FieldValue<double> value{};
+    if (!physics::sample(field, physics::field_point(field, { rest[0], rest[1], rest[2] }), value))
+      return std::nullopt;
+    Candidate found;
+    found.node = { sliding.node, 0, 0, -1, sliding.surface, sliding.constraint };
+    const auto& n = model_.nodes[sliding.node];
+    found.surface = nearest_surface(sliding.constraint, frame_.grid_point(model_, n[0], n[1], n[2])).first;
+    found.side = side_at(*found.surface, value.value);
+    found.distance = found.side * value.value;
+    const Vector3d gradient(value.gradient.x, value.gradient.y, value.gradient.z);
+    if (gradient.norm() < physics::least_gradient)
+      return std::nullopt;
+    found.normal = found.side * gradient.normalized();
+    return found;
+  }
+
+private:
+  /// The nearest surface of a constraint, and the closest point on it.
+  std::pair<const PreparedSurface*, ClosestPoint> nearest_surface(std::int32_t constraint, const Vector3d& p) const
+  {
+    std::pair<const PreparedSurface*, ClosestPoint> nearest{ nullptr, {} };
+    for (const std::string& name : scene_.constraints[constraint].surfaces)
+    {
+      const PreparedSurface& surface = named_surface(surfaces_, name, scene_.file);
+      const ClosestPoint closest = surface.tree().closest(p);
+      if (nearest.first == nullptr || closest.distance < nearest.second.distance)
+        nearest = { &surface, closest };
+    }
+    return nearest;
+  }
+
+  /// The tissue's side; where it is on both, the side of a node at the distance `outwards`.
+  double side_at(const PreparedSurface& surface, double outwards)
+  {
+    const auto known = side_.find(&surface);
+    const double side = known != side_.end() ? known->second : side_[&surface] = tissue_side(surface, frame_, model_);
+    return side != 0 ? side : outwards < 0 ? -1 : 1;
+  }
+
+  const Scene& scene_;
+  const PreparedSurfaces& surfaces_;
+  const LocalFrame& frame_;
+  const Model& model_;
+  std::map<const PreparedSurface*, double> side_;
+};
+
+}  // namespace
+
+std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces)
+{
+  std::vector<const PreparedSurface*> found;
+  for (const SceneConstraint& constraint : scene.constraints)
+    for (const std::string& name : constraint.surfaces)
+      if (attaches(scene, constraint))
+        found.push_back(&named_surface(surfaces, name, place_in_scene(scene, "constraint", constraint)));
+  return found;
+}
+
+void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
+                  BakeMonitor& monitor)
+{
+  if (scene.accuracy.boundary != "true")
+    return;
+  CandidateFinder candidates(scene, surfaces, frame, model);
+  const MasterFinder masters(frame, model);
+  std::size_t held = 0, freed = 0;
+  // keeps the nodes of a list that are not attached
+  const auto attach = [&](auto& list)
+  {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < list.size(); ++n)
+    {
+      const auto entry = list[n];
+      auto candidate = candidates.candidate(entry);
+      if (candidate && masters.find(*candidate))
+        model.attached.push_back(candidate->node);
+      else if (candidate && candidate->distance > 0.5 * masters.edge())
+        ++freed;
+      else
+      {
+        list[kept++] = entry;
+        held += candidate ? 1 : 0;
+      }
+    }
+    list.resize(kept);
+  };
+  attach(model.rigid);
+  attach(model.sliding);
+  std::sort(model.attached.begin(), model.attached.end(),
+            [](const AttachedNode& a, const AttachedNode& b) { return a.node < b.node; });
+  if (held + freed > 0)
+    monitor.found(
+        "boundary: tissue is less than about two voxels deep at {} of {} nodes near bones; those up to half a voxel "
+        "above the bone are held there ({}), the others are free ({})",
+        held + freed, held + freed + model.attached.size(), held, freed);
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    if (surface.friction > 0)
+      monitor.found("boundary: nodes that slide on '{}' keep their own distances, because it has friction",
+                    surface.name);
+}
+
+}  // namespace frontalis

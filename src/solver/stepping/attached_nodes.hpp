@@ -1,0 +1,88 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/physics/distance_field.hpp"
+#include "solver/stepping/node_part.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Nodes whose motion follows that of a free node (AttachedNode). After the free update of a step, a master and the
+/// nodes that follow it get the velocities nearest to theirs, in the norm of their masses, that the constraints allow
+/// (Gauss's principle). So forces and masses of the nodes act on the master, whatever the forces are; constraints at
+/// surfaces that are still do no work; and no frequency of the model rises, because constraints lower Rayleigh
+/// quotients: the bounds of the time step hold as they are. Each group of a master and its nodes is computed by itself,
+/// in a fixed order.
+template <class Real>
+class AttachedNodes : public NodePart<Real>
+{
+public:
+  /// `mass`: of every node [kg]; it and the model must outlive this object.
+  AttachedNodes(const Model& model, const std::vector<double>& mass);
+
+  bool idle() const override { return groups_.empty(); }
+  bool groups() const override { return true; }
+  /// Applies the constraints of the groups whose masters are in the share. Their other nodes are in no other group.
+  void constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
+                        const ConstraintStep& step) override;
+
+  void run(EffectSet) override {}
+  void reset() override;
+  void list_arrays(ArrayList& list) override;
+
+private:
+  using Point = physics::Vec3<double>;
+  struct Group
+  {
+    std::int32_t master;
+    std::int32_t begin, end;  // in held_ if it is still, in ties_ otherwise
+    bool still;               // all its nodes are held at bones that do not move
+    bool fixed[3];            // axes along which the master has a prescribed path
+    bool slides;              // all its nodes slide on one surface that does not move, and no axis is fixed
+    Real own;                 // share of the master's velocity in the common one
+  };
+  // of a group that is still
+  struct Held
+  {
+    std::int32_t node;
+    Real ratio;
+    Real share;  // of this node's velocity in the common one
+  };
+  // of any other group
+  struct Tie
+  {
+    std::int32_t node, bone, surface;
+    std::int32_t plane, master_plane;  // in planes_; -1: held
+    double ratio, mass;
+    Point rest;
+    double offset;  // of the levels from their ratio at rest [m]
+  };
+  // the level of a node, to first order about a place in the frame of the surface
+  struct Plane
+  {
+    Point gradient{ 0, 0, 0 }, place{ 0, 0, 0 };
+    double level = 0, slip_squared = -1;
+
+    double level_at(const Point& p) const { return level + dot(gradient, p - place); }
+  };
+  struct Bones;
+
+  void add_group(const AttachedNode* begin, const AttachedNode* end);
+  void follow(const Group& group, Real dt, Real* const u[3], Real* const v[3]) const;
+  void slide(const Group& group, double dt, Real* const u[3], Real* const v[3]);
+  void follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones);
+  void renew(Plane& plane, std::int32_t surface, const Point& place) const;
+
+  const Model& model_;
+  const std::vector<double>& mass_;
+  std::vector<physics::DistanceField> fields_;  // of the model's surfaces
+  std::vector<Group> groups_;                   // ascending by master
+  std::vector<Held> held_;
+  std::vector<Tie> ties_;
+  std::vector<Plane> planes_;
+};
+
+}  // namespace frontalis
