@@ -247,7 +247,7 @@ struct ShownOtherwise : test::WrappedSolver
   {
     EnergyLedger result = WrappedSolver::ledger();
     if (now())
-      result.kinetic += more_work;
+      result["kinetic"] += more_work;
     return result;
   }
 };
