@@ -38,7 +38,8 @@ private:
   {
     const Binding* binding;
     std::vector<float> points;  // [N/m]
-    double moves;  // how often it counts if the other side moves: 2 where it is tissue, as two masses joined by a spring
+    // How often the stiffness counts: 2 if the other side is tissue, because a spring between two masses acts on both.
+    double moves;
   };
   void add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area, double moves);
   void share_out(const Model& model, const std::vector<double>& of_voxels);

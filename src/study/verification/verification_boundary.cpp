@@ -1,7 +1,7 @@
 // bodies whose sides do not follow the grid, baked as a user's scene is
 
 #include "frontalis/error.hpp"
-#include "solver/skin/bound_points.hpp"
+#include "frontalis/physics/trilinear.hpp"
 #include "study/verification/boundary_bodies.hpp"
 #include "study/verification/verification_cases.hpp"
 
@@ -95,7 +95,6 @@ struct Difference
 void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& mesh, const Binding& binding,
              const std::array<std::vector<double>, 3>& u, Difference& sum)
 {
-  const double* const components[3] = { u[0].data(), u[1].data(), u[2].data() };
   std::vector<double> area(mesh.vertices.size(), 0);
   for (const auto& t : mesh.triangles)
     for (const auto corner : t)
@@ -105,7 +104,14 @@ void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& m
     const Point exact = body.exact(model.to_scene(mesh.vertices[v]));
     if (std::isnan(exact[0]))
       continue;
-    const Point found = model.to_scene.turned(bound_displacement(model, binding, v, components));
+    const auto& at = binding.coordinates[v];
+    double weight[8];
+    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+    Point moved{};
+    for (std::size_t b = 0; b < 8; ++b)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        moved[axis] += weight[b] * u[axis][model.voxel_nodes[binding.voxel[v]][b]];
+    const Point found = model.to_scene.turned(moved);
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       sum.error += area[v] * (found[axis] - exact[axis]) * (found[axis] - exact[axis]);
