@@ -8,14 +8,6 @@ namespace frontalis
 namespace test
 {
 
-// the backends that compute contact of tissue with itself
-inline std::vector<Backend> host_backends()
-{
-  auto backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
 class TissuesTouch : public BodiesTouch
 {
 };
@@ -31,7 +23,3 @@ inline Vectors lowered(const Model& model, double way)
 
 }  // namespace test
 }  // namespace frontalis
-
-#define FRONTALIS_HOST_BACKENDS(suite)                                                           \
-  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::ValuesIn(frontalis::test::host_backends()), \
-                           frontalis::test::backend_name)

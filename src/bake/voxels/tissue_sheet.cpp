@@ -167,7 +167,7 @@ public:
   ClosestPoint closest(const Vector3d& p, double bound, std::int32_t& hint) const
   {
     const auto triangles = static_cast<std::int32_t>(of_.sheet->mesh().triangles.size());
-    const ClosestPoint closest = of_.sheet->tree().closest(p, bound, hint < triangles ? hint : -1);
+    ClosestPoint closest = of_.sheet->tree().closest(p, bound, hint < triangles ? hint : -1);
     hint = closest.triangle;
     return closest;
   }

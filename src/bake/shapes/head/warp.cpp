@@ -126,6 +126,7 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
     if (std::abs(measure(moved, span.from, span.to) - span.wanted) > 0.5 * derived_tolerance)
     {
       std::vector<std::string> asked;
+      asked.reserve(wanted.size());
       for (const auto& [name, value] : wanted)
         asked.push_back(fmt::format("'{}' {:.1f} mm", name, 1e3 * value));
       throw failure("head: dimension '{}' cannot be {:.1f} mm beside {}; {:.1f} mm is the closest",
