@@ -144,9 +144,9 @@ TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
   EXPECT_EQ(a.force, b.force);
   EXPECT_EQ(b.spring, 200);
   EXPECT_EQ(b.damping, 3);
-  ASSERT_EQ(b.demo.at(0).bones.size(), 1u);
-  EXPECT_EQ(b.demo[0].expression, -2);
-  EXPECT_EQ(b.demo[0].bones[0].shift[0], 1e-3);
+  ASSERT_EQ(read.demo.at(0).bones.size(), 1u);
+  EXPECT_EQ(read.demo[0].expression, -2);
+  EXPECT_EQ(read.demo[0].bones[0].shift[0], 1e-3);
   EXPECT_EQ(a.binding.voxel, b.binding.voxel);
   EXPECT_EQ(a.binding.coordinates, b.binding.coordinates);
   EXPECT_EQ(bytes_of(read), whole);
