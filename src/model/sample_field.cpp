@@ -123,7 +123,6 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
     field.table[places[n]] = stored++;
     field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
   }
-  limit_slope(field);
 }
 
 }  // namespace
@@ -162,6 +161,8 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
     visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
   }
   fill(field, bands, distance, loop);
+  // the distance from an open sheet jumps where the nearest point does
+  limit_slope(field);
   return field;
 }
 

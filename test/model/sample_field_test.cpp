@@ -108,7 +108,10 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
 TEST(SampleField, MakesASlopeOfAJump)
 {
   const auto jumps = [](const Point& p) { return 0.5 * p[2] + (p[0] > 5.1e-3 ? 2e-3 : 0); };
-  const SampledField field = sample_band({ { -6e-3, -2e-3, -1e-3 } }, { { 16e-3, 2e-3, 1e-3 } }, jumps, 0.5e-3, 4e-3);
+  std::vector<Point> rest;
+  for (int n = -6; n <= 16; ++n)
+    rest.push_back({ { 1e-3 * n, 0, 0 } });
+  const SampledField field = sample_field(rest, jumps, 0.5e-3, 4e-3);
   for (double x = -2e-3; x < 12e-3; x += 0.13e-3)
   {
     const auto found = value_at<double>(field, { 5e-3, 0, 0 }, { x - 5e-3, 0, 0.1e-3 });
