@@ -215,7 +215,7 @@ BackendTraits CudaSolver::traits() const
   traits.seconds_per_plan = 0.5e-3;
   traits.fewest_steps_per_plan = 32;
   traits.most_steps_per_plan = 128;
-  traits.steps_per_look = model_->nodes.size() > 1000000 ? 2048 : 512;
+  traits.steps_per_observation = model_->nodes.size() > 1000000 ? 2048 : 512;
   traits.steps_per_check = 2048;
   return traits;
 }

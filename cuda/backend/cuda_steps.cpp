@@ -71,7 +71,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
     std::memcpy(staged + relaxation_at, relaxation.data(), sizeof(float) * relaxation.size());
   require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
   char* const controls = slot.controls.data();
-  g.look = reinterpret_cast<std::uint32_t*>(controls);
+  g.frequency_bound = reinterpret_cast<std::uint32_t*>(controls);
   g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
   g.activation_end = g.activation_begin + muscles;
   g.poses = reinterpret_cast<const double*>(controls + poses_at);
@@ -128,7 +128,7 @@ double CudaSolver::run(const StepPlan& plan)
   StepArguments g = arguments(plan.dt);
   g.time = plan.time;
   g.steps = plan.steps;
-  g.look_always = plan.bound_every_step;
+  g.bound_every_step = plan.bound_every_step;
   const bool relaxes = !device_.viscosity().idle();
   const std::vector<double> elapsed = relaxes ? plan.relaxation : std::vector<double>(plan.steps, 0);
   // Patches relax their viscous stresses within launches, unless the energy ledger needs the work of each relaxation.
@@ -167,7 +167,7 @@ double CudaSolver::run(const StepPlan& plan)
     relax_after(end - 1);
     done = end;
   }
-  require(cudaMemcpyAsync(slot.seen.data(), g.look, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
+  require(cudaMemcpyAsync(slot.seen.data(), g.frequency_bound, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
           "copying the frequency bound");
   require(cudaEventRecord(slot.done, stream_), "recording an event");
   ++plans_;
@@ -238,7 +238,7 @@ Work CudaSolver::work(bool open)
   }
   else
   {
-    account_->look(g, u_[present_].data(), 0, stream_);
+    account_->measure(g, u_[present_].data(), 0, stream_);
     device_.viscosity().relax(arguments(0), u_[present_].data(), u_[1 - present_].data(), 0, stream_);
   }
   synchronise();
@@ -284,7 +284,7 @@ Monitor CudaSolver::monitor()
 {
   if (!monitor_)
     monitor_ = std::make_unique<DeviceMonitor>(*model_, device_);
-  return monitor_->look(arguments(0), u_[present_].data(), stream_);
+  return monitor_->read(arguments(0), u_[present_].data(), stream_);
 }
 
 }  // namespace cuda

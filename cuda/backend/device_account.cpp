@@ -75,17 +75,17 @@ void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t s
     for (const auto* values : { &before_[axis], &free_[axis] })
       values->clear();
   memory_.clear();
-  require(launch_fibre_work(g, fibres(), u, 0, true, stream), "looking at fibres");
+  require(launch_fibre_work(g, fibres(), u, 0, true, stream), "measuring fibres");
 }
 
-void DeviceAccount::look(const StepArguments& g, const float4* u, int step, cudaStream_t stream)
+void DeviceAccount::measure(const StepArguments& g, const float4* u, int step, cudaStream_t stream)
 {
   require(launch_fibre_work(g, fibres(), u, step, false, stream), "work of fibres");
 }
 
 void DeviceAccount::before_step(const StepArguments& g, int step, cudaStream_t stream)
 {
-  look(g, g.u[g.first], step, stream);
+  measure(g, g.u[g.first], step, stream);
 }
 
 void DeviceAccount::after_step(const StepArguments& g, double damping, int step, cudaStream_t stream)

@@ -20,7 +20,7 @@ public:
   /// Starts a new account at displacements `u`, with the activations at the end of g's plan.
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
   /// Adds the work that fibres did since the last call, up to displacements `u`.
-  void look(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
+  void measure(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
   /// Called before and after each step. g.first selects the displacements before the step, then after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);

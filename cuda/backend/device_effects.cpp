@@ -149,7 +149,7 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   const auto add = [&list](Effect effect, const char* what, const auto&... arrays)
   { (list.add(effect, what, arrays.bytes()), ...); };
   add(Effect::elasticity, "strips", strips_, slots_);
-  add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_makes_, halo_);
+  add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_properties_, halo_);
   add(Effect::elasticity, "inverse masses", mobility_);
   add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);

@@ -115,7 +115,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.patches = patches_.data();
   g.patch_count = static_cast<std::uint32_t>(patches_.size());
   g.patch_corners = patch_corners_.data();
-  g.patch_makes = patch_makes_.data();
+  g.patch_properties = patch_properties_.data();
   g.halo = halo_.data();
   g.node_voxels = node_voxels_.data();
   g.patch_tasks = patch_tasks_.data();

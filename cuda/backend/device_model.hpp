@@ -113,7 +113,7 @@ private:
 
   DeviceArray<Patch> patches_;
   DeviceArray<uint4> patch_corners_, node_voxels_;
-  DeviceArray<uint2> patch_makes_;
+  DeviceArray<uint2> patch_properties_;
   DeviceArray<std::uint32_t> halo_;
   DeviceArray<std::int32_t> patch_tasks_;
   DeviceArray<Strip> strips_;

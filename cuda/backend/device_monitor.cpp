@@ -26,14 +26,14 @@ DeviceMonitor::DeviceMonitor(const Model& model, const DeviceModel& device)
     view_.scale[axis] = 0.25 / model.spacing[axis];
 }
 
-Monitor DeviceMonitor::look(const StepArguments& g, const float4* u, cudaStream_t stream)
+Monitor DeviceMonitor::read(const StepArguments& g, const float4* u, cudaStream_t stream)
 {
-  require(launch_monitor(g, view_, u, parts_.data(), stiffest_.data(), stream), "looking at the voxels");
+  require(launch_monitor(g, view_, u, parts_.data(), stiffest_.data(), stream), "reading the voxels");
   require(cudaMemcpyAsync(seen_.data(), parts_.data(), parts_.bytes(), cudaMemcpyDeviceToHost, stream),
           "copying what the monitor saw");
   require(cudaMemcpyAsync(seen_stiffest_.data(), stiffest_.data(), stiffest_.bytes(), cudaMemcpyDeviceToHost, stream),
           "copying what the monitor saw");
-  require(cudaStreamSynchronize(stream), "looking at the voxels");
+  require(cudaStreamSynchronize(stream), "reading the voxels");
   PlaneMonitor sum;
   StiffestVoxel stiffest;
   for (int part = 0; part < monitor_blocks; ++part)

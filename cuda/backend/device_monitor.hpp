@@ -16,7 +16,7 @@ public:
   DeviceMonitor(const Model& model, const DeviceModel& device);
 
   /// Returns energies and worst voxel at displacements `u` and velocities g.v. Waits for the stream.
-  Monitor look(const StepArguments& g, const float4* u, cudaStream_t stream);
+  Monitor read(const StepArguments& g, const float4* u, cudaStream_t stream);
   std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< device memory
 
 private:

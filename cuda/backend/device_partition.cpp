@@ -81,9 +81,9 @@ void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
 void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
                               const std::vector<std::uint32_t>& palette_entry)
 {
-  std::vector<uint2> makes;
+  std::vector<uint2> properties;
   for (const auto voxel : patches.voxel)
-    makes.push_back({ palette_entry[voxel], fibre_word(model, voxel) });
+    properties.push_back({ palette_entry[voxel], fibre_word(model, voxel) });
   std::vector<std::int32_t> task_of(device_node_.size() + 1, patch_task::none);
   for (const auto n : still_nodes_)
     task_of[device_node_[n]] = patch_task::still;
@@ -102,7 +102,7 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   patches_ = DeviceArray<Patch>(patches.patches);
   patch_corners_ = DeviceArray<uint4>(words(patches.corner));
   node_voxels_ = DeviceArray<uint4>(words(patches.node_voxel));
-  patch_makes_ = DeviceArray<uint2>(makes);
+  patch_properties_ = DeviceArray<uint2>(properties);
   halo_ = DeviceArray<std::uint32_t>(patches.halo);
   patch_tasks_ = DeviceArray<std::int32_t>(task_of);
   std::uint32_t most = patches.most_voxels;

@@ -15,7 +15,7 @@ DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discr
   if (terms_ == 0)
     return;
   std::vector<std::uint32_t> index(model.voxels.size() + 1, 0), words(voxel_at.size(), 0);
-  std::vector<float4> makes;
+  std::vector<float4> properties;
   VoxelProperties voxel;
   for (std::size_t place = 0; place < voxel_at.size(); ++place)
   {
@@ -38,11 +38,11 @@ DeviceViscosity::DeviceViscosity(const Model& model, const Discretisation& discr
     for (int b = 0; b < 8; ++b)
       v.node[b] = device_node[model.voxel_nodes[e][b]];
     host_.push_back(v);
-    makes.push_back({ static_cast<float>(voxel.viscous_share[0]), static_cast<float>(voxel.viscous_share[1]),
-                      static_cast<float>(voxel.viscous_rate[0]), static_cast<float>(voxel.viscous_rate[1]) });
+    properties.push_back({ static_cast<float>(voxel.viscous_share[0]), static_cast<float>(voxel.viscous_share[1]),
+                           static_cast<float>(voxel.viscous_rate[0]), static_cast<float>(voxel.viscous_rate[1]) });
   }
   words_ = DeviceArray<std::uint32_t>(words);
-  makes_ = DeviceArray<float4>(makes);
+  properties_ = DeviceArray<float4>(properties);
   relaxed_ = DeviceArray<float>(static_cast<std::size_t>(physics::relaxed_tensors(terms_)) * 6 * voxel_.size());
 }
 
@@ -64,7 +64,7 @@ void DeviceViscosity::describe(StepArguments& g) const
 {
   g.viscous_words = runs_ ? words_.data() : nullptr;
   g.relaxed = relaxed_.data();
-  g.viscous_makes = makes_.data();
+  g.viscous_properties = properties_.data();
   g.viscous_count = static_cast<std::uint32_t>(voxels_.size());
   g.viscous_terms = runs_ ? terms_ : 0;
 }
@@ -78,7 +78,7 @@ void DeviceViscosity::run(EffectSet running)
 
 void DeviceViscosity::list_arrays(ArrayList& list)
 {
-  list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + makes_.bytes() + words_.bytes());
+  list.add(Effect::viscosity, "Prony terms", voxels_.bytes() + properties_.bytes() + words_.bytes());
   list_state(list, Effect::viscosity, "relaxed stresses", relaxed_);
   list_state(list, Effect::viscosity, "work of viscous stresses", account_);
 }

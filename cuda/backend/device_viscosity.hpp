@@ -50,7 +50,7 @@ private:
   std::vector<ViscousVoxel> host_;    // kept until the palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
-  DeviceArray<float4> makes_;
+  DeviceArray<float4> properties_;
   DeviceArray<float> relaxed_;
   DeviceArray<double> account_;
 };

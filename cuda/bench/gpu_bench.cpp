@@ -1,4 +1,4 @@
-// Kernel time of the CUDA backend on models made in code, compared with a bare element loop measured in the same run.
+// Kernel time of the CUDA backend on models made in code and on baked models, beside that of copies and dense blocks.
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -6,7 +6,6 @@
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/voxel_model.hpp"
 #include "cuda/bench/shell_model.hpp"
-#include "cuda/bench/yardstick.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +35,34 @@ Controls ramped(const Controls& wanted, double time)
   for (auto& a : now.activation)
     a *= static_cast<float>(std::min(1.0, time / 0.3));
   return now;
+}
+
+// seconds of device time of the work that `work` queues
+double device_seconds(const std::function<void()>& work)
+{
+  cudaEvent_t begin = nullptr, end = nullptr;
+  cuda::require(cudaEventCreate(&begin), "making an event");
+  cuda::require(cudaEventCreate(&end), "making an event");
+  cuda::require(cudaEventRecord(begin), "recording an event");
+  work();
+  cuda::require(cudaEventRecord(end), "recording an event");
+  cuda::require(cudaEventSynchronize(end), "waiting for the device");
+  float milliseconds = 0;
+  cuda::require(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
+  cudaEventDestroy(begin);
+  cudaEventDestroy(end);
+  return 1e-3 * milliseconds;
+}
+
+// bytes per second that copies on the device read and write: median of five runs
+double copy_bandwidth_of_device()
+{
+  const std::size_t bytes = std::size_t(1) << 30;
+  const cuda::DeviceArray<char> from(bytes), to(bytes);
+  std::vector<double> times(5);
+  for (double& time : times)
+    time = device_seconds([&] { cudaMemcpyAsync(to.data(), from.data(), bytes, cudaMemcpyDeviceToDevice, nullptr); });
+  return 2.0 * static_cast<double>(bytes) / spread_of(times).median;
 }
 
 // Seconds per step over a run of at least `steps` steps; the skin is fetched every `frame_wall_time` seconds, if above
@@ -155,16 +182,8 @@ int run(int count, char** arguments)
     // the largest runs only if named, because it takes minutes to build
     return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
-  if (is_wanted("yardstick"))
-  {
-    for (const int n : { 126, 252 })
-    {
-      const YardstickResult y = run_yardstick(n, 1000);
-      std::printf("yardstick      %10.0f voxels  %8.2f us per step  %7.2f G updates per second  copy %.2f TB/s\n",
-                  std::pow(n, 3), y.microseconds_per_step, y.updates_per_second * 1e-9, y.copy_bandwidth * 1e-12);
-    }
-    std::fflush(stdout);
-  }
+  if (is_wanted("copy"))
+    std::printf("copies on the device: %.2f TB/s\n", 1e-12 * copy_bandwidth_of_device());
   DenseRates dense;
   for (const Scene& scene : scenes())
     if (is_wanted(scene.name))

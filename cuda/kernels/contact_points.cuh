@@ -8,8 +8,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Points of the tissue that may touch bodies. What a point does in a step is that of BodyContact::look_at(), in single
-// precision. Places are relative to rest, so that they are exact to nanometres.
+// Points of the tissue that may touch bodies. What a point does in a step is that of BodyContact::voxel_readings(), in
+// single precision. Places are relative to rest, so that they are exact to nanometres.
 
 /// Adds part of a voxel's displacement: corner b of weight w.
 __device__ __forceinline__ void add_part(physics::Vec3<float>& sum, float w, const float4& u)

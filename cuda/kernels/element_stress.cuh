@@ -112,14 +112,14 @@ struct ElementVoxel : PaletteVoxel<float, With>
       relax_apart<With>(g, palette, place.viscous - 1, relaxes, k);
     physics::add_viscosity(*this, k, P);
   }
-  __device__ __forceinline__ void gauss_forces(float (&mode)[3][8], bool look, float& stiffness) const
+  __device__ __forceinline__ void gauss_forces(float (&mode)[3][8], bool with_bound, float& stiffness) const
   {
     // a copy, so that the modes of other voxels stay in registers
     float force[3][8];
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
         force[c][m] = mode[c][m];
-    gauss_forces_apart(g, palette, force, look, stiffness);
+    gauss_forces_apart(g, palette, force, with_bound, stiffness);
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
         mode[c][m] = force[c][m];
@@ -128,16 +128,16 @@ struct ElementVoxel : PaletteVoxel<float, With>
 
 /// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: time by which viscous
 /// stresses relax before that [s]. Palette entry 0 has no stiffness, so that entries without a voxel yield exact zeros.
-/// `stiffness` is 0 before the call; if `look` is set it becomes the present stiffness bound [N/m].
+/// `stiffness` is 0 before the call; if `with_bound` is set it becomes the present stiffness bound [N/m].
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
                                                const Activations& activation, float relaxes, float (&mode)[3][8],
-                                               bool look, float& stiffness)
+                                               bool with_bound, float& stiffness)
 {
   const ElementVoxel<With> voxel{
     { g, place.palette, place.viscous - 1, __ldg(g.palette + place.palette) }, place, activation, relaxes
   };
-  const auto P = physics::element_stress(voxel, mode, look && place.palette != 0, stiffness);
+  const auto P = physics::element_stress(voxel, mode, with_bound && place.palette != 0, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
     physics::stress_forces(voxel, P, c, mode[c]);

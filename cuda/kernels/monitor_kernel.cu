@@ -1,7 +1,7 @@
 #include "cuda/kernels/monitor_kernel.hpp"
 
 #include "cuda/kernels/palette_voxel.cuh"
-#include "frontalis/physics/element/voxel_look.hpp"
+#include "frontalis/physics/element/voxel_readings.hpp"
 
 namespace frontalis
 {
@@ -18,7 +18,8 @@ struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
   __device__ __forceinline__ const double* scale() const { return grid_scale; }
 };
 
-__device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels, std::uint32_t index, const float4* u)
+__device__ PlaneMonitor read_voxel(const StepArguments& g, const MonitorVoxels& voxels, std::uint32_t index,
+                                   const float4* u)
 {
   const MonitorVoxel voxel = voxels.voxels[index];
   double mode[3][8];
@@ -32,9 +33,9 @@ __device__ PlaneMonitor look(const StepArguments& g, const MonitorVoxels& voxels
   for (auto& component : mode)
     physics::walsh_hadamard(component);
   const PaletteVoxel<double, Effects::general_element> palette = palette_voxel<double>(g, voxel.palette);
-  const auto look = physics::look_at(LookedVoxel{ palette, voxels.scale }, mode);
-  voxels.stiffness[index] = static_cast<float>(look.stiffness);
-  return PlaneMonitor::of_voxel(look, static_cast<std::int32_t>(index));
+  const auto readings = physics::voxel_readings(LookedVoxel{ palette, voxels.scale }, mode);
+  voxels.stiffness[index] = static_cast<float>(readings.stiffness);
+  return PlaneMonitor::of_voxel(readings, static_cast<std::int32_t>(index));
 }
 
 // Each block sums its part of the voxels and nodes in a fixed order.
@@ -46,7 +47,7 @@ __global__ void __launch_bounds__(block)
   PlaneMonitor sum;
   const std::uint32_t first = blockIdx.x * block + threadIdx.x, stride = gridDim.x * block;
   for (std::uint32_t e = first; e < voxels.count; e += stride)
-    sum.add(look(g, voxels, e, u));
+    sum.add(read_voxel(g, voxels, e, u));
   for (std::uint32_t n = first; n < voxels.nodes; n += stride)
   {
     const double inverse_mass = u[n].w, x = g.v[0][n], y = g.v[1][n], z = g.v[2][n];

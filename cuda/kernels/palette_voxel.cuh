@@ -88,8 +88,8 @@ struct PaletteVoxel
   __device__ __forceinline__ int viscous_terms() const { return g.viscous_terms; }
   __device__ __forceinline__ physics::ViscousTerm<T> viscous_term(int n) const
   {
-    const float4 make = __ldg(g.viscous_makes + viscous);
-    return { n == 0 ? make.x : make.y, n == 0 ? make.z : make.w };
+    const float4 properties = __ldg(g.viscous_properties + viscous);
+    return { n == 0 ? properties.x : properties.y, n == 0 ? properties.z : properties.w };
   }
   __device__ __forceinline__ float& relaxed_at(int tensor, int component) const
   {
@@ -133,9 +133,9 @@ static __device__ __noinline__ T law_stiffening_apart(const StepArguments& g, st
 }
 
 static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, std::uint32_t palette,
-                                                       float (&mode)[3][8], bool look, float& stiffness)
+                                                       float (&mode)[3][8], bool with_bound, float& stiffness)
 {
-  physics::gauss_forces(palette_voxel<float>(g, palette), mode, look, stiffness);
+  physics::gauss_forces(palette_voxel<float>(g, palette), mode, with_bound, stiffness);
 }
 
 /// Relaxes viscous stresses, rarely within a step. Works on a copy, so that other voxels stay in registers.

@@ -94,12 +94,12 @@ __device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::u
   voxel.corner = __ldg(g.patch_corners + index);
   if (has<With, Effects::fibres>)
   {
-    const uint2 make = __ldg(g.patch_makes + index);
-    voxel.place.palette = make.x;
-    fetch_fibre(g, make.y, voxel.place);
+    const uint2 properties = __ldg(g.patch_properties + index);
+    voxel.place.palette = properties.x;
+    fetch_fibre(g, properties.y, voxel.place);
   }
   else
-    voxel.place.palette = __ldg(&g.patch_makes[index].x);
+    voxel.place.palette = __ldg(&g.patch_properties[index].x);
   if (has<With, Effects::viscosity>)
     voxel.place.viscous = __ldg(g.viscous_words + index);
   return voxel;
@@ -107,7 +107,7 @@ __device__ __forceinline__ VoxelFetch fetch_voxel(const StepArguments& g, std::u
 
 template <Effects With>
 __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFetch& voxel,
-                                           const Activations& activation, float relaxes, bool look,
+                                           const Activations& activation, float relaxes, bool with_bound,
                                            const PatchMemory& memory, std::uint32_t column)
 {
   std::uint32_t corner[8];
@@ -125,8 +125,8 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   for (int c = 0; c < 3; ++c)
     physics::walsh_hadamard(mode[c]);
   float stiffness = 0;
-  element_forces<With>(g, voxel.place, activation, relaxes, mode, look, stiffness);
-  if (look)
+  element_forces<With>(g, voxel.place, activation, relaxes, mode, with_bound, stiffness);
+  if (with_bound)
     memory.force[24 * memory.width + column] = stiffness;
 #pragma unroll
   for (int c = 0; c < 3; ++c)
@@ -218,8 +218,8 @@ __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint
 }
 
 /// Bits of the bound of the squared highest frequency at a node.
-__device__ __forceinline__ std::uint32_t look_at_node(const StepArguments& g, const PatchMemory& memory,
-                                                      std::uint32_t node, float inverse_mass)
+__device__ __forceinline__ std::uint32_t bound_of_node(const StepArguments& g, const PatchMemory& memory,
+                                                       std::uint32_t node, float inverse_mass)
 {
   std::uint32_t column[8];
   split(__ldg(g.node_voxels + node), column);
@@ -310,7 +310,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   {
     const int present = (g.first + step - g.step_begin) & 1;
     const float4* const u = g.u[present];
-    const bool look = g.look != nullptr && (g.look_always || step + 1 == g.steps);
+    const bool with_bound = g.frequency_bound != nullptr && (g.bound_every_step || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
     filled = 0;
     const Activations activation = activations_at(g, step, activations);
@@ -340,27 +340,27 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         if (v != threadIdx.x)
           voxel = fetch(v);
         if (is_plain(v))
-          put_forces<plain>(g, voxel, activation, 0, look, memory, v);
+          put_forces<plain>(g, voxel, activation, 0, with_bound, memory, v);
         else
-          put_forces<With>(g, voxel, activation, relaxes, look, memory, v);
+          put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }
       end_voxels<With>(g, contact, memory, step);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
                               g.u[1 - present], step);
-      if (look)
+      if (with_bound)
         for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
           if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
-            frequency_bits = max(frequency_bits, look_at_node(g, memory, patch.first_node + n,
-                                                              memory.place[launch.most_halo + filled + n].w));
+            frequency_bits = max(frequency_bits, bound_of_node(g, memory, patch.first_node + n,
+                                                               memory.place[launch.most_halo + filled + n].w));
       filled += patch.nodes;
     }
-    if (look)
+    if (with_bound)
     {
       const std::uint32_t largest = largest_of_warp(frequency_bits);
       if ((threadIdx.x & 31) == 0)
-        atomicMax(g.look, largest);
+        atomicMax(g.frequency_bound, largest);
     }
   }
 }

@@ -9,9 +9,9 @@ namespace frontalis
 namespace cuda
 {
 
-// One warp per strip. Look: whether stiffness bounds are computed, which takes registers and so has kernels of its own.
-// Set is an int, because nvcc cannot name a combination of enumerators.
-template <int Rows, bool Look, int Set>
+// One warp per strip. WithBound: whether stiffness bounds are computed, which takes registers and so has kernels of its
+// own. Set is an int, because nvcc cannot name a combination of enumerators.
+template <int Rows, bool WithBound, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)
 {
@@ -39,39 +39,41 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
     viscous = g.viscous_words + strip.slot_begin + lane;
   std::uint32_t frequency_bits = 0;
   sweep_strip<Rows, With>(g, strip, g.slots + strip.slot_begin + lane, words, viscous, u, next,
-                          activations_at(g, step, activations), Look, frequency_bits);
+                          activations_at(g, step, activations), WithBound, frequency_bits);
   if (tasks)
   {
     __syncwarp();
     run_tasks<part<With, of_nodes>>(g, strip.task_begin, strip.task_end, u, next, step);
   }
-  if (Look)
+  if (WithBound)
   {
     const std::uint32_t largest = largest_of_warp(frequency_bits);
     if (lane == 0)
-      atomicMax(g.look, largest);
+      atomicMax(g.frequency_bound, largest);
   }
 }
 
 using StepKernel = void (*)(StepArguments);
 
 /// The strip kernel for a set of effects. `Nodes`: the effects of nodes in it.
-template <Effects Nodes, bool Look, int... Voxels>
+template <Effects Nodes, bool WithBound, int... Voxels>
 StepKernel step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {
-  const StepKernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Voxels)), Look, Voxels | int(Nodes)>... };
+  const StepKernel kernels[] = {
+    step_kernel<strip_rows(static_cast<Effects>(Voxels)), WithBound, Voxels | int(Nodes)>...
+  };
   return kernels[static_cast<int>(voxel_part(effects))];
 }
 template <Effects Nodes>
-StepKernel step_kernel_of(Effects effects, bool look)
+StepKernel step_kernel_of(Effects effects, bool with_bound)
 {
   using Sets = std::make_integer_sequence<int, voxel_sets>;
-  return look ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
+  return with_bound ? step_kernel_of<Nodes, true>(effects, Sets()) : step_kernel_of<Nodes, false>(effects, Sets());
 }
 
 /// Kernels are in separate translation units for the reason given in patch_kernel.cuh.
-StepKernel sliding_step_kernel(Effects effects, bool look);
-StepKernel friction_step_kernel(Effects effects, bool look);
+StepKernel sliding_step_kernel(Effects effects, bool with_bound);
+StepKernel friction_step_kernel(Effects effects, bool with_bound);
 
 }  // namespace cuda
 }  // namespace frontalis

@@ -104,7 +104,7 @@ struct StepArguments : physics::Kick<float>
   const Patch* patches;
   std::uint32_t patch_count;
   const uint4* patch_corners;       ///< VoxelPatches::corner
-  const uint2* patch_makes;         ///< per voxel of a patch: palette entry, fibre word
+  const uint2* patch_properties;    ///< per voxel of a patch: palette entry, fibre word
   const std::uint32_t* halo;        ///< VoxelPatches::halo
   const uint4* node_voxels;         ///< VoxelPatches::node_voxel
   const std::int32_t* patch_tasks;  ///< per device node: see patch_task
@@ -123,9 +123,9 @@ struct StepArguments : physics::Kick<float>
   const std::uint32_t* law_begin;  ///< laws other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
   bool selective_reduced;              ///< isochoric stress at eight points
-  const std::uint32_t* viscous_words;  ///< 1 + viscous voxel or 0, laid out as slots or patch_makes; null if none
+  const std::uint32_t* viscous_words;  ///< 1 + viscous voxel or 0, laid out as slots or patch_properties; null if none
   float* relaxed;  ///< [term, then their sum if there are two][component][viscous voxel] times tissue volume [N m]
-  const float4* viscous_makes;  ///< of each viscous voxel: fraction of two terms, rate of two terms [1/s]
+  const float4* viscous_properties;  ///< of each viscous voxel: fraction of two terms, rate of two terms [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
   const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: they do not
@@ -169,8 +169,8 @@ struct StepArguments : physics::Kick<float>
   double rate, friction_response;            ///< 1 / dt_exact; physics::friction_response
   double kick;                               ///< time over which forces change velocities in each of these steps [s]
   std::int32_t step_begin, step_end, steps;  ///< this launch makes steps [step_begin, step_end) of the plan
-  std::uint32_t* look;                       ///< bits of the squared frequency bound at the plan's last step
-  bool look_always;                          ///< computes the bound at all steps of the plan
+  std::uint32_t* frequency_bound;            ///< bits of the squared frequency bound at the plan's last step
+  bool bound_every_step;                     ///< computes the bound at all steps of the plan
   bool forces_only;                          ///< writes internal forces to u[1 - first] and updates nothing
   float* velocity_before[3];                 ///< velocities before the update; null without an account of work
   float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints

@@ -5,9 +5,9 @@ namespace frontalis
 namespace cuda
 {
 
-StepKernel sliding_step_kernel(Effects effects, bool look)
+StepKernel sliding_step_kernel(Effects effects, bool with_bound)
 {
-  return step_kernel_of<Effects::sliding | Effects::tasks>(effects, look);
+  return step_kernel_of<Effects::sliding | Effects::tasks>(effects, with_bound);
 }
 
 }  // namespace cuda

@@ -67,7 +67,7 @@ template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
                                              const Activations& activation, const RowValues& below_a,
                                              const RowValues& below_b, const RowValues& above_a,
-                                             const RowValues& above_b, bool look, float& stiffness,
+                                             const RowValues& above_b, bool with_bound, float& stiffness,
                                              RowForces force[2][2])
 {
   float mode[3][8];
@@ -85,7 +85,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<With>(g, place, activation, 0, mode, look, stiffness);
+  element_forces<With>(g, place, activation, 0, mode, with_bound, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -143,8 +143,8 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
 template <int Rows, Effects With>
 __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
                                             const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
-                                            const float4* u, float4* next, const Activations& activation, bool look,
-                                            std::uint32_t& frequency_bits)
+                                            const float4* u, float4* next, const Activations& activation,
+                                            bool with_bound, std::uint32_t& frequency_bits)
 {
   constexpr int nodes = Rows + 2;
   const int lane = threadIdx.x & 31;
@@ -212,10 +212,11 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, look, stiffness, force);
+        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
+                           force);
       }
       // a voxel adds the same stiffness to each of its nodes
-      if (look && r > 0)
+      if (with_bound && r > 0)
       {
         const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;
         const float sum = right + __shfl_sync(whole_warp, right, left);

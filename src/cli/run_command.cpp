@@ -62,13 +62,13 @@ struct Run
   void settle();
 
 private:
-  void look();
+  void observe();
   void advance_to(double end);
   void advance(double end);
 };
 
 // Observes the present state, and ends the run before a frame of a diverged motion is written.
-void Run::look()
+void Run::observe()
 {
   solver.skin(summary.end);
   summary.monitor = solver.monitor();
@@ -123,7 +123,7 @@ void Run::play()
   for (int frame = 0; frame <= frames && summary.complete; ++frame)
   {
     advance_to(frame == frames ? options.seconds : frame / frame_rate);
-    look();
+    observe();
     if (guard)
       summary.guard = guard->counts();
     if (frame == 0)
@@ -143,7 +143,7 @@ void Run::play()
 void Run::settle()
 {
   const double begin = wall_seconds();
-  look();
+  observe();
   summary.rest = summary.end;
   Progress progress;
   const double seconds = options.seconds / model.time_scaling;
@@ -156,7 +156,7 @@ void Run::settle()
   const Equilibrium found = guard ? guard->settle(target, options.tolerance, seconds, go_on)
                                   : solver.settle(target, options.tolerance, seconds, go_on);
   time = found.seconds * model.time_scaling;
-  look();
+  observe();
   summary.frames = 1;
   summary.wall = wall_seconds() - begin;
   summary.equilibrium = found;

@@ -46,7 +46,7 @@ public:
     for (std::size_t n = 0; n < now.size(); ++n)
       now[n] = static_cast<std::int32_t>(n);
     std::vector<bool> listed(values_.size(), false);
-    const auto look_again = [&](std::int32_t sample)
+    const auto revisit = [&](std::int32_t sample)
     {
       if (listed[sample])
         return;
@@ -68,8 +68,8 @@ public:
           const auto move = static_cast<float>(0.5 * (difference - std::copysign(step, difference)));
           values_[a] -= move;
           values_[b] += move;
-          look_again(a);
-          look_again(b);
+          revisit(a);
+          revisit(b);
         }
       now.swap(next);
       next.clear();

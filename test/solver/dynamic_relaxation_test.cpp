@@ -55,14 +55,14 @@ struct Oscillators
   }
 };
 
-// Runs the motion to rest; returns the number of calls of look() that it took, or 0 if it does not come to rest.
-int settle(Oscillators& motion, double tolerance, DynamicRelaxation& relaxation, int steps_per_look)
+// Runs the motion to rest; returns the number of calls of observe() that it took, or 0 if it does not come to rest.
+int settle(Oscillators& motion, double tolerance, DynamicRelaxation& relaxation, int steps_per_observation)
 {
   for (int looks = 1; looks < 5000; ++looks)
   {
-    motion.advance(steps_per_look, relaxation.damping());
+    motion.advance(steps_per_observation, relaxation.damping());
     NodalVectors u = motion.displacements();
-    relaxation.look(
+    relaxation.observe(
         motion.time, u, [&](NodalVectors& out) { motion.forces(out); }, 500, false);
     if (relaxation.result().reached)
     {
@@ -135,12 +135,12 @@ TEST(DynamicRelaxation, does_not_damp_above_what_is_allowed)
   DynamicRelaxation relaxation = of(motion, 1e-3);
   motion.advance(20, 0);
   NodalVectors u = motion.displacements();
-  relaxation.look(
+  relaxation.observe(
       motion.time, u, [&](NodalVectors& out) { motion.forces(out); }, 3, false);
   EXPECT_EQ(relaxation.damping(), 3);
 }
 
-// A window ends when the change exceeds rounding errors, after a set number of calls of look(), or with the motion.
+// A window ends when the change exceeds rounding errors, after a set number of calls of observe(), or with the motion.
 TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
 {
   for (const bool last : { false, true })
@@ -158,7 +158,7 @@ TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
         ++asked;
         motion.forces(out);
       };
-      relaxation.look(motion.time, u, forces, 500, last && look == 10);
+      relaxation.observe(motion.time, u, forces, 500, last && look == 10);
       EXPECT_EQ(asked, (last && look >= 10 ? 1 : 0) + (!last && look == 64 ? 1 : 0)) << look;
     }
   }

@@ -48,14 +48,8 @@ Spread spread_of(std::vector<double> values);
 Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less);
 Spread spread_of(const StepTimes& times, std::size_t column);
 
-// Reference speeds of the machine. Figures of the solver from the same run are compared with them.
-
-/// Bytes per second that large copies read and write, all threads together; median of several.
+/// Bytes per second that large copies read and write, all threads together; median of several. It tells how fast a
+/// machine is when figures of the solver are compared.
 double copy_bandwidth(int threads);
-
-/// Element updates per second of a bare loop: a dense block of edge^3 equal neo-Hookean voxels on plain arrays,
-/// hourglass stiffness and central differences, no muscles, constraints or checks, with the widest vector instructions
-/// of the processor; median of several.
-double bare_loop(int edge, int threads, double seconds);
 
 }  // namespace frontalis

@@ -13,7 +13,7 @@ namespace
 {
 
 // Tissue is looked for at this distance from a triangle on both sides, in longest voxel edges.
-constexpr double look_distance = 0.75;
+constexpr double search_distance = 0.75;
 
 // Share of a surface's area that must have tissue on one side only, less that with tissue on the other side only.
 constexpr double least_agreement = 0.2;
@@ -34,7 +34,7 @@ double area_behind(const TriangleMesh& mesh, const LocalFrame& frame, const Mode
     const auto [a, b, c] = corners(mesh, t);
     const Vector3d normal = (b - a).cross(c - a), centre = frame.to_local(Vector3d((a + b + c) / 3));
     const double area = 0.5 * normal.norm();
-    const Vector3d step = frame.turn(normal) * (look_distance * spacing.maxCoeff() / std::max(normal.norm(), 1e-30));
+    const Vector3d step = frame.turn(normal) * (search_distance * spacing.maxCoeff() / std::max(normal.norm(), 1e-30));
     behind += area * (int(has_tissue(centre - step)) - int(has_tissue(centre + step)));
     all += area;
   }

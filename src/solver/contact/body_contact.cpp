@@ -140,7 +140,7 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 }
 
 template <class Real>
-void BodyContact<Real>::look_at(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+void BodyContact<Real>::voxel_readings(std::size_t p, const Real* const u[3], const BodyState& body, double response)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
@@ -189,7 +189,7 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
     {
       const BodyState& body = now[points_[p].body];
       if (!(due_[p] > body.way))
-        look_at(p, u, body, response);
+        voxel_readings(p, u, body, response);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

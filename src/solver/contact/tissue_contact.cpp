@@ -180,7 +180,7 @@ void TissueContact<Real>::before_step(const NodeShare& share, const Real* const 
       if (stage == Stage::search)
         search(p);
       if (!(due_[p] > way))
-        look_at(p, way, response);
+        voxel_readings(p, way, response);
       chunk.due = std::min(chunk.due, due_[p]);
       for (std::size_t k = 0; k < most_tracks; ++k)
         chunk.touches |= tracks_[p * most_tracks + k].touches != Touching::no ? 1 : 0;
@@ -258,7 +258,7 @@ typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p
 }
 
 template <class Real>
-void TissueContact<Real>::look_at(std::size_t p, double way, double response)
+void TissueContact<Real>::voxel_readings(std::size_t p, double way, double response)
 {
   due_[p] = std::numeric_limits<double>::max();
   for (std::size_t k = p * most_tracks; k < (p + 1) * most_tracks; ++k)

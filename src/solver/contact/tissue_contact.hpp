@@ -114,7 +114,7 @@ private:
   Foot follow(std::int32_t& t, const Vector& x, const std::vector<Placed>& placed) const;
   double stiffness(std::size_t p, std::int32_t t, const Foot& foot, const std::vector<Placed>& placed) const;
   PairForce touch(std::size_t p, Track& track, const std::vector<Placed>& placed, double response, double& gap) const;
-  void look_at(std::size_t p, double way, double response);
+  void voxel_readings(std::size_t p, double way, double response);
   void mark_live();
   void find_overlap_at_rest();
   void add_vertex_forces(VertexForces& sum, const NodeShare& share, std::int32_t begin, std::int32_t end);

@@ -43,7 +43,7 @@ struct CpuElement
     std::int32_t index;  ///< of the tile
     int offset;          ///< first lane
     bool owned;          ///< false in the plane below a slab, computed here only for its upper nodes
-    bool look;           ///< whether stiffness bounds are computed
+    bool with_bound;     ///< whether stiffness bounds are computed
     double* work;        ///< sum of the work of fibres [J]; null without a ledger
 
     FRONTALIS_LAW Batch load(const float* lane_values) const { return Lane::load(lane_values + offset); }
@@ -186,13 +186,13 @@ struct CpuElement
 
   /// Calls visit() with the batches of a plane's tiles that hold voxels, as Voxels or VoxelsOf.
   template <class Batches = Voxels, class Visit>
-  static FRONTALIS_LAW void each_batch(const Arguments& g, std::int32_t plane, bool owned, bool look, double* work,
-                                       Visit&& visit)
+  static FRONTALIS_LAW void each_batch(const Arguments& g, std::int32_t plane, bool owned, bool with_bound,
+                                       double* work, Visit&& visit)
   {
     for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
       for (int offset = 0; offset < Tile::width; offset += lanes)
         if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
-          visit(Batches{ g, g.tiles + t, t, offset, owned, look, work });
+          visit(Batches{ g, g.tiles + t, t, offset, owned, with_bound, work });
   }
 
   /// Loads the displacements of the corners and transforms them.
@@ -255,12 +255,12 @@ struct CpuElement
     const Arguments& g = at.g;
     Batch mode[3][8], stiffness(Real(0));
     load_modes(at, g.u, mode);
-    const Stress P = physics::element_stress(at, mode, at.look, stiffness);
+    const Stress P = physics::element_stress(at, mode, at.with_bound, stiffness);
     const Batch hourglass = at.hourglass();
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
     const auto row_of = [&](int component, int r)
     { return (r < 2 ? below : above) + component * g.buffer_stride - base[r / 2]; };
-    if (at.look)
+    if (at.with_bound)
       for (int r = 0; r < 4; ++r)
       {
         Real* const to = row_of(3, r);

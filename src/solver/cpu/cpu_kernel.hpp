@@ -56,14 +56,14 @@ struct CpuKernelArguments : physics::Kick<Real>
 
 enum class KernelTask
 {
-  step,           ///< updates v and next
-  step_and_look,  ///< the same, and computes the squared frequency bound
-  forces,         ///< writes internal forces to `next`, updates nothing
-  relax           ///< relaxes viscous stresses only
+  step,            ///< updates v and next
+  step_and_bound,  ///< the same, and computes the squared frequency bound
+  forces,          ///< writes internal forces to `next`, updates nothing
+  relax            ///< relaxes viscous stresses only
 };
 
 /// Steps the nodes of planes [first, last). `buffer` has 8 * buffer_stride numbers. Returns the bound of the squared
-/// highest frequency [1/s2] at these nodes (step_and_look), or NaN if the motion is not finite.
+/// highest frequency [1/s2] at these nodes (step_and_bound), or NaN if the motion is not finite.
 template <class Real>
 using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32_t first, std::int32_t last,
                            Real* buffer, KernelTask task);

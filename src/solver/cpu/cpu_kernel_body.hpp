@@ -17,12 +17,13 @@ struct CpuKernelBody
   static constexpr int lanes = Element::lanes;
 
   template <Stabilisation Form>
-  static void plane_forces(const Arguments& g, std::int32_t plane, Real* below, Real* above, bool owned, bool look)
+  static void plane_forces(const Arguments& g, std::int32_t plane, Real* below, Real* above, bool owned,
+                           bool with_bound)
   {
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     using Batches = typename Element::template VoxelsOf<Form>;
-    Element::template each_batch<Batches>(g, plane, owned, look, &work,
+    Element::template each_batch<Batches>(g, plane, owned, with_bound, &work,
                                           [&](const Batches& at) { Element::add_forces(at, below, above, base); });
     if (g.muscle_work != nullptr && owned)
       g.muscle_work[plane] += work;
@@ -95,8 +96,8 @@ struct CpuKernelBody
   {
     Real* below = buffer;
     Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
-    const bool look = task == KernelTask::step_and_look;
-    const std::int32_t used = (look ? 4 : 3) * g.buffer_stride;
+    const bool with_bound = task == KernelTask::step_and_bound;
+    const std::int32_t used = (with_bound ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
     // Voxel plane k lies between node planes k and k + 1. The plane below the first serves only its upper nodes.
@@ -104,10 +105,10 @@ struct CpuKernelBody
     {
       clear(above, used);
       if (k >= 0 && k < g.planes - 1)
-        plane_forces<Form>(g, k, below, above, k >= first, look);
+        plane_forces<Form>(g, k, below, above, k >= first, with_bound);
       if (k >= first)
       {
-        if (look)
+        if (with_bound)
           frequency_squared =
               physics::larger_or_none(frequency_squared, plane_frequency(g, k, below + 3 * g.buffer_stride));
         if (task == KernelTask::forces)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/element/voxel_look.hpp"
+#include "frontalis/physics/element/voxel_readings.hpp"
 #include "solver/cpu/cpu_element.hpp"
 #include "solver/energy/plane_monitor.hpp"
 
@@ -17,16 +17,16 @@ struct CpuMonitor
   using Voxels = typename Element::Voxels;
   static constexpr int lanes = Element::lanes;
 
-  static void look(const Voxels& at, PlaneMonitor& plane, double* stiffness)
+  static void read(const Voxels& at, PlaneMonitor& plane, double* stiffness)
   {
     Batch mode[3][8];
     Element::load_modes(at, at.g.u, mode);
-    const physics::VoxelLook<Batch> look = physics::look_at(at, mode);
+    const physics::VoxelReadings<Batch> readings = physics::voxel_readings(at, mode);
     alignas(64) double internal[lanes], hourglass[lanes], jacobian[lanes], own[lanes];
-    look.internal.store_aligned(internal);
-    look.hourglass.store_aligned(hourglass);
-    look.jacobian.store_aligned(jacobian);
-    look.stiffness.store_aligned(own);
+    readings.internal.store_aligned(internal);
+    readings.hourglass.store_aligned(hourglass);
+    readings.jacobian.store_aligned(jacobian);
+    readings.stiffness.store_aligned(own);
     for (int lane = 0; lane < lanes; ++lane)
     {
       const std::int32_t voxel = at.tile->voxel(at.offset + lane);
@@ -41,7 +41,7 @@ struct CpuMonitor
   static void run(const Arguments& g, std::int32_t first, std::int32_t last, PlaneMonitor* planes, double* stiffness)
   {
     for (auto k = first; k < last; ++k)
-      Element::each_batch(g, k, true, true, nullptr, [&](const Voxels& at) { look(at, planes[k], stiffness); });
+      Element::each_batch(g, k, true, true, nullptr, [&](const Voxels& at) { read(at, planes[k], stiffness); });
   }
 };
 

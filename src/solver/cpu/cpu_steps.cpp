@@ -139,7 +139,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           if (pushed)
             team_.barrier();
           const auto task =
-              plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_look : KernelTask::step;
+              plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_bound : KernelTask::step;
           const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
           if (!(frequency_squared <= seen[t]))
             seen[t] = frequency_squared;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/element/voxel_look.hpp"
+#include "frontalis/physics/element/voxel_readings.hpp"
 #include "frontalis/solver/solver.hpp"
 
 namespace frontalis
@@ -14,9 +14,9 @@ struct PlaneMonitor
   std::int64_t inverted = 0;
   std::int32_t worst_voxel = -1;
 
-  static FRONTALIS_LAW PlaneMonitor of_voxel(const physics::VoxelLook<double>& look, std::int32_t voxel)
+  static FRONTALIS_LAW PlaneMonitor of_voxel(const physics::VoxelReadings<double>& readings, std::int32_t voxel)
   {
-    return { 0, look.internal, look.hourglass, look.jacobian, look.jacobian <= 0 ? 1 : 0, voxel };
+    return { 0, readings.internal, readings.hourglass, readings.jacobian, readings.jacobian <= 0 ? 1 : 0, voxel };
   }
 
   /// Adds a part. Add parts in the order of their voxels; values that are not finite count as the worst.

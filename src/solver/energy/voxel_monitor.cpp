@@ -1,6 +1,6 @@
 #include "solver/energy/voxel_monitor.hpp"
 
-#include "frontalis/physics/element/voxel_look.hpp"
+#include "frontalis/physics/element/voxel_readings.hpp"
 #include "solver/energy/plane_monitor.hpp"
 #include "solver/model_voxel.hpp"
 #include "solver/stepping/step_bound.hpp"
@@ -45,9 +45,9 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
         mode[axis][b] = u[model.voxel_nodes[e][b]][axis];
       physics::walsh_hadamard(mode[axis]);
     }
-    const auto look = physics::look_at(ModelVoxel{ model, d, voxel, e, nullptr, {}, scale }, mode);
-    stiffness[e] = look.stiffness;
-    sum.add(PlaneMonitor::of_voxel(look, static_cast<std::int32_t>(e)));
+    const auto readings = physics::voxel_readings(ModelVoxel{ model, d, voxel, e, nullptr, {}, scale }, mode);
+    stiffness[e] = readings.stiffness;
+    sum.add(PlaneMonitor::of_voxel(readings, static_cast<std::int32_t>(e)));
   }
   const StepBound bound = step_bound(d, model, stiffness);
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(model, bound.node, stiffness.data()));

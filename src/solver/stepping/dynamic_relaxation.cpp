@@ -29,13 +29,13 @@ DynamicRelaxation::DynamicRelaxation(const Settings& settings, const std::vector
   result_.residual = 1;
 }
 
-void DynamicRelaxation::look(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last)
+void DynamicRelaxation::observe(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last)
 {
   const double change = distance(u_, u), moved = distance({}, u);
   result_.seconds = time - begin_;
-  if (change < clear_change * moved && ++looks_ < settings_.longest_window && !last)
+  if (change < clear_change * moved && ++observations_ < settings_.longest_window && !last)
     return;
-  looks_ = 0;
+  observations_ = 0;
   const double speed = change / (time - std::exchange(window_begin_, time));
   forces(f_now_);
   fastest_ = std::max(fastest_, speed);

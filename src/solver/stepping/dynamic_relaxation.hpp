@@ -18,7 +18,7 @@ public:
   {
     double tolerance;    ///< remaining motion over displacement, in mass-weighted norms
     double damping;      ///< initial damping, until a frequency has been found [1/s]
-    int longest_window;  ///< in calls of look()
+    int longest_window;  ///< in calls of observe()
   };
 
   /// Starts at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive it.
@@ -27,7 +27,7 @@ public:
 
   /// Evaluates the motion at displacements u, which are moved from. `forces` computes the internal forces there if they
   /// are needed. `last`: the motion ends here. Damping stays below `most_damping` [1/s].
-  void look(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last);
+  void observe(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last);
 
   double damping() const { return damping_; }
   const Equilibrium& result() const { return result_; }
@@ -40,7 +40,7 @@ private:
   const std::vector<double>& mass_;
   double begin_, window_begin_;  // [s]
   NodalVectors u_, f_, f_now_;   // at the start of the window; forces at its end
-  int looks_ = 0;                // calls of look() in this window
+  int observations_ = 0;         // calls of observe() in this window
   double damping_;
   double lowest_ = 0;     // lowest squared frequency found [1/s2]
   double fastest_ = 0;    // highest speed so far

@@ -37,8 +37,8 @@ struct BackendTraits
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
-  int steps_per_look = 32;    ///< steps between two looks at all displacements during dynamic relaxation
-  int steps_per_check = 512;  ///< Solver::steps_per_check
+  int steps_per_observation = 32;  ///< steps between two looks at all displacements during dynamic relaxation
+  int steps_per_check = 512;       ///< Solver::steps_per_check
 };
 
 /// Data that a time stepper shares with its backend.

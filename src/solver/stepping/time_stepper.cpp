@@ -239,14 +239,14 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   displacements(u);
   internal_forces(f);
   const double begin = motion_.time;
-  const int longest_window = std::max(1, steps_per_window / traits_.steps_per_look);
+  const int longest_window = std::max(1, steps_per_window / traits_.steps_per_observation);
   DynamicRelaxation relaxation({ tolerance, model_->damping, longest_window }, discretisation_.node_mass, begin, u, f);
   const auto forces = [this](NodalVectors& out) { internal_forces(out); };
   while (!relaxation.result().reached && motion_.time - begin < seconds)
   {
-    advance(std::min(traits_.steps_per_look * time_step(), seconds - (motion_.time - begin)), target);
+    advance(std::min(traits_.steps_per_observation * time_step(), seconds - (motion_.time - begin)), target);
     displacements(u);
-    relaxation.look(motion_.time, u, forces, 1 / time_step(), motion_.time - begin >= seconds);
+    relaxation.observe(motion_.time, u, forces, 1 / time_step(), motion_.time - begin >= seconds);
     conditions_.damping = relaxation.damping();
     if (go_on && !go_on(relaxation.result()))
       break;

@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -91,26 +89,10 @@ std::string machine_of(const Solver& solver, int threads)
   return solver.description() + ", " + processor + ", " + std::to_string(thread_count(threads)) + " threads";
 }
 
-// Only malloc_info() of glibc covers all arenas. Used bytes: those from the system, plus mapped ones, minus free ones.
 double heap_bytes()
 {
-  char* text = nullptr;
-  std::size_t size = 0;
-  FILE* const stream = open_memstream(&text, &size);
-  if (stream == nullptr)
-    return NAN;
-  malloc_info(0, stream);
-  std::fclose(stream);
-  const std::string info(text, size);
-  std::free(text);
-  // the last entry of each kind is the sum over arenas
-  const auto bytes = [&info](const std::string& begin)
-  {
-    const std::size_t at = info.rfind(begin), number = info.find("size=\"", at);
-    return at == std::string::npos || number == std::string::npos ? 0 : std::stod(info.substr(number + 6));
-  };
-  return bytes("<system type=\"current\"") + bytes("<total type=\"mmap\"") - bytes("<total type=\"rest\"") -
-         bytes("<total type=\"fast\"");
+  const auto info = mallinfo2();  // of all arenas
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,

@@ -10,10 +10,10 @@ namespace frontalis
 namespace physics
 {
 
-/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. If `look` is set,
-/// stiffness becomes the largest bound at these points if that is larger.
+/// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. If `with_bound` is
+/// set, stiffness becomes the largest bound at these points if that is larger.
 template <class Voxel, class T>
-FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
+FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool with_bound, T& stiffness)
 {
   T force[3][8];
   for (auto& component : force)
@@ -27,7 +27,7 @@ FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool look, 
     at_gauss_point(point, mode, moved);
     const Kinematics<T> k = kinematics(moved[0], moved[1], moved[2], voxel.scale());
     add_gauss_forces(point, isochoric_stress(voxel, k), voxel.scale(), force);
-    if (look)
+    if (with_bound)
       stiffness = larger_or_none(stiffness, voxel.stiffness_now(k));
   }
   for (int c = 0; c < 3; ++c)
@@ -46,10 +46,10 @@ FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
 
 /// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Unless
 /// hourglass control is scalar, the modes become the forces on them; if it is, the voxel calls scalar_hourglass() here
-/// or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the call; if `look` is set,
-/// it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
+/// or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the call; if `with_bound` is
+/// set, it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
 template <class Voxel, class T>
-FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool look, T& stiffness)
+FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool with_bound, T& stiffness)
 {
   const Kinematics<T> k = kinematics(mode[0], mode[1], mode[2], voxel.scale());
   const bool reduced = voxel.selective_reduced();
@@ -60,12 +60,12 @@ FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], boo
     P = elastic_stress(voxel, voxel.material(), k);
   voxel.add_fibres(k, P);
   voxel.add_viscosity(k, P);
-  if (look && !reduced)
+  if (with_bound && !reduced)
     stiffness = voxel.stiffness_now(k);
   if (voxel.assumed_strain())
     hourglass_forces(voxel.stabilisation(), voxel.hourglass(), voxel.hourglass_weight(), k.F, mode, P);
   else if (reduced)
-    voxel.gauss_forces(mode, look, stiffness);
+    voxel.gauss_forces(mode, with_bound, stiffness);
   else
     voxel.scalar_hourglass(mode);
   return P;

@@ -29,7 +29,7 @@ namespace physics
 //
 // The following members decide whether an effect is computed at all, and whether its code is inlined. Each calls the
 // function of the same name in this folder: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),
-// stiffness_now(k), gauss_forces(mode, look, stiffness), scalar_hourglass(mode).
+// stiffness_now(k), gauss_forces(mode, with_bound, stiffness), scalar_hourglass(mode).
 
 /// Adds the stress of the laws other than neo-Hookean.
 template <class Voxel, class T>

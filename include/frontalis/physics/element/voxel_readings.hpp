@@ -9,7 +9,7 @@ namespace physics
 
 /// Energies and bounds of a voxel for the monitor.
 template <class T>
-struct VoxelLook
+struct VoxelReadings
 {
   T internal;   ///< elastic energy [J]
   T hourglass;  ///< energy of hourglass control [J]
@@ -43,31 +43,31 @@ FRONTALIS_LAW T hourglass_energy(const Voxel& voxel, const Kinematics<T>& k, con
 
 /// Evaluates a voxel at transformed displacements.
 template <class Voxel, class T>
-FRONTALIS_LAW VoxelLook<T> look_at(const Voxel& voxel, const T (&mode)[3][8])
+FRONTALIS_LAW VoxelReadings<T> voxel_readings(const Voxel& voxel, const T (&mode)[3][8])
 {
   using N = Number<T>;
   const Kinematics<T> k = kinematics(mode[0], mode[1], mode[2], voxel.scale());
   NeoHookean<T> material = voxel.material();
-  VoxelLook<T> look{ N::of(0), N::of(0), k.J, N::of(0) };
+  VoxelReadings<T> readings{ N::of(0), N::of(0), k.J, N::of(0) };
   if (!voxel.selective_reduced())
   {
-    look.internal = elastic_energy(voxel, material, k);
-    look.hourglass = hourglass_energy(voxel, k, mode);
-    look.stiffness = voxel.stiffness_now(k);
-    return look;
+    readings.internal = elastic_energy(voxel, material, k);
+    readings.hourglass = hourglass_energy(voxel, k, mode);
+    readings.stiffness = voxel.stiffness_now(k);
+    return readings;
   }
-  look.internal = N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
+  readings.internal = N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
   material.kappa = N::of(0);
   for (int point = 0; point < 8; ++point)
   {
     T moved[3][8];
     at_gauss_point(point, mode, moved);
     const Kinematics<T> there = kinematics(moved[0], moved[1], moved[2], voxel.scale());
-    look.internal = look.internal + N::of(0.125) * elastic_energy(voxel, material, there);
-    look.jacobian = N::min(look.jacobian, there.J);
-    look.stiffness = larger_or_none(look.stiffness, voxel.stiffness_now(there));
+    readings.internal = readings.internal + N::of(0.125) * elastic_energy(voxel, material, there);
+    readings.jacobian = N::min(readings.jacobian, there.J);
+    readings.stiffness = larger_or_none(readings.stiffness, voxel.stiffness_now(there));
   }
-  return look;
+  return readings;
 }
 
 }  // namespace physics
