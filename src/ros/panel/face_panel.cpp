@@ -210,7 +210,7 @@ void FacePanel::call(const char* service, const Service& request,
   const std::string name = face_->text().toStdString() + "/" + service;
   calls_.push_back(
       std::async(std::launch::async,
-                 [name, request, use]() mutable -> std::function<void()>
+                 [name, request = Service(request), use]() mutable -> std::function<void()>
                  {
                    const bool done = ros::service::exists(name, false) && ros::service::call(name, request);
                    if (!use)
