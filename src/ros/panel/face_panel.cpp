@@ -115,6 +115,7 @@ FacePanel::FacePanel(QWidget* parent)
   scroll->setWidget(area);
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setMinimumHeight(200);
   muscles_box->addWidget(scroll);
 
   speed_->setRange(0, 150);
