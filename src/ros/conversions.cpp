@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace frontalis
@@ -26,6 +27,14 @@ void set(Message& message, const std::array<Number, 3>& coordinates)
   message.x = coordinates[0];
   message.y = coordinates[1];
   message.z = coordinates[2];
+}
+
+void set(geometry_msgs::Quaternion& message, const tf2::Quaternion& rotation)
+{
+  message.x = rotation.x();
+  message.y = rotation.y();
+  message.z = rotation.z();
+  message.w = rotation.w();
 }
 
 }  // namespace
@@ -56,11 +65,8 @@ shape_msgs::Mesh to_mesh(const Model& model)
   return out;
 }
 
-void to_marker(const Model& model, const SkinShading& shading, const SkinState& skin, visualization_msgs::Marker& out)
+void to_marker(const Model& model, const SkinColours& colours, const SkinState& skin, visualization_msgs::Marker& out)
 {
-  thread_local std::vector<std::array<float, 3>> colours;
-  shading.colours(skin, colours);
-
   out.type = visualization_msgs::Marker::TRIANGLE_LIST;
   out.action = visualization_msgs::Marker::ADD;
   out.ns = "skin";
@@ -90,15 +96,17 @@ std::vector<float> distances(const SkinState& skin, const std::vector<std::array
   return out;
 }
 
-void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out)
+void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, const SkinColours& colours,
+                    sensor_msgs::PointCloud2& out)
 {
   out.height = 1;
   out.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
   out.is_dense = true;
   sensor_msgs::PointCloud2Modifier layout(out);
   constexpr auto number = sensor_msgs::PointField::FLOAT32;
-  layout.setPointCloud2Fields(7, "x", 1, number, "y", 1, number, "z", 1, number, "normal_x", 1, number, "normal_y", 1,
-                              number, "normal_z", 1, number, "intensity", 1, number);
+  const int fields = colours.empty() ? 7 : 8;
+  layout.setPointCloud2Fields(fields, "x", 1, number, "y", 1, number, "z", 1, number, "normal_x", 1, number, "normal_y",
+                              1, number, "normal_z", 1, number, "intensity", 1, number, "rgb", 1, number);
   layout.resize(skin.vertices.size());
   for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
   {
@@ -107,17 +115,55 @@ void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, 
     const float values[7] = {
       position[0], position[1], position[2], normal[0], normal[1], normal[2], intensity[vertex]
     };
-    std::memcpy(out.data.data() + vertex * sizeof values, values, sizeof values);
+    std::uint8_t* const point = out.data.data() + vertex * out.point_step;
+    std::memcpy(point, values, sizeof values);
+    if (colours.empty())
+      continue;
+    std::uint32_t packed = 0;
+    for (const float channel : colours[vertex])
+      packed = packed << 8 | static_cast<std::uint32_t>(std::lround(255 * channel));
+    std::memcpy(point + sizeof values, &packed, sizeof packed);
   }
 }
 
-void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out)
+std::vector<std::size_t> landmark_vertices(const Model& model)
+{
+  std::vector<std::size_t> out;
+  out.reserve(model.landmark_positions.size());
+  for (const auto& [x, y, z] : model.landmark_positions)
+  {
+    const auto& all = model.skin.vertices;
+    const auto distance = [at = std::array<double, 3>{ { x, y, z } }](const auto& v)
+    { return std::hypot(v[0] - at[0], v[1] - at[1], v[2] - at[2]); };
+    out.push_back(static_cast<std::size_t>(std::min_element(all.begin(), all.end(),
+                                                            [&](const auto& a, const auto& b)
+                                                            { return distance(a) < distance(b); }) -
+                                           all.begin()));
+  }
+  return out;
+}
+
+void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out)
 {
   out.poses.resize(skin.landmarks.size());
   for (std::size_t landmark = 0; landmark < out.poses.size(); ++landmark)
   {
-    set(out.poses[landmark].position, skin.landmarks[landmark]);
-    out.poses[landmark].orientation.w = 1;
+    auto& pose = out.poses[landmark];
+    set(pose.position, skin.landmarks[landmark]);
+    tf2::Vector3 outwards(1, 0, 0);
+    if (vertices[landmark] < skin.normals.size())
+    {
+      const auto& n = skin.normals[vertices[landmark]];
+      outwards = tf2::Vector3(n[0], n[1], n[2]);
+    }
+    // where the normal points up or down, the back of the face's x axis lies along the skin upwards
+    const tf2::Vector3 up = std::abs(outwards.z()) < 0.99 ? tf2::Vector3(0, 0, 1) : tf2::Vector3(-outwards.z(), 0, 0);
+    const tf2::Vector3 left = up.cross(outwards).normalized(), upwards = outwards.cross(left);
+    tf2::Quaternion rotation;
+    tf2::Matrix3x3(outwards.x(), left.x(), upwards.x(), outwards.y(), left.y(), upwards.y(), outwards.z(), left.z(),
+                   upwards.z())
+        .getRotation(rotation);
+    set(pose.orientation, rotation);
   }
 }
 
@@ -133,10 +179,7 @@ geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape
   tf2::Matrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]).getRotation(rotation);
   geometry_msgs::Transform out;
   set(out.translation, pose(model.to_face(shape.centre)));
-  out.rotation.x = rotation.x();
-  out.rotation.y = rotation.y();
-  out.rotation.z = rotation.z();
-  out.rotation.w = rotation.w();
+  set(out.rotation, rotation);
   return out;
 }
 
@@ -160,6 +203,8 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
+  // those of the scene before
+  out.markers.emplace_back().action = visualization_msgs::Marker::DELETEALL;
   for (const BodyShape& shape : body_shapes(model))
   {
     visualization_msgs::Marker& marker = out.markers.emplace_back();
@@ -187,7 +232,8 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
   return out;
 }
 
-void to_transforms(const Model& model, const Frame& frame, const std::string& face_frame, const ros::Time& stamp,
+void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::PoseArray& landmarks,
+                   const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out)
 {
   const SkinState& skin = frame.skin;
@@ -208,7 +254,7 @@ void to_transforms(const Model& model, const Frame& frame, const std::string& fa
     transform.header.frame_id = face_frame;
     transform.child_frame_id = face_frame + "/" + model.landmarks[landmark];
     set(transform.transform.translation, skin.landmarks[landmark]);
-    transform.transform.rotation.w = 1;
+    transform.transform.rotation = landmarks.poses[landmark].orientation;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 namespace frontalis
 {
@@ -14,9 +15,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double demo_period = 1.0 / 30;     // time between two settings of the demo's activations [s]
+constexpr double play_period = 1.0 / 30;     // time between two settings of activations that change [s]
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
-constexpr double diagnostics_period = 1.0;   // time between two messages [s]
+constexpr double diagnostics_period = 1.0;   // time between two messages, unless ~diagnostic_period says another [s]
 constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 
@@ -28,45 +29,50 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       name_(name),
       updater_(handle, private_handle, name),
       publisher_(private_handle),
-      last_frame_(ros::WallTime::now())
+      last_frame_(ros::WallTime::now()),
+      inputs_(
+          private_handle, name, [this](std::string* reason) { return runner(reason); },
+          [this] { return time_.load(); }),
+      loading_spinner_(1, &loading_queue_)
 {
   updater_.setHardwareID("none");
   updater_.add("simulation", this, &FaceNode::diagnose);
 
-  const auto subscribe = [this](const char* topic, auto handler)
-  { subscribers_.push_back(private_handle_.subscribe(topic, 10, handler, this)); };
-  subscribe("muscle_activation", &FaceNode::on_muscle_activation);
-  subscribe("joint_states", &FaceNode::on_joint_states);
-  subscribe("expression", &FaceNode::on_expression);
-  subscribe("bone_pose", &FaceNode::on_bone_pose);
-  const auto serve = [this](const char* service, auto handler)
-  { services_.push_back(private_handle_.advertiseService(service, handler, this)); };
-  serve("reset", &FaceNode::on_reset);
-  serve("pause", &FaceNode::on_pause);
-  serve("step", &FaceNode::on_step);
-  serve("switch_effect", &FaceNode::on_switch_effect);
-  serve("list_muscles", &FaceNode::on_list_muscles);
+  const auto serve = [this](ros::NodeHandle& node, const char* service, auto handler)
+  { services_.push_back(node.advertiseService(service, handler, this)); };
+  serve(private_handle_, "reset", &FaceNode::on_reset);
+  serve(private_handle_, "pause", &FaceNode::on_pause);
+  serve(private_handle_, "step", &FaceNode::on_step);
+  serve(private_handle_, "switch_effect", &FaceNode::on_switch_effect);
+  serve(private_handle_, "list_muscles", &FaceNode::on_list_muscles);
+  serve(private_handle_, "probe", &FaceNode::on_probe);
+  ros::NodeHandle loading_handle = private_handle_;
+  loading_handle.setCallbackQueue(&loading_queue_);
+  serve(loading_handle, "load_scene", &FaceNode::on_load_scene);
+  loading_spinner_.start();
 
-  frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(demo_period),
-                                                 [this](const ros::WallTimerEvent&) { repeat_frame_and_play_demo(); });
-  diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(diagnostics_period),
+  frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(play_period),
+                                                 [this](const ros::WallTimerEvent&) { repeat_frame_and_play(); });
+  const double period = private_handle_.param("diagnostic_period", diagnostics_period);
+  diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(std::max(period, 0.01)),
                                                        [this](const ros::WallTimerEvent&) { updater_.force_update(); });
   loader_ = std::thread([this] { load(); });
 }
 
 FaceNode::~FaceNode()
 {
-  // Order matters: no callback may begin any more; then the loader and the runner end, which still use the publishers.
+  // Order matters: no callback may begin any more; then the loaders and the runner end, which still use the publishers.
   stopping_ = true;
   frame_timer_.stop();
   diagnostics_timer_.stop();
-  for (auto& subscriber : subscribers_)
-    subscriber.shutdown();
+  inputs_.shutdown();
   if (const auto running = runner())
     running->cancel_step();
   for (auto& service : services_)
     service.shutdown();
+  loading_spinner_.stop();
   loader_.join();
+  server_.reset();
   const std::shared_ptr<Runner> last = runner();  // keeps the runner until after the mutex is unlocked
   const std::lock_guard<std::mutex> lock(runner_mutex_);
   runner_.reset();
@@ -97,50 +103,63 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
   return model;
 }
 
+void FaceNode::replace_face(const FaceParameters& parameters)
+{
+  const auto model = make_model(parameters);
+  if (parameters.inputs.demo && model->demo.empty())
+    ROS_WARN_STREAM(name_ << ": ~demo is true, but the scene has no demo");
+
+  // its frames are ignored until it has taken the place of the present runner
+  const std::uint64_t face = ++faces_made_;
+  RunnerSettings settings = parameters.runner;
+  settings.wanted_field = [this] { return publisher_.wanted_field(); };
+  settings.wants_displacements = [this] { return publisher_.shows_muscles(); };
+  const auto made =
+      std::make_shared<Runner>(model, settings, [this, face](const Frame& frame) { on_frame(frame, face); });
+  const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
+  inputs_.start(model, parameters.inputs, frame_name);
+  std::shared_ptr<Runner> before;
+  {
+    const std::scoped_lock lock(runner_mutex_, frame_mutex_);
+    publisher_.start(model, frame_name, parameters.parent_frame, made->description());
+    publisher_.set_colour(parameters.skin_colour, parameters.skin_field, parameters.colour_range);
+    present_face_ = face;
+    frame_ = Frame();
+    has_frame_ = false;
+    frame_finite_ = true;
+    speed_report_.clear();
+    last_frame_ = last_published_ = ros::WallTime::now();
+    time_ = 0;
+    parameters_ = parameters;
+    load_fault_.clear();
+    before = std::exchange(runner_, made);
+  }
+  if (before)
+    before->cancel_step();
+  before.reset();
+  paused_ = made->paused();
+  // publishes the face at rest, in lock-step too
+  made->reset();
+  {
+    // the new runner has all effects switched on
+    const boost::recursive_mutex::scoped_lock lock(server_mutex_);
+    switched_off_.clear();
+    if (server_)
+      on_config(config_, 0);
+  }
+  if (const std::string measured = measured_profile(*model); !measured.empty())
+    ROS_INFO_STREAM(name_ << ": " << measured);
+  ROS_INFO_STREAM(name_ << ": running on " << made->description() << ", frame " << frame_name);
+}
+
 void FaceNode::load()
 {
+  const std::lock_guard<std::mutex> one_at_a_time(loading_mutex_);
   try
   {
-    const FaceParameters parameters = read_parameters(private_handle_);
-    const auto model = make_model(parameters);
-    const auto demo = std::make_shared<const DemoPlayer>(model);
-    if (parameters.demo && demo->empty())
-      ROS_WARN_STREAM(name_ << ": ~demo is true, but the scene has no demo");
-    {
-      const std::lock_guard<std::mutex> lock(runner_mutex_);
-      parameters_ = parameters;
-      demo_ = demo;
-    }
-    {
-      const std::lock_guard<std::mutex> lock(target_mutex_);
-      for (const auto& muscle : model->muscles)
-        target_[muscle.name] = 0;
-      demo_playing_ = parameters.demo && !demo->empty();
-    }
-
-    // The runner's first frame may come before its constructor returns: the lock makes frames wait until the publisher
-    // has the model. It is declared after the runner, so that after an exception the runner's thread, which may wait
-    // for it, can end.
-    std::shared_ptr<Runner> made;
-    std::unique_lock<std::mutex> frames(frame_mutex_);
-    RunnerSettings settings = parameters.runner;
-    settings.wanted_field = [this, field = parameters.skin_field]
-    { return publisher_.shows_field() ? std::make_optional(field) : std::nullopt; };
-    made = std::make_shared<Runner>(model, settings, [this](const Frame& frame) { on_frame(frame); });
-    const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
-    publisher_.start(model, frame_name, parameters.parent_frame, made->description());
-    last_frame_ = last_published_ = ros::WallTime::now();
-    frames.unlock();
-
-    paused_ = made->paused();
-    // in lock-step no frame comes before the first ~step: publish the face at rest
-    if (parameters.runner.pace == Pace::lock_step)
-      made->reset();
-    if (const std::string measured = measured_profile(*model); !measured.empty())
-      ROS_INFO_STREAM(name_ << ": " << measured);
-    ROS_INFO_STREAM(name_ << ": running on " << made->description() << ", frame " << frame_name);
-    const std::lock_guard<std::mutex> lock(runner_mutex_);
-    runner_ = made;
+    replace_face(read_parameters(private_handle_));
+    server_ = std::make_unique<dynamic_reconfigure::Server<FaceConfig>>(server_mutex_, private_handle_);
+    server_->setCallback([this](FaceConfig& config, std::uint32_t level) { on_config(config, level); });
   }
   catch (const std::exception& error)
   {
@@ -159,10 +178,13 @@ std::shared_ptr<Runner> FaceNode::runner(std::string* reason) const
   return runner_;
 }
 
-void FaceNode::on_frame(const Frame& frame)
+void FaceNode::on_frame(const Frame& frame, std::uint64_t face)
 {
   const std::lock_guard<std::mutex> lock(frame_mutex_);
+  if (face != present_face_)
+    return;
   frame_ = frame;
+  time_ = frame.time;
   has_frame_ = true;
   last_frame_ = last_published_ = ros::WallTime::now();
   log_speed_once();
@@ -187,12 +209,15 @@ void FaceNode::log_speed_once()
     ROS_INFO_STREAM(name_ << ": " << speed_report_);
 }
 
-void FaceNode::repeat_frame_and_play_demo()
+void FaceNode::repeat_frame_and_play()
 {
-  double time = 0;
+  std::shared_ptr<Runner> running;
+  bool steps_by_itself = false;
   {
     const std::scoped_lock lock(runner_mutex_, frame_mutex_);
-    time = frame_.time;
+    running = runner_;
+    // in lock-step ~step plays the demo and the commands
+    steps_by_itself = parameters_.runner.pace != Pace::lock_step;
     if ((ros::WallTime::now() - last_published_).toSec() > repetition_period)
     {
       last_published_ = ros::WallTime::now();
@@ -204,22 +229,8 @@ void FaceNode::repeat_frame_and_play_demo()
         publisher_.publish_fault(load_fault_, ros::Time::now());
     }
   }
-  // in lock-step ~step sets the demo's activations
-  if (!paused_ && parameters_.runner.pace != Pace::lock_step)
-    play_demo(time);
-}
-
-void FaceNode::play_demo(double time)
-{
-  const std::lock_guard<std::mutex> lock(target_mutex_);
-  const auto running = runner();
-  if (!demo_playing_ || !running)
-    return;
-  const auto activation = demo_->activation(time);
-  running->set_activation(activation);
-  for (const auto& [bone, motion] : demo_->bones(time))
-    running->set_bone(bone, motion);
-  target_ = activation;
+  if (running && !paused_ && steps_by_itself)
+    inputs_.play(*running, time_);
 }
 
 void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
@@ -234,7 +245,7 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
     return;
   }
 
-  const std::lock_guard<std::mutex> lock(frame_mutex_);
+  std::unique_lock<std::mutex> lock(frame_mutex_);
   const bool moves_by_itself = parameters_.runner.pace != Pace::lock_step && !paused_;
   const double silence = (ros::WallTime::now() - last_frame_).toSec();
   if (frame_.failed)
@@ -269,6 +280,11 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   if (frame_.guard.rollbacks > 0)
     status.add("reason of the latest return", words_for(frame_.guard.latest));
   status.add("frames not published as not finite", frames_dropped_);
+  if (frame_.seconds_per_step > 0)
+    status.add("wall time per step [us]", 1e6 * frame_.seconds_per_step);
+  status.add("memory of the solver [MB]", static_cast<double>(frame_.solver_bytes) / 1e6);
+  lock.unlock();
+  inputs_.diagnose(status);
 }
 
 }  // namespace frontalis

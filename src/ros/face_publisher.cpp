@@ -1,11 +1,25 @@
 #include "frontalis/ros/face_publisher.hpp"
 
+#include "frontalis/error.hpp"
+
 #include <boost/make_shared.hpp>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace frontalis
 {
+
+namespace
+{
+
+// values with the last colour
+constexpr double displacement_range = 10e-3;  // [m]
+constexpr double strain_range = 0.3;
+constexpr double stress_range = 20e3;  // [Pa]
+
+}  // namespace
 
 template <typename Message>
 template <typename Fill>
@@ -31,6 +45,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       state_(private_handle, "state"),
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
+      muscles_(private_handle.advertise<visualization_msgs::MarkerArray>("muscles", 1)),
       handle_(private_handle)
 {
 }
@@ -45,7 +60,10 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   rest_ = rest_in_face(*model_);
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_));
+  landmark_vertices_ = landmark_vertices(*model_);
+  lines_ = std::make_unique<MuscleLines>(*model_);
   shapes_ = body_shapes(*model_);
+  wrenches_.clear();
   for (const BodyShape& shape : shapes_)
     wrenches_.emplace_back(handle_, "wrench/" + shape.name);
   if (!parent_frame.empty())
@@ -59,18 +77,73 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   }
 }
 
+void FacePublisher::set_colour(SkinColour colour, SkinField field, double range)
+{
+  colour_ = colour;
+  shown_field_ = field;
+  colour_range_ = range;
+}
+
+std::optional<SkinField> FacePublisher::wanted_field() const
+{
+  const bool colours = skin_.publisher.getNumSubscribers() > 0 || points_.publisher.getNumSubscribers() > 0;
+  const bool wanted = field_.publisher.getNumSubscribers() > 0 || (colours && colour_ == SkinColour::field);
+  return wanted ? std::make_optional(shown_field_.load()) : std::nullopt;
+}
+
+// the values that the colours show, as fractions of the value with the last colour
+std::vector<float> FacePublisher::shown_values(const Frame& frame) const
+{
+  std::vector<float> values;
+  double full = displacement_range;
+  if (colour_ == SkinColour::displacement)
+    values = distances(frame.skin, rest_);
+  else if (colour_ == SkinColour::field && frame.field.size() == frame.skin.vertices.size())
+  {
+    values = frame.field;
+    full = shown_field_ == SkinField::strain ? strain_range : stress_range;
+  }
+  if (colour_range_ > 0)
+    full = colour_range_;
+  for (float& value : values)
+    value /= static_cast<float>(full);
+  return values;
+}
+
 bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool paused)
 {
   if (!is_publishable(frame.skin, *model_))
     return false;
 
   const SkinState& skin = frame.skin;
-  skin_.publish(face_frame_, stamp, [&](auto& marker) { to_marker(*model_, *shading_, skin, marker); });
-  points_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), cloud); });
+  if (skin_.publisher.getNumSubscribers() > 0 || points_.publisher.getNumSubscribers() > 0)
+    shading_->colours(skin, shown_values(frame), colours_);
+  else
+    colours_.clear();
+  // a subscriber that has come since then waits for the next frame
+  if (!colours_.empty())
+  {
+    skin_.publish(face_frame_, stamp, [&](auto& marker) { to_marker(*model_, colours_, skin, marker); });
+    points_.publish(face_frame_, stamp,
+                    [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), colours_, cloud); });
+  }
   // a frame that was made before there were subscribers has no field
   if (frame.field.size() == skin.vertices.size())
-    field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, cloud); });
-  landmarks_.publish(face_frame_, stamp, [&](auto& poses) { to_poses(skin, poses); });
+    field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, {}, cloud); });
+  geometry_msgs::PoseArray poses;
+  to_poses(skin, landmark_vertices_, poses);
+  landmarks_.publish(face_frame_, stamp, [&](auto& message) { message.poses = poses.poses; });
+  if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
+  {
+    visualization_msgs::MarkerArray muscles;
+    lines_->fill(*model_, frame.displacements, frame.activation, muscles);
+    for (auto& marker : muscles.markers)
+    {
+      marker.header.frame_id = face_frame_;
+      marker.header.stamp = stamp;
+    }
+    muscles_.publish(muscles);
+  }
   state_.publish(face_frame_, stamp,
                  [&](auto& state)
                  {
@@ -84,9 +157,33 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     wrenches_[b].publish(body_frame(face_frame_, shape), stamp,
                          [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, frame.bodies[b]); });
   }
-  to_transforms(*model_, frame, face_frame_, stamp, frame_transforms_);
+  to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);
   return true;
+}
+
+void FacePublisher::probe(const SkinState& skin, const geometry_msgs::Point& point, Probe::Response& out) const
+{
+  const auto distance = [&](const std::array<float, 3>& vertex)
+  { return std::hypot(vertex[0] - point.x, vertex[1] - point.y, vertex[2] - point.z); };
+  const auto& all = skin.vertices;
+  const auto closest =
+      std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  const auto vertex = static_cast<std::size_t>(closest - all.begin());
+  if (!std::isfinite(point.x + point.y + point.z) || closest == all.end())
+    throw Error("the point is not finite, or there is no skin");
+  const auto fill = [](auto& to, double x, double y, double z)
+  {
+    to.x = x;
+    to.y = y;
+    to.z = z;
+  };
+  const auto &at = all[vertex], &normal = skin.normals[vertex], &rest = rest_[vertex];
+  out.vertex = static_cast<std::uint32_t>(vertex);
+  out.distance = distance(at);
+  fill(out.position, at[0], at[1], at[2]);
+  fill(out.normal, normal[0], normal[1], normal[2]);
+  fill(out.displacement, at[0] - rest[0], at[1] - rest[1], at[2] - rest[2]);
 }
 
 void FacePublisher::publish_fault(const std::string& message, const ros::Time& stamp)

@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 
 #include <fmt/format.h>
+#include <ros/package.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,39 @@ Pace pace_from_name(const std::string& name)
   throw Error(fmt::format("found '{}'; allowed are real_time, fastest and lock_step", name));
 }
 
+/// The parameter ~bone_frames: by bone a frame, or its frame and the frame where that is at rest.
+std::vector<BoneFrame> read_bone_frames(Reader& reader)
+{
+  std::vector<BoneFrame> out;
+  XmlRpc::XmlRpcValue all;
+  all.begin();  // makes it a struct
+  for (auto& [bone, value] : reader.value("bone_frames", all, "a mapping of bones to frames"))
+  {
+    const auto text = [&entry = value](const char* key) -> std::string
+    { return entry.hasMember(key) && entry[key].getType() == XmlRpc::XmlRpcValue::TypeString ? entry[key] : ""; };
+    BoneFrame followed{ bone, {}, {} };
+    if (value.getType() == XmlRpc::XmlRpcValue::TypeString)
+      followed.frame = static_cast<std::string>(value);
+    else if (value.getType() == XmlRpc::XmlRpcValue::TypeStruct)
+      followed = { bone, text("frame"), text("rest") };
+    if (followed.frame.empty())
+      reader.add_fault("bone_frames/" + bone, "allowed is the name of a frame, or a mapping with frame and rest");
+    out.push_back(followed);
+  }
+  return out;
+}
+
 }  // namespace
+
+SkinColour skin_colour_from_name(const std::string& name)
+{
+  for (const auto& [known, colour] : { std::pair{ "skin", SkinColour::skin },
+                                       { "displacement", SkinColour::displacement },
+                                       { "field", SkinColour::field } })
+    if (name == known)
+      return colour;
+  throw Error(fmt::format("found '{}'; allowed are skin, displacement and field", name));
+}
 
 FaceParameters read_parameters(const ros::NodeHandle& private_handle)
 {
@@ -120,9 +153,20 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   else
     out.runner.guard->interval = std::max(interval, 0);
   out.skin_field = reader.named("skin_field", "strain", &skin_field_from_name);
+  out.skin_colour = reader.named("skin_colour", "skin", &skin_colour_from_name);
+  out.colour_range = reader.number("colour_range", 0.0, "a number", 0.0, "0 (that of the field) or more");
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");
-  out.demo = reader.value("demo", false, "true or false");
+  out.inputs.demo = reader.value("demo", false, "true or false");
+  const auto seconds = [&](const char* key, double fallback)
+  { return reader.number(key, fallback, "a number [s]", 0.0, "0 or more [s]"); };
+  out.inputs.command_timeout = seconds("command_timeout", out.inputs.command_timeout);
+  out.inputs.relax_time = seconds("relax_time", out.inputs.relax_time);
+  out.inputs.stamp_tolerance = seconds("stamp_tolerance", out.inputs.stamp_tolerance);
+  out.inputs.blendshapes =
+      reader.text("blendshapes_table", ros::package::getPath("frontalis") + "/config/blendshapes.yaml");
+  out.inputs.bone_frames = read_bone_frames(reader);
+  out.inputs.bone_speed = reader.number("bone_speed", out.inputs.bone_speed, "a number [m/s]", 0.0, "0 or more [m/s]");
   out.real_time_factor_warning = reader.value("real_time_factor_warning", 0.5, "a number");
   reader.finish();
   return out;

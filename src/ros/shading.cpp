@@ -39,6 +39,21 @@ constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow lose
 
 }  // namespace
 
+std::array<float, 3> false_colour(float value)
+{
+  static constexpr std::array<Vector, 4> knots{ { { { 0.10f, 0.14f, 0.50f } },
+                                                  { { 0.10f, 0.52f, 0.46f } },
+                                                  { { 0.85f, 0.74f, 0.16f } },
+                                                  { { 0.75f, 0.10f, 0.07f } } } };
+  const float at = 3 * std::clamp(value, 0.0f, 1.0f);
+  const auto knot = std::min<std::size_t>(2, static_cast<std::size_t>(at));
+  const float share = at - static_cast<float>(knot);
+  Vector out{};
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    out[channel] = (1 - share) * knots[knot][channel] + share * knots[knot + 1][channel];
+  return out;
+}
+
 SkinShading::SkinShading(const TriangleMesh& mesh, std::vector<float> hair) : hair_(std::move(hair))
 {
   hair_.resize(mesh.vertices.size(), 0.0f);
@@ -60,7 +75,8 @@ SkinShading::SkinShading(const TriangleMesh& mesh, std::vector<float> hair) : ha
   }
 }
 
-void SkinShading::colours(const SkinState& skin, std::vector<std::array<float, 3>>& out) const
+void SkinShading::colours(const SkinState& skin, const std::vector<float>& values,
+                          std::vector<std::array<float, 3>>& out) const
 {
   out.resize(skin.vertices.size());
   for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
@@ -84,12 +100,14 @@ void SkinShading::colours(const SkinState& skin, std::vector<std::array<float, 3
     const float key = dot(normal, key_light), fill = dot(normal, fill_light), sky = 0.5f + 0.5f * normal[2];
     const float highlight = 0.10f * std::pow(std::max(0.0f, dot(normal, half_way)), 22.0f);
     const float rim = 0.10f * std::pow(1 - std::clamp(dot(normal, view), 0.0f, 1.0f), 3.0f);
+    const Vector surface = values.empty() ? albedo : false_colour(values[vertex]);
+    const float hair = values.empty() ? hair_[vertex] : 0.0f;
     for (int channel = 0; channel < 3; ++channel)
     {
       const float light = key_colour[channel] * wrapped(key, wrap[channel]) +
                           fill_colour[channel] * wrapped(fill, wrap[channel]) + sky_colour[channel] * sky;
-      const float colour = albedo[channel] + hair_[vertex] * (hair_albedo[channel] - albedo[channel]);
-      const float linear = openness * (colour * light + highlight * (1 - hair_[vertex]) + rim * sky_colour[channel]);
+      const float colour = surface[channel] + hair * (hair_albedo[channel] - surface[channel]);
+      const float linear = openness * (colour * light + highlight * (1 - hair) + rim * sky_colour[channel]);
       out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f);
     }
   }

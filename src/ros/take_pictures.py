@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again; or at moments of its demo.
 
-usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [LAUNCH_ARGUMENT:=VALUE ...]
+usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [panel:=true] [LAUNCH_ARGUMENT:=VALUE ...]
 
-Launches SCENE.launch of this package in lock-step, with rviz full screen, under Xvfb if there is no display. Moves the face by
+Launches SCENE.launch of this package in lock-step, with rviz full screen (with panel:=true: in a window with its panels), under Xvfb if there is no display. Moves the face by
 ~expression and ~step, so that each picture shows an exact simulated time, and prints the path of each picture and how far the
 landmarks moved. Needs the environment of the package's setup file, Xvfb and ImageMagick.
 """
@@ -88,16 +88,15 @@ class Face:
     def __init__(self):
         import rosgraph
         import rospy
-        from frontalis.msg import SimulationState
+        from frontalis.msg import Expression, SimulationState
         from frontalis.srv import ListMuscles, Step
         from geometry_msgs.msg import PoseArray
-        from std_msgs.msg import String
 
         rospy.init_node("take_pictures", disable_signals=True)
         self.master = rosgraph.Master("take_pictures")
         self.landmarks = None
         self.state = None
-        self.expression = rospy.Publisher("/face/expression", String, queue_size=1)
+        self.expression = rospy.Publisher("/face/expression", Expression, queue_size=1)
         self.muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
         self.advance = rospy.ServiceProxy("/face/step", Step)
         rospy.Subscriber("/face/landmarks", PoseArray, lambda message: setattr(self, "landmarks", message.poses))
@@ -122,7 +121,7 @@ class Face:
 
     def command(self, name, arrived):
         for _ in range(100):
-            self.expression.publish(name)
+            self.expression.publish(name=[name])
             if arrived(self.muscles().target):
                 return
             time.sleep(0.1)
@@ -199,7 +198,8 @@ def main():
         sys.exit(2)
     scene, folder = sys.argv[1], os.path.abspath(sys.argv[2])
     moments = [float(t) for a in sys.argv[3:] if a.startswith("at:=") for t in a[4:].split(",")]
-    arguments = [a for a in sys.argv[3:] if not a.startswith("at:=")]
+    arguments = [a for a in sys.argv[3:] if not a.startswith(("at:=", "panel:="))]
+    rviz_args = "" if "panel:=true" in sys.argv else "--fullscreen"
     enter_display()
     os.makedirs(folder, exist_ok=True)
 
@@ -209,7 +209,7 @@ def main():
     os.environ["ROS_MASTER_URI"] = "http://localhost:" + port
     launch = subprocess.Popen(
         ["roslaunch", "-p", port, "frontalis", scene + ".launch", "pace:=lock_step", "rviz:=true",
-         "demo:=" + ("true" if moments else "false"), "rviz_args:=--fullscreen"] + arguments
+         "demo:=" + ("true" if moments else "false"), "rviz_args:=" + rviz_args] + arguments
     )
     try:
         take(folder, launch, moments)

@@ -17,10 +17,7 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
 {
   self_->model = std::move(model);
   self_->settings = settings;
-  if (!(self_->settings.frame_rate > 0))
-    self_->settings.frame_rate = self_->model->frame_rate;
-  if (!(self_->settings.frame_rate >= 0.1 && self_->settings.frame_rate <= 1000))
-    throw Error(fmt::format("frame rate {} Hz: allowed is 0.1 to 1000", self_->settings.frame_rate));
+  set_frame_rate(settings.frame_rate);
   self_->on_frame = std::move(on_frame);
   self_->solver = make_solver(self_->model, settings.solver);
   if (settings.guard)
@@ -38,6 +35,14 @@ Runner::~Runner()
   }
   self_->wake.notify_all();
   self_->thread.join();
+}
+
+void Runner::set_frame_rate(double rate)
+{
+  const double found = rate > 0 ? rate : self_->model->frame_rate;
+  if (!(found >= 0.1 && found <= 1000))
+    throw Error(fmt::format("frame rate {} Hz: allowed is 0.1 to 1000", found));
+  self_->frame_rate = found;
 }
 
 void Runner::set_activation(const std::map<std::string, double>& activation)

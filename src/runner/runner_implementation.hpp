@@ -3,6 +3,7 @@
 #include "runner/frame_clock.hpp"
 #include "frontalis/runner/runner.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -18,6 +19,7 @@ struct Runner::Implementation
 
   std::shared_ptr<const Model> model;
   RunnerSettings settings;
+  std::atomic<double> frame_rate{ 30 };  ///< [1/s] of wall time
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
   std::unique_ptr<Guard> guard;  ///< null: the motion is not checked
@@ -57,10 +59,11 @@ struct Runner::Implementation
   Clock::time_point deadline{};  ///< wall time at which the present frame ends
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
+  Profile last_profile;  ///< of the solver, at the latest renewal of the monitor
   std::thread thread;
 
   /// Wall time per frame [s].
-  double period() const { return 1 / settings.frame_rate; }
+  double period() const { return 1 / frame_rate; }
   /// Simulated time on the clock of the activations [s]. With time scaling it differs from the solver's time.
   double time() const { return solver->time() * model->time_scaling; }
   /// Simulated duration of a slice [s], in which the solver does not look at requests or at the wall clock.
@@ -69,6 +72,7 @@ struct Runner::Implementation
   void advance(double seconds, const Controls& controls);
   Controls controls_after(double seconds) const;
   void fail(const std::string& reason);
+  void measure_cost();
   void make_frame(bool renew_monitor);
   void publish(bool renew_monitor = false);
   void run_frame();

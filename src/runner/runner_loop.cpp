@@ -64,6 +64,19 @@ void Runner::Implementation::advance(double seconds, const Controls& controls)
   }
 }
 
+void Runner::Implementation::measure_cost()
+{
+  const Profile profile = solver->profile();
+  // a reset sets the profile to 0
+  const Profile since = profile.steps < last_profile.steps ? Profile{} : last_profile;
+  if (profile.steps > since.steps)
+    frame.seconds_per_step = (profile.stepping - since.stepping) / static_cast<double>(profile.steps - since.steps);
+  last_profile = profile;
+  frame.solver_bytes = 0;
+  for (const Allocation& allocation : solver->allocations())
+    frame.solver_bytes += allocation.bytes;
+}
+
 void Runner::Implementation::make_frame(bool renew_monitor)
 {
   const auto now = Clock::now();
@@ -71,6 +84,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   {
     const Monitor monitor = solver->monitor();
     last_monitor = now;
+    measure_cost();
     if (monitor.finite)
       frame.monitor = monitor;
     else
@@ -89,6 +103,9 @@ void Runner::Implementation::make_frame(bool renew_monitor)
         solver->skin_field(*field, frame.field);
       else
         frame.field.clear();
+      frame.displacements.clear();
+      if (settings.wants_displacements && settings.wants_displacements())
+        solver->displacements(frame.displacements);
     }
     else
       fail("the skin is no longer finite");

@@ -1,10 +1,13 @@
 #include "frontalis/ros/conversions.hpp"
+#include "frontalis/ros/muscle_lines.hpp"
 
 #include "ros/small_model.hpp"
 
 #include <gtest/gtest.h>
+#include <tf2/LinearMath/Matrix3x3.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -56,7 +59,9 @@ TEST(Conversions, MarkerHasThreePointsAndColoursATriangle)
   const Model model = small_model();
   const SkinShading shading(model.skin);
   visualization_msgs::Marker marker;
-  to_marker(model, shading, lifted(model, 0.002f), marker);
+  SkinColours colours;
+  shading.colours(lifted(model, 0.002f), {}, colours);
+  to_marker(model, colours, lifted(model, 0.002f), marker);
   EXPECT_EQ(marker.type, visualization_msgs::Marker::TRIANGLE_LIST);
   ASSERT_EQ(marker.points.size(), 6u);
   ASSERT_EQ(marker.colors.size(), 6u);
@@ -77,38 +82,85 @@ TEST(Conversions, PointCloudHasPositionNormalAndDisplacement)
   const Model model = small_model();
   sensor_msgs::PointCloud2 cloud;
   const SkinState skin = lifted(model, 0.002f);
-  to_point_cloud(skin, distances(skin, rest_in_face(model)), cloud);
+  to_point_cloud(skin, distances(skin, rest_in_face(model)), SkinColours(4, { { 1, 0.2f, 0 } }), cloud);
   EXPECT_EQ(cloud.width, 4u);
   EXPECT_EQ(cloud.height, 1u);
   EXPECT_EQ(cloud.data.size(), cloud.row_step);
-  const char* const names[] = { "x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity" };
-  ASSERT_EQ(cloud.fields.size(), 7u);
-  for (std::size_t field = 0; field < 7; ++field)
+  const char* const names[] = { "x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity", "rgb" };
+  ASSERT_EQ(cloud.fields.size(), 8u);
+  for (std::size_t field = 0; field < 8; ++field)
     EXPECT_EQ(cloud.fields[field].name, names[field]);
   EXPECT_NEAR(value(cloud, 1, 0), 1, 1e-6);
   EXPECT_NEAR(value(cloud, 1, 2), 0.012, 1e-6);
   EXPECT_EQ(value(cloud, 1, 5), 1);
   EXPECT_NEAR(value(cloud, 1, 6), 0.002, 1e-6);
+  std::uint32_t rgb = 0;
+  std::memcpy(&rgb, cloud.data.data() + cloud.point_step + cloud.fields[7].offset, sizeof rgb);
+  EXPECT_EQ(rgb, 0xff3300u);
 }
 
 TEST(Conversions, LandmarksBecomePosesAndFrames)
 {
   const Model model = small_model();
+  const auto vertices = landmark_vertices(model);
+  ASSERT_EQ(vertices, std::vector<std::size_t>{ 0 });
+  SkinState skin = lifted(model, 0.002f);
+  skin.normals[0] = { { 0.6f, 0.64f, 0.48f } };
   geometry_msgs::PoseArray poses;
-  to_poses(lifted(model, 0.002f), poses);
+  to_poses(skin, vertices, poses);
   ASSERT_EQ(poses.poses.size(), 1u);
   EXPECT_NEAR(poses.poses[0].position.z, 0.012, 1e-6);
-  EXPECT_EQ(poses.poses[0].orientation.w, 1);
+  // x along the normal, y level, z upwards
+  const auto& q = poses.poses[0].orientation;
+  const tf2::Matrix3x3 axes(tf2::Quaternion(q.x, q.y, q.z, q.w));
+  EXPECT_NEAR(axes.getColumn(0).x(), 0.6, 1e-6);
+  EXPECT_NEAR(axes.getColumn(0).y(), 0.64, 1e-6);
+  EXPECT_NEAR(axes.getColumn(0).z(), 0.48, 1e-6);
+  EXPECT_NEAR(axes.getColumn(1).z(), 0, 1e-6);
+  EXPECT_GT(axes.getColumn(2).z(), 0.8);
 
   std::vector<geometry_msgs::TransformStamped> transforms;
   Frame frame;
   frame.skin = lifted(model, 0.002f);
-  to_transforms(model, frame, "face_7", ros::Time(5), transforms);
+  to_transforms(model, frame, poses, "face_7", ros::Time(5), transforms);
   ASSERT_EQ(transforms.size(), 1u);
   EXPECT_EQ(transforms[0].header.frame_id, "face_7");
   EXPECT_EQ(transforms[0].child_frame_id, "face_7/brow");
   EXPECT_EQ(transforms[0].header.stamp, ros::Time(5));
   EXPECT_NEAR(transforms[0].transform.translation.x, 1, 1e-6);
+  EXPECT_EQ(transforms[0].transform.rotation, q);
+}
+
+TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)
+{
+  const Model model = small_model();
+  geometry_msgs::PoseArray poses;
+  to_poses(lifted(model, 0), landmark_vertices(model), poses);
+  const auto& q = poses.poses.at(0).orientation;
+  const tf2::Matrix3x3 axes(tf2::Quaternion(q.x, q.y, q.z, q.w));
+  EXPECT_NEAR(axes.getColumn(0).z(), 1, 1e-6);
+  EXPECT_NEAR(axes.getColumn(2).x(), -1, 1e-6);
+}
+
+TEST(Conversions, MuscleLinesMoveWithTheTissue)
+{
+  Model model = small_model();
+  model.fibre_begin = { 0, 1 };
+  model.fibre_muscle = { 1 };
+  model.fibre_weight = { 1 };
+  model.fibre_direction = { { { 0, 0, 1 } } };
+  const MuscleLines lines(model);
+  visualization_msgs::MarkerArray out;
+  lines.fill(model, std::vector<std::array<double, 3>>(8, { { 0, 0, 0.001 } }), { 0, 1 }, out);
+  ASSERT_EQ(out.markers.size(), 2u);
+  EXPECT_EQ(out.markers[1].ns, "knitter");
+  EXPECT_TRUE(out.markers[0].points.empty());
+  ASSERT_EQ(out.markers[1].points.size(), 2u);
+  EXPECT_NEAR(out.markers[1].points[0].z, 0.001, 1e-12);
+  EXPECT_NEAR(out.markers[1].points[1].z, 0.011, 1e-12);
+  // full activation is red, none is blue
+  EXPECT_GT(out.markers[1].color.r, out.markers[1].color.b);
+  EXPECT_GT(out.markers[0].color.b, out.markers[0].color.r);
 }
 
 TEST(Conversions, StateNamesMusclesAndLandmarks)
@@ -172,20 +224,20 @@ TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
   };
   skin.normals.assign(5, { { 1, 0, 0 } });
   std::vector<std::array<float, 3>> flat, hollow, raised;
-  shading.colours(skin, flat);
+  shading.colours(skin, {}, flat);
   skin.vertices[0][0] = -0.002f;
-  shading.colours(skin, hollow);
+  shading.colours(skin, {}, hollow);
   skin.vertices[0][0] = 0.002f;
-  shading.colours(skin, raised);
+  shading.colours(skin, {}, raised);
   EXPECT_LT(hollow[0][0], flat[0][0]);
   EXPECT_GT(raised[0][0], flat[0][0]);
 
   std::vector<std::array<float, 3>> up, down;
   skin.vertices[0][0] = 0;
   skin.normals.assign(5, { { 0.6f, 0, 0.8f } });
-  shading.colours(skin, up);
+  shading.colours(skin, {}, up);
   skin.normals.assign(5, { { 0.6f, 0, -0.8f } });
-  shading.colours(skin, down);
+  shading.colours(skin, {}, down);
   EXPECT_GT(up[0][1], down[0][1]);
 }
 

@@ -8,7 +8,7 @@ import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from frontalis.msg import MuscleActivation, SimulationState
+from frontalis.msg import Expression, MuscleActivation, SimulationState
 from frontalis.srv import ListMuscles, Step, SwitchEffect
 from geometry_msgs.msg import PoseArray
 from std_srvs.srv import SetBool, Trigger
@@ -24,6 +24,7 @@ class Face:
         self.landmarks = None
         self.diagnostics = []
         self.activation = rospy.Publisher(name + "/muscle_activation", MuscleActivation, queue_size=10)
+        self.expression = rospy.Publisher(name + "/expression", Expression, queue_size=10)
         self.list_muscles = rospy.ServiceProxy(name + "/list_muscles", ListMuscles)
         self.pause = rospy.ServiceProxy(name + "/pause", SetBool)
         self.reset = rospy.ServiceProxy(name + "/reset", Trigger)
@@ -52,7 +53,7 @@ class Face:
         self.wait_for_service()
         wait(lambda: self.list_muscles().success, "the model")
         wait(lambda: self.state is not None and self.landmarks is not None, "frames")
-        wait(lambda: self.activation.get_num_connections() > 0, "the connection for commands")
+        wait(lambda: self.activation.get_num_connections() and self.expression.get_num_connections(), "connections")
 
     def wait_for_frame(self, condition, what):
         """Waits until the latest state and landmarks are of one frame, for which the condition holds."""
@@ -67,9 +68,16 @@ class Face:
         self.send(list(activation), list(activation.values()))
 
     def send(self, names, values):
-        message = MuscleActivation(name=names, activation=values)
-        message.header.stamp = rospy.Time.now()
-        self.activation.publish(message)
+        # without a stamp, so that a slow machine does not make it stale
+        self.activation.publish(MuscleActivation(name=names, activation=values))
+
+    def express(self, *names, **fields):
+        self.expression.publish(Expression(name=names, **fields))
+
+    def diagnostic(self, key):
+        """A value of the latest diagnostics; None if there is no such key."""
+        values = [pair.value for status in self.diagnostics for pair in status.values if pair.key == key]
+        return values[0] if values else None
 
     def target(self):
         answer = self.list_muscles()

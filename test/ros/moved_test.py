@@ -13,7 +13,6 @@ from face import Face, wait
 
 def pose(shift=(0, 0, 0), turn=(0, 0, 0, 1), bone="skull"):
     message = TransformStamped()
-    message.header.stamp = rospy.Time.now()
     message.child_frame_id = bone
     message.transform.translation = Vector3(*shift)
     message.transform.rotation = Quaternion(*turn)

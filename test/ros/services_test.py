@@ -11,7 +11,6 @@ import rostest
 import tf2_ros
 from sensor_msgs.msg import JointState, PointCloud2
 from shape_msgs.msg import Mesh
-from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
 from face import Face, wait
@@ -65,13 +64,12 @@ class Services(unittest.TestCase):
 
     def test_joint_states_and_expression_command_too(self):
         joints = rospy.Publisher("/face/joint_states", JointState, queue_size=1)
-        expression = rospy.Publisher("/face/expression", String, queue_size=1)
-        wait(lambda: joints.get_num_connections() and expression.get_num_connections(), "connections")
+        wait(joints.get_num_connections, "a connection")
         joints.publish(JointState(name=["lift"], position=[0.25]))
         wait(lambda: self.face.target() == {"lift": 0.25}, "the joint state")
-        expression.publish("shorten")
+        self.face.express("shorten")
         wait(lambda: self.face.target() == {"lift": 0.5}, "the expression")
-        expression.publish("relax")
+        self.face.express("relax")
         wait(lambda: self.face.target() == {"lift": 0}, "the relaxation")
 
     def test_effects_go_off_and_on_again(self):
@@ -136,8 +134,7 @@ class Services(unittest.TestCase):
         self.face.command(lift=0.4)
         wait(lambda: self.face.target() == {"lift": 0.4}, "the command")
         joints = rospy.Publisher("/face/joint_states", JointState, queue_size=1)
-        expression = rospy.Publisher("/face/expression", String, queue_size=1)
-        wait(lambda: joints.get_num_connections() and expression.get_num_connections(), "connections")
+        wait(joints.get_num_connections, "a connection")
         for names, values in (
             (["lift"], []),
             (["lift"], [0.9, 0.9]),
@@ -150,7 +147,7 @@ class Services(unittest.TestCase):
             self.face.send(names, values)
         joints.publish(JointState(name=["lift"], velocity=[0.9]))
         joints.publish(JointState(name=["lift"], position=[math.inf]))
-        expression.publish("astonishment")
+        self.face.express("astonishment")
         rospy.sleep(1)  # time for the messages to arrive; if they take longer, the test passes without testing them
         self.assertEqual(self.face.target(), {"lift": 0.4})
         self.assertTrue(self.face.step(0.1).success)
@@ -172,7 +169,7 @@ class Services(unittest.TestCase):
         self.assertEqual(len(marker.points), 3 * len(mesh.triangles))
         self.assertEqual(len(marker.colors), len(marker.points))
         self.assertEqual([field.name for field in cloud.fields],
-                         ["x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity"])
+                         ["x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity", "rgb"])
         corners = [index for triangle in mesh.triangles for index in triangle.vertex_indices]
         for point, vertex in zip(marker.points, corners):
             values = struct.unpack_from("<7f", cloud.data, vertex * cloud.point_step)

@@ -27,22 +27,32 @@ bool is_publishable(const SkinState& skin, const Model& model);
 /// The triangles of the skin, with the vertices at rest in the face frame [m].
 shape_msgs::Mesh to_mesh(const Model& model);
 
-/// The shaded skin as a list of triangles in the face frame, with three points and colours per triangle. Fills all but
-/// the header.
-void to_marker(const Model& model, const SkinShading& shading, const SkinState& skin, visualization_msgs::Marker& out);
+/// Red, green and blue, 0..1, of each skin vertex.
+using SkinColours = std::vector<std::array<float, 3>>;
+
+/// The skin as a list of triangles in the face frame, with three points and colours per triangle. Fills all but the
+/// header.
+void to_marker(const Model& model, const SkinColours& colours, const SkinState& skin, visualization_msgs::Marker& out);
 
 /// The distance of each vertex from its position in `rest` [m].
 std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest);
 
-/// The vertices as points with the fields x, y, z, normal_x, normal_y, normal_z and intensity, all of type float32.
-/// Fills all but the header.
-void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, sensor_msgs::PointCloud2& out);
+/// The vertices as points with the fields x, y, z, normal_x, normal_y, normal_z, intensity and rgb, all of type float32
+/// (rgb: three bytes in the bits of a float, as PCL has it). Without colours, there is no field rgb. Fills all but the
+/// header.
+void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, const SkinColours& colours,
+                    sensor_msgs::PointCloud2& out);
 
-/// One pose per landmark, in the order of the model, with the axes of the face frame. Fills all but the header.
-void to_poses(const SkinState& skin, geometry_msgs::PoseArray& out);
+/// The skin vertex that is closest at rest to each landmark.
+std::vector<std::size_t> landmark_vertices(const Model& model);
+
+/// One pose per landmark, in the order of the model: x along the outward normal of the skin at its vertex, z along the
+/// skin upwards. Fills all but the header.
+void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out);
 
 /// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body.
-void to_transforms(const Model& model, const Frame& frame, const std::string& face_frame, const ros::Time& stamp,
+void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::PoseArray& landmarks,
+                   const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
 
 /// Name of the frame of a body that tissue touches. Its origin is the body's centre, and it lies as the face frame does

@@ -1,26 +1,28 @@
 #pragma once
 
-#include "frontalis/ros/demo_player.hpp"
+#include "frontalis/ros/face_inputs.hpp"
 #include "frontalis/ros/face_publisher.hpp"
 #include "frontalis/ros/parameters.hpp"
 #include "frontalis/runner/runner.hpp"
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/server.h>
+#include <frontalis/FaceConfig.h>
 #include <frontalis/ListMuscles.h>
-#include <frontalis/MuscleActivation.h>
+#include <frontalis/LoadScene.h>
+#include <frontalis/Probe.h>
 #include <frontalis/Step.h>
 #include <frontalis/SwitchEffect.h>
-#include <geometry_msgs/TransformStamped.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <sensor_msgs/JointState.h>
-#include <std_msgs/String.h>
+#include <ros/spinner.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
-#include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,25 +43,16 @@ public:
   FaceNode& operator=(const FaceNode&) = delete;
 
 private:
-  // the thread that loads the model
+  // the threads that load models
   void load();
   std::shared_ptr<const Model> make_model(const FaceParameters& parameters);
+  /// Makes the model and its runner, and then puts them in the place of the present ones. Throws an Error and changes
+  /// nothing if there is a fault.
+  void replace_face(const FaceParameters& parameters);
 
   // the runner's thread
-  void on_frame(const Frame& frame);
+  void on_frame(const Frame& frame, std::uint64_t face);
   void log_speed_once();
-
-  // inputs
-  void set_activation(const char* topic, const std::vector<std::string>& names, const std::vector<double>& values);
-  void on_muscle_activation(const MuscleActivation& message);
-  void on_joint_states(const sensor_msgs::JointState& message);
-  void on_expression(const std_msgs::String& message);
-  void on_bone_pose(const geometry_msgs::TransformStamped& message);
-  /// Calls `act` with the runner. Logs a warning if there is no runner yet or if `act` throws an Error.
-  template <typename Act>
-  void take_message(const char* topic, const Act& act);
-  void refuse(const char* topic, const std::string& reason);
-  void end_demo(const char* topic);
 
   // services
   /// Calls `act` with the runner. The response is a failure with the reason if there is no runner yet or if `act`
@@ -71,10 +64,14 @@ private:
   bool on_step(Step::Request& request, Step::Response& response);
   bool on_switch_effect(SwitchEffect::Request& request, SwitchEffect::Response& response);
   bool on_list_muscles(ListMuscles::Request& request, ListMuscles::Response& response);
+  bool on_load_scene(LoadScene::Request& request, LoadScene::Response& response);
+  bool on_probe(Probe::Request& request, Probe::Response& response);
+  void on_config(FaceConfig& config, std::uint32_t level);
+  /// Throws an Error if the configuration names something unknown, or an effect cannot be switched.
+  void apply_config(Runner& running, const FaceConfig& config);
 
   // timers
-  void repeat_frame_and_play_demo();
-  void play_demo(double time);
+  void repeat_frame_and_play();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   /// The runner; null while there is no model, and then the reason is written to `reason`.
@@ -86,14 +83,14 @@ private:
 
   mutable std::mutex runner_mutex_;  ///< protects the members up to parameters_
   std::shared_ptr<Runner> runner_;
-  std::shared_ptr<const DemoPlayer> demo_;
   std::string load_fault_;
   std::string loading_stage_ = "starting";
   FaceParameters parameters_;
 
   std::mutex frame_mutex_;  ///< protects the members up to last_published_; never held while the runner is called
   FacePublisher publisher_;
-  Frame frame_;  ///< the latest frame
+  std::uint64_t present_face_ = 0;  ///< whose frames are published
+  Frame frame_;                     ///< the latest frame
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
@@ -101,14 +98,20 @@ private:
   ros::WallTime last_frame_;      ///< when the runner made the latest frame
   ros::WallTime last_published_;  ///< when a frame was published the last time, new or repeated
 
-  std::mutex target_mutex_;  ///< protects target_ and demo_playing_; held while the runner's activations are set too
-  std::map<std::string, double> target_;  ///< activation of each muscle as last commanded
-  bool demo_playing_ = false;
-
+  std::atomic<double> time_{ 0 };  ///< simulated time of the latest frame [s]
   std::atomic<bool> paused_{ false };
   std::atomic<bool> stopping_{ false };
-  std::vector<ros::Subscriber> subscribers_;
+  std::mutex loading_mutex_;   ///< held while a model is made, so that there is one at a time
+  std::mutex stepping_mutex_;  ///< held by the ~step that is under way
+  std::uint64_t faces_made_ = 0;
+  FaceInputs inputs_;
   std::vector<ros::ServiceServer> services_;
+  ros::CallbackQueue loading_queue_;  ///< of ~load_scene, which may take minutes
+  ros::AsyncSpinner loading_spinner_;
+  boost::recursive_mutex server_mutex_;  ///< of the server; protects config_ and switched_off_
+  FaceConfig config_ = FaceConfig::__getDefault__();
+  std::set<std::string> switched_off_;  ///< effects that the configuration has switched off
+  std::unique_ptr<dynamic_reconfigure::Server<FaceConfig>> server_;
   ros::WallTimer frame_timer_, diagnostics_timer_;
   std::thread loader_;
 };

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "frontalis/ros/conversions.hpp"
+#include "frontalis/ros/muscle_lines.hpp"
+#include "frontalis/ros/parameters.hpp"
 
+#include <frontalis/Probe.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -10,16 +13,19 @@
 
 #include <boost/shared_ptr.hpp>
 
+#include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace frontalis
 {
 
-/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~bodies, ~wrench/... and ~state,
-/// and the transforms. A message is built only while its topic has subscribers, and its memory is reused once no
-/// subscriber holds it. Only one thread at a time may call these functions, except for shows_field().
+/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~bodies, ~wrench/...
+/// and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory is reused
+/// once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field() and
+/// shows_muscles().
 class FacePublisher
 {
 public:
@@ -31,11 +37,19 @@ public:
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
-  /// Whether ~skin_field has subscribers. Any thread may call this at any time.
-  bool shows_field() const { return field_.publisher.getNumSubscribers() > 0; }
+  /// What the colours of the skin show, the field that is published, and the value with the last colour (0: that of the
+  /// field).
+  void set_colour(SkinColour colour, SkinField field, double range);
+  /// The field that frames must have, if there are subscribers who see it.
+  std::optional<SkinField> wanted_field() const;
+  /// Whether frames must have displacements, for ~muscles.
+  bool shows_muscles() const { return muscles_.getNumSubscribers() > 0; }
 
   /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
+
+  /// Fills in what ~probe answers about the skin vertex closest to a point.
+  void probe(const SkinState& skin, const geometry_msgs::Point& point, Probe::Response& out) const;
 
   /// Publishes a failed ~state with this message, for a face that has no model.
   void publish_fault(const std::string& message, const ros::Time& stamp);
@@ -59,12 +73,14 @@ private:
     boost::shared_ptr<Message> message{};
   };
 
+  std::vector<float> shown_values(const Frame& frame) const;
+
   Topic<visualization_msgs::Marker> skin_;
   Topic<sensor_msgs::PointCloud2> points_, field_;
   Topic<geometry_msgs::PoseArray> landmarks_;
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per body
-  ros::Publisher topology_, bodies_;
+  ros::Publisher topology_, bodies_, muscles_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
@@ -74,6 +90,12 @@ private:
   std::string backend_;
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
+  std::vector<std::size_t> landmark_vertices_;
+  std::unique_ptr<MuscleLines> lines_;
+  std::atomic<SkinColour> colour_{ SkinColour::skin };
+  std::atomic<SkinField> shown_field_{ SkinField::strain };
+  double colour_range_ = 0;
+  SkinColours colours_;
   std::vector<BodyShape> shapes_;
   std::vector<geometry_msgs::TransformStamped> frame_transforms_;
 };

@@ -6,9 +6,39 @@
 #include <ros/node_handle.h>
 
 #include <string>
+#include <vector>
 
 namespace frontalis
 {
+
+/// The frame that a bone follows: its motion takes the frame `rest` to the frame `frame`.
+struct BoneFrame
+{
+  std::string bone, frame;
+  std::string rest;  ///< where `frame` is while the bone is at rest; empty: the face frame
+};
+
+/// How messages that move the face are taken.
+struct InputParameters
+{
+  double command_timeout = 0;          ///< silence after which the face relaxes [simulated s]; 0: never
+  double relax_time = 0.5;             ///< over which it relaxes [simulated s]
+  double stamp_tolerance = 1;          ///< greatest age of messages and transforms, in either direction [s]
+  std::string blendshapes;             ///< file of the table of blendshapes; empty: none
+  std::vector<BoneFrame> bone_frames;  ///< frames that bones follow
+  double bone_speed = 0.5;             ///< greatest speed of these bones [m/s]
+  bool demo = false;                   ///< whether to play the model's demo
+};
+
+/// What the colours of ~skin and ~skin_points show.
+enum class SkinColour
+{
+  skin,
+  displacement,  ///< distance from rest [m]
+  field          ///< FaceParameters::skin_field
+};
+
+SkinColour skin_colour_from_name(const std::string& name);  ///< throws Error unless it is the name of one
 
 /// The private parameters of the node (doc/ros.md), checked.
 struct FaceParameters
@@ -16,11 +46,13 @@ struct FaceParameters
   std::string model;      ///< baked model file; empty: a scene is baked
   BakeRequest bake;       ///< ~scene, ~mesh_dir, ~accuracy, ~cache, ~program (as find_program takes it)
   RunnerSettings runner;  ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
+  InputParameters inputs;
   SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
-  std::string face_id;                       ///< the face frame is face_<id>; empty: the model's
-  std::string parent_frame = "map";          ///< parent of the face frame; empty: no static transform
-  bool demo = false;                         ///< whether to play the model's demo
-  double real_time_factor_warning = 0.5;     ///< diagnostics warn below this, at pace real_time
+  SkinColour skin_colour = SkinColour::skin;
+  double colour_range = 0;                ///< value with the last colour; 0: that of the field (full_colour())
+  std::string face_id;                    ///< the face frame is face_<id>; empty: the model's
+  std::string parent_frame = "map";       ///< parent of the face frame; empty: no static transform
+  double real_time_factor_warning = 0.5;  ///< diagnostics warn below this, at pace real_time
 };
 
 /// Reads the parameters. Throws an Error that names every bad parameter, the value found and the allowed values.

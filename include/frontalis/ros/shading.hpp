@@ -16,6 +16,9 @@ namespace frontalis
 /// pictures how the skin moves; they have no effect on the tissue.
 std::vector<float> brow_cover(const Model& model);
 
+/// A linear colour for a number: from dark blue at 0 over green and yellow to red at 1 and above.
+std::array<float, 3> false_colour(float value);
+
 /// Computes the colours of a lit skin, one per vertex. rviz does not light a marker that has colours, and its own
 /// normals are those of flat triangles, so the colours must include the light. A warm main light comes from above, a
 /// cool one from the side, with a soft highlight. Hollows get less light, so that furrows can be seen.
@@ -26,8 +29,8 @@ public:
   explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
 
   /// Fills `out` with one red, green and blue value per vertex, 0..1, as displays take them (gamma 2.2). The skin is in
-  /// the face frame.
-  void colours(const SkinState& skin, std::vector<std::array<float, 3>>& out) const;
+  /// the face frame. `values`: empty for the colours of skin, or one per vertex, which has the colour false_colour().
+  void colours(const SkinState& skin, const std::vector<float>& values, std::vector<std::array<float, 3>>& out) const;
 
 private:
   std::vector<std::int32_t> neighbour_begin_;

@@ -24,10 +24,14 @@ struct Frame
   std::int64_t steps = 0;       ///< solver steps since the latest reset
   std::uint64_t sequence = 0;   ///< number of the frame
   SkinState skin;
-  std::vector<float> field;       ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
+  std::vector<float> field;  ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
+  /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
+  std::vector<std::array<double, 3>> displacements;
   std::vector<BodyFrame> bodies;  ///< that tissue touches, one per entry of touched_bodies(model)
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
+  double seconds_per_step = 0;    ///< wall time per step since the latest renewal of the monitor; 0: not known
+  std::size_t solver_bytes = 0;   ///< memory of the solver's arrays, without the model
   GuardCounts guard;              ///< since the runner started
   bool failed = false;            ///< true: the motion was stopped; the skin is the last good one
   std::string failure;            ///< the reason, in one sentence
@@ -49,6 +53,8 @@ struct RunnerSettings
   /// Called once per frame in the runner's thread; returns the field of the skin to compute. If the function is not set
   /// or returns nothing, no field is computed.
   std::function<std::optional<SkinField>()> wanted_field{};
+  /// Called once per frame in the runner's thread. If it is not set or returns false, no displacements are copied.
+  std::function<bool()> wants_displacements{};
 };
 
 /// A face that moves by itself: it owns the solver and a thread that steps it and hands out frames. All functions may
@@ -81,6 +87,9 @@ public:
   void switch_effect(Effect effect, bool on);
   /// The effects that are switched on.
   EffectSet effects() const;
+
+  /// Changes the frames per second of wall time, 0.1 to 1000; 0: the model's. Throws an Error outside of that.
+  void set_frame_rate(double rate);
 
   void pause(bool paused);
   bool paused() const;

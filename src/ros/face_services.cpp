@@ -1,0 +1,221 @@
+#include "frontalis/ros/face_node.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace frontalis
+{
+
+namespace
+{
+
+constexpr double piece = 1.0 / 30;  // of a ~step while activations change by themselves, or a watchdog may act [s]
+
+}  // namespace
+
+template <typename Response, typename Act>
+bool FaceNode::answer(Response& response, const Act& act)
+{
+  const auto running = runner(&response.message);
+  if (!running)
+    return true;
+  try
+  {
+    response.success = true;
+    act(*running);
+  }
+  catch (const Error& error)
+  {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool FaceNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  return answer(response,
+                [&](Runner& running)
+                {
+                  inputs_.reset(running);
+                  paused_ = running.paused();
+                });
+}
+
+bool FaceNode::on_pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
+{
+  return answer(response,
+                [&](Runner& running)
+                {
+                  running.pause(request.data);
+                  paused_ = running.paused();
+                });
+}
+
+bool FaceNode::on_step(Step::Request& request, Step::Response& response)
+{
+  return answer(
+      response,
+      [&](Runner& running)
+      {
+        if (!std::isfinite(request.seconds) || request.seconds <= 0)
+          throw Error(fmt::format("seconds: found {}; allowed are finite durations above 0", request.seconds));
+        const std::unique_lock<std::mutex> one_at_a_time(stepping_mutex_, std::try_to_lock);
+        if (!one_at_a_time)
+          throw Error("another step is under way");
+        Frame frame;
+        double left = request.seconds;
+        do
+        {
+          const double time = time_;
+          const double seconds = inputs_.timed(time) && left > piece ? piece : left;
+          inputs_.play(running, time + seconds);
+          frame = running.step(seconds);
+          left -= seconds;
+        } while (left > 0 && !frame.failed && !stopping_);
+        paused_ = running.paused();
+        response.time = frame.time;
+        response.success = !frame.failed;
+        response.message = frame.failure;
+      });
+}
+
+bool FaceNode::on_switch_effect(SwitchEffect::Request& request, SwitchEffect::Response& response)
+{
+  answer(response,
+         [&](Runner& running)
+         {
+           if (!request.effect.empty())
+             running.switch_effect(effect_from_name(request.effect), request.on);
+         });
+  if (const auto running = runner())
+  {
+    const EffectSet of_model = effects_of(running->model()), switched_on = running->effects();
+    for (const Effect effect : every_effect())
+      if (of_model.has(effect))
+      {
+        response.name.push_back(name_of(effect));
+        response.running.push_back(switched_on.has(effect));
+      }
+  }
+  return true;
+}
+
+bool FaceNode::on_list_muscles(ListMuscles::Request&, ListMuscles::Response& response)
+{
+  return answer(response,
+                [&](const Runner& running)
+                {
+                  {
+                    const std::lock_guard<std::mutex> lock(frame_mutex_);
+                    response.activation.assign(frame_.activation.begin(), frame_.activation.end());
+                  }
+                  const Model& model = running.model();
+                  const auto target = inputs_.target(time_);
+                  response.activation.resize(model.muscles.size(), 0.0);
+                  for (const auto& muscle : model.muscles)
+                  {
+                    response.name.push_back(muscle.name);
+                    const auto commanded = target.find(muscle.name);
+                    response.target.push_back(commanded == target.end() ? 0 : commanded->second);
+                  }
+                  for (const auto& expression : model.expressions)
+                    response.expressions.push_back(expression.name);
+                  response.expressions.push_back("relax");
+                });
+}
+
+bool FaceNode::on_load_scene(LoadScene::Request& request, LoadScene::Response& response)
+{
+  const std::lock_guard<std::mutex> one_at_a_time(loading_mutex_);
+  try
+  {
+    FaceParameters parameters = read_parameters(private_handle_);
+    const bool baked = std::filesystem::path(request.scene).extension() == ".vtkhdf";
+    parameters.model = baked ? request.scene : "";
+    parameters.bake.scene = request.scene;
+    parameters.bake.mesh_directory = request.mesh_dir;
+    parameters.bake.accuracy = request.accuracy;
+    replace_face(parameters);
+    response.success = true;
+  }
+  catch (const std::exception& error)
+  {
+    response.message = error.what();
+    ROS_WARN_STREAM(name_ << ": ~load_scene changes nothing: " << response.message);
+  }
+  return true;
+}
+
+bool FaceNode::on_probe(Probe::Request& request, Probe::Response& response)
+{
+  return answer(response,
+                [&](const Runner&)
+                {
+                  const std::lock_guard<std::mutex> lock(frame_mutex_);
+                  if (!has_frame_ || !frame_finite_)
+                    throw Error("there is no frame yet");
+                  response.time = frame_.time;
+                  publisher_.probe(frame_.skin, request.point, response);
+                });
+}
+
+void FaceNode::on_config(FaceConfig& config, std::uint32_t)
+{
+  const auto running = runner();
+  if (!running)
+    return;
+  try
+  {
+    apply_config(*running, config);
+    config_ = config;
+  }
+  catch (const Error& error)
+  {
+    ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
+    config = config_;
+  }
+}
+
+void FaceNode::apply_config(Runner& running, const FaceConfig& config)
+{
+  const SkinColour colour = skin_colour_from_name(config.skin_colour);
+  const SkinField field = skin_field_from_name(config.skin_field);
+  std::set<std::string> off;
+  std::istringstream words(config.effects_off);
+  for (std::string word; words >> word;)
+    off.insert(name_of(effect_from_name(word)));
+  running.set_frame_rate(config.frame_rate);
+  // only what the configuration changes: ~switch_effect may have switched others
+  for (const Effect effect : every_effect())
+    if (!effects_of(running.model()).has(effect))
+      continue;
+    else if (const bool wanted_off = off.count(name_of(effect)) > 0;
+             wanted_off != (switched_off_.count(name_of(effect)) > 0))
+    {
+      running.switch_effect(effect, !wanted_off);
+      if (wanted_off)
+        switched_off_.insert(name_of(effect));
+      else
+        switched_off_.erase(name_of(effect));
+    }
+  InputParameters inputs;
+  {
+    const std::scoped_lock lock(runner_mutex_, frame_mutex_);
+    publisher_.set_colour(colour, field, config.colour_range);
+    parameters_.real_time_factor_warning = config.real_time_factor_warning;
+    parameters_.inputs.command_timeout = config.command_timeout;
+    parameters_.inputs.relax_time = config.relax_time;
+    parameters_.inputs.stamp_tolerance = config.stamp_tolerance;
+    inputs = parameters_.inputs;
+  }
+  inputs_.configure(inputs);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,366 @@
+#include "ros/panel/face_panel.hpp"
+
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <frontalis/Expression.h>
+#include <frontalis/MuscleActivation.h>
+#include <pluginlib/class_list_macros.hpp>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QGridLayout>
+#include <QGroupBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSlider>
+#include <QTimer>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+
+namespace
+{
+
+constexpr int full = 1000;                    // of a slider, at activation 1
+constexpr std::chrono::seconds untouched(1);  // after which a slider shows the activation of the face again
+constexpr int buttons_per_row = 3;
+
+bool ends_with(const std::string& text, const std::string& end)
+{
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// The name without its side.
+std::string stem(const std::string& muscle)
+{
+  for (const std::string side : { "_left", "_right" })
+    if (ends_with(muscle, side))
+      return muscle.substr(0, muscle.size() - side.size());
+  return muscle;
+}
+
+/// The muscle of the other side; empty if the muscle has no side.
+std::string counterpart(const std::string& muscle)
+{
+  if (ends_with(muscle, "_left"))
+    return stem(muscle) + "_right";
+  return ends_with(muscle, "_right") ? stem(muscle) + "_left" : "";
+}
+
+QString words(std::string name)
+{
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return QString::fromStdString(name);
+}
+
+}  // namespace
+
+FacePanel::FacePanel(QWidget* parent)
+    : rviz::Panel(parent),
+      face_(new QLineEdit("/face")),
+      locked_(new QCheckBox("left = right")),
+      pause_(new QPushButton("Pause")),
+      colour_(new QComboBox),
+      onset_(new QDoubleSpinBox),
+      expressions_(new QGridLayout),
+      sliders_(new QGridLayout),
+      speed_(new QProgressBar),
+      energy_(new QLabel),
+      message_(new QLabel("no face yet"))
+{
+  auto* const top = new QHBoxLayout;
+  top->addWidget(new QLabel("Face"));
+  top->addWidget(face_);
+  top->addWidget(pause_);
+  auto* const reset = new QPushButton("Reset");
+  top->addWidget(reset);
+
+  auto* const colours = new QHBoxLayout;
+  colours->addWidget(new QLabel("Colour"));
+  colour_->addItems({ "skin", "displacement", "field" });
+  colours->addWidget(colour_);
+  colours->addStretch();
+  colours->addWidget(locked_);
+
+  auto* const expressions = new QGroupBox("Expressions");
+  auto* const expressions_box = new QVBoxLayout(expressions);
+  auto* const blend = new QHBoxLayout;
+  blend->addWidget(new QLabel("within"));
+  onset_->setRange(0, 10);
+  onset_->setSingleStep(0.1);
+  onset_->setValue(0.3);
+  onset_->setSuffix(" s");
+  blend->addWidget(onset_);
+  blend->addStretch();
+  expressions_box->addLayout(blend);
+  expressions_box->addLayout(expressions_);
+
+  auto* const muscles = new QGroupBox("Muscles (left, right)");
+  auto* const muscles_box = new QVBoxLayout(muscles);
+  auto* const scroll = new QScrollArea;
+  auto* const area = new QWidget;
+  sliders_->setColumnStretch(1, 1);
+  sliders_->setColumnStretch(2, 1);
+  area->setLayout(sliders_);
+  scroll->setWidget(area);
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setMinimumHeight(200);
+  muscles_box->addWidget(scroll);
+
+  speed_->setRange(0, 150);
+  speed_->setFormat("real-time factor %v %");
+  message_->setWordWrap(true);
+
+  auto* const all = new QVBoxLayout(this);
+  all->addLayout(top);
+  all->addLayout(colours);
+  all->addWidget(speed_);
+  all->addWidget(energy_);
+  all->addWidget(message_);
+  all->addWidget(expressions);
+  all->addWidget(muscles, 1);
+
+  for (const auto& [widget, name] : { std::pair<QWidget*, const char*>{ face_, "face" },
+                                      { locked_, "locked" },
+                                      { pause_, "pause" },
+                                      { reset, "reset" },
+                                      { colour_, "colour" },
+                                      { onset_, "onset" },
+                                      { speed_, "speed" },
+                                      { message_, "message" } })
+    widget->setObjectName(name);
+
+  connect(face_, &QLineEdit::editingFinished, this,
+          [this]
+          {
+            connect_to_face();
+            Q_EMIT configChanged();
+          });
+  connect(locked_, &QCheckBox::toggled, this, [this] { Q_EMIT configChanged(); });
+  connect(pause_, &QPushButton::clicked, this,
+          [this]
+          {
+            std_srvs::SetBool request;
+            request.request.data = !paused_;
+            call("pause", request);
+          });
+  connect(reset, &QPushButton::clicked, this, [this] { call("reset", std_srvs::Trigger()); });
+  connect(colour_, qOverload<int>(&QComboBox::activated), this,
+          [this] { set_parameter("skin_colour", colour_->currentText().toStdString()); });
+  auto* const timer = new QTimer(this);
+  connect(timer, &QTimer::timeout, this, [this] { poll(); });
+  timer->start(200);
+  connect_to_face();
+}
+
+void FacePanel::load(const rviz::Config& config)
+{
+  rviz::Panel::load(config);
+  QString face;
+  bool locked = false;
+  float onset = 0;
+  if (config.mapGetString("Face", &face))
+    face_->setText(face);
+  if (config.mapGetBool("Left Equals Right", &locked))
+    locked_->setChecked(locked);
+  if (config.mapGetFloat("Onset", &onset))
+    onset_->setValue(onset);
+  connect_to_face();
+}
+
+void FacePanel::save(rviz::Config config) const
+{
+  rviz::Panel::save(config);
+  config.mapSetValue("Face", face_->text());
+  config.mapSetValue("Left Equals Right", locked_->isChecked());
+  config.mapSetValue("Onset", onset_->value());
+}
+
+void FacePanel::connect_to_face()
+{
+  clear_muscles();
+  message_->setText("no face yet");
+  const std::string face = face_->text().toStdString();
+  std::string fault;
+  if (!ros::names::validate(face, fault) || face.empty())
+  {
+    message_->setText(QString::fromStdString("'" + face + "' is no name of a face: " + fault));
+    return;
+  }
+  activation_ = handle_.advertise<MuscleActivation>(face + "/muscle_activation", 10);
+  expression_ = handle_.advertise<Expression>(face + "/expression", 10);
+  state_ = handle_.subscribe<SimulationState>(face + "/state", 1,
+                                              [this](const SimulationState::ConstPtr& state) { on_state(*state); });
+}
+
+template <typename Service>
+void FacePanel::call(const char* service, const Service& request,
+                     std::function<void(const typename Service::Response&)> use)
+{
+  const std::string name = face_->text().toStdString() + "/" + service;
+  calls_.push_back(
+      std::async(std::launch::async,
+                 [name, request = Service(request), use]() mutable -> std::function<void()>
+                 {
+                   const bool done = ros::service::exists(name, false) && ros::service::call(name, request);
+                   if (!use)
+                     return [] {};
+                   // a call that failed has an empty response
+                   return [use, response = done ? request.response : typename Service::Response()] { use(response); };
+                 }));
+}
+
+void FacePanel::poll()
+{
+  for (auto pending = calls_.begin(); pending != calls_.end();)
+    if (pending->wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    {
+      const auto act = pending->get();
+      pending = calls_.erase(pending);
+      act();
+    }
+    else
+      ++pending;
+  if (!slider_of_.empty() || asked_)
+    return;
+  asked_ = true;
+  call<ListMuscles>("list_muscles", ListMuscles(),
+                    [this](const ListMuscles::Response& face)
+                    {
+                      asked_ = false;
+                      if (face.success)
+                        show_muscles(face);
+                      else if (!face.message.empty())
+                        message_->setText(QString::fromStdString(face.message));
+                    });
+}
+
+void FacePanel::clear_muscles()
+{
+  slider_of_.clear();
+  for (QGridLayout* const layout : { sliders_, expressions_ })
+    while (QLayoutItem* const item = layout->takeAt(0))
+    {
+      delete item->widget();
+      delete item;
+    }
+}
+
+void FacePanel::show_muscles(const ListMuscles::Response& face)
+{
+  clear_muscles();
+  int row = 0;
+  for (const std::string& muscle : face.name)
+  {
+    if (slider_of_.count(muscle) > 0)
+      continue;
+    auto* const label = new QLabel(words(stem(muscle)));
+    label->setToolTip(QString::fromStdString(muscle));
+    sliders_->addWidget(label, row, 0);
+    const std::string other = counterpart(muscle);
+    const bool paired = std::find(face.name.begin(), face.name.end(), other) != face.name.end();
+    add_slider(muscle, row, ends_with(muscle, "_right") ? 2 : 1);
+    if (paired)
+      add_slider(other, row, ends_with(other, "_right") ? 2 : 1);
+    ++row;
+  }
+  sliders_->setRowStretch(row, 1);
+  int button = 0;
+  for (const std::string& name : face.expressions)
+  {
+    auto* const made = new QPushButton(words(name));
+    made->setObjectName(QString::fromStdString("expression/" + name));
+    connect(made, &QPushButton::clicked, this, [this, name] { express(name); });
+    expressions_->addWidget(made, button / buttons_per_row, button % buttons_per_row);
+    ++button;
+  }
+}
+
+void FacePanel::add_slider(const std::string& muscle, int row, int column)
+{
+  auto* const slider = new QSlider(Qt::Horizontal);
+  slider->setRange(0, full);
+  slider->setObjectName(QString::fromStdString(muscle));
+  slider->setToolTip(QString::fromStdString(muscle));
+  slider_of_[muscle] = slider;
+  // a muscle of the middle has both columns
+  sliders_->addWidget(slider, row, column, 1, counterpart(muscle).empty() ? 2 : 1);
+  connect(slider, &QSlider::valueChanged, this, [this, muscle] { on_slider(muscle); });
+}
+
+void FacePanel::on_slider(const std::string& muscle)
+{
+  edited_ = std::chrono::steady_clock::now();
+  MuscleActivation message;
+  message.header.stamp = ros::Time::now();
+  const int value = slider_of_.at(muscle)->value();
+  const auto other = locked_->isChecked() ? slider_of_.find(counterpart(muscle)) : slider_of_.end();
+  if (other != slider_of_.end())
+  {
+    const QSignalBlocker quiet(other->second);
+    other->second->setValue(value);
+    message.name.push_back(other->first);
+  }
+  message.name.push_back(muscle);
+  message.activation.assign(message.name.size(), static_cast<double>(value) / full);
+  activation_.publish(message);
+}
+
+void FacePanel::express(const std::string& name)
+{
+  Expression message;
+  message.header.stamp = ros::Time::now();
+  message.name = { name };
+  message.onset = onset_->value();
+  expression_.publish(message);
+}
+
+void FacePanel::set_parameter(const std::string& name, const std::string& value)
+{
+  dynamic_reconfigure::Reconfigure request;
+  auto& entry = request.request.config.strs.emplace_back();
+  entry.name = name;
+  entry.value = value;
+  call("set_parameters", request);
+}
+
+void FacePanel::on_state(const SimulationState& state)
+{
+  paused_ = state.paused;
+  pause_->setText(paused_ ? "Play" : "Pause");
+  speed_->setValue(std::clamp(static_cast<int>(std::lround(100 * state.real_time_factor)), 0, speed_->maximum()));
+  energy_->setText(QString("%1 s   strain %2 mJ   kinetic %3 mJ")
+                       .arg(state.time, 0, 'f', 2)
+                       .arg(1e3 * state.internal_energy, 0, 'g', 3)
+                       .arg(1e3 * state.kinetic_energy, 0, 'g', 3));
+  message_->setText(state.failed ? QString::fromStdString(state.message) : QString::fromStdString(state.backend));
+  // another scene has other muscles
+  if (!slider_of_.empty() && (slider_of_.size() != state.name.size() ||
+                              std::any_of(state.name.begin(), state.name.end(),
+                                          [this](const std::string& name) { return slider_of_.count(name) == 0; })))
+    return clear_muscles();
+  if (std::chrono::steady_clock::now() - edited_ < untouched)
+    return;
+  for (std::size_t muscle = 0; muscle < std::min(state.name.size(), state.activation.size()); ++muscle)
+    if (const auto slider = slider_of_.find(state.name[muscle]);
+        slider != slider_of_.end() && !slider->second->isSliderDown())
+    {
+      const QSignalBlocker quiet(slider->second);
+      slider->second->setValue(static_cast<int>(std::lround(full * state.activation[muscle])));
+    }
+}
+
+}  // namespace frontalis
+
+PLUGINLIB_EXPORT_CLASS(frontalis::FacePanel, rviz::Panel)

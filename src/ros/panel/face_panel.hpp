@@ -1,0 +1,80 @@
+#pragma once
+
+#include <frontalis/ListMuscles.h>
+#include <frontalis/SimulationState.h>
+#include <ros/ros.h>
+#include <rviz/panel.h>
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <list>
+#include <map>
+#include <string>
+#include <vector>
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QGridLayout;
+class QLabel;
+class QLineEdit;
+class QProgressBar;
+class QPushButton;
+class QSlider;
+
+namespace frontalis
+{
+
+/// A panel of rviz that moves a face and shows its state: a slider per muscle, left and right in one row, buttons for
+/// expressions, pause and reset, the colours of the skin, gauges. It talks to the face by topics and services alone.
+/// The name of a slider as a QObject is that of its muscle.
+class FacePanel : public rviz::Panel
+{
+  Q_OBJECT
+
+public:
+  explicit FacePanel(QWidget* parent = nullptr);
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+private:
+  /// Subscribes and advertises under the name of the face, and forgets its muscles.
+  void connect_to_face();
+  /// Looks for finished calls of services, and for the muscles of the face if they are not known.
+  void poll();
+  void show_muscles(const ListMuscles::Response& face);
+  void add_slider(const std::string& muscle, int row, int column);
+  void clear_muscles();
+  void on_state(const SimulationState& state);
+  void on_slider(const std::string& muscle);
+  void express(const std::string& name);
+  /// Calls a service in another thread, because a face may answer late; `use` has the outcome later, in this thread.
+  template <typename Service>
+  void call(const char* service, const Service& request,
+            std::function<void(const typename Service::Response&)> use = {});
+  void set_parameter(const std::string& name, const std::string& value);
+
+  QLineEdit* face_;
+  QCheckBox* locked_;
+  QPushButton* pause_;
+  QComboBox* colour_;
+  QDoubleSpinBox* onset_;
+  QGridLayout* expressions_;
+  QGridLayout* sliders_;
+  QProgressBar* speed_;
+  QLabel* energy_;
+  QLabel* message_;
+  std::map<std::string, QSlider*> slider_of_;  ///< by muscle
+
+  ros::NodeHandle handle_;
+  ros::Publisher activation_, expression_;
+  ros::Subscriber state_;
+  bool paused_ = false;
+  bool asked_ = false;                              ///< a call for the muscles is under way
+  std::chrono::steady_clock::time_point edited_{};  ///< when a slider was moved the last time
+  std::list<std::future<std::function<void()>>> calls_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,129 @@
+// The panel in rviz itself: it finds the muscles, a slider moves the face, buttons work, and its settings are saved.
+
+#include <frontalis/SimulationState.h>
+#include <ros/package.h>
+#include <ros/ros.h>
+#include <rviz/visualization_frame.h>
+#include <rviz/visualization_manager.h>
+
+#include <gtest/gtest.h>
+
+#include <QAbstractButton>
+#include <QApplication>
+#include <QCheckBox>
+#include <QDoubleSpinBox>
+#include <QProgressBar>
+#include <QSlider>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+
+namespace
+{
+
+constexpr std::chrono::minutes limit(4);  // only ends a test that would never end
+
+/// Runs rviz until a condition holds.
+bool run_until(const std::function<bool()>& holds)
+{
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (!holds())
+  {
+    if (std::chrono::steady_clock::now() > end)
+      return false;
+    QApplication::processEvents(QEventLoop::AllEvents, 50);
+  }
+  return true;
+}
+
+class Panel : public testing::Test
+{
+protected:
+  Panel()
+  {
+    state_ = ros::NodeHandle().subscribe<frontalis::SimulationState>(
+        "/face/state", 1, [this](const frontalis::SimulationState::ConstPtr& state) { latest_ = *state; });
+    frame_.setApp(static_cast<QApplication*>(QApplication::instance()));
+    frame_.initialize(QString::fromStdString(ros::package::getPath("frontalis") + "/test/ros/panel/panel.rviz"));
+    frame_.show();
+  }
+
+  template <typename Widget>
+  Widget* find(const char* name)
+  {
+    Widget* found = nullptr;
+    EXPECT_TRUE(run_until([&] { return (found = frame_.findChild<Widget*>(name)) != nullptr; })) << name;
+    return found;
+  }
+
+  /// Waits until the face has these activations.
+  testing::AssertionResult reaches(double left, double right)
+  {
+    const auto there = [&]
+    {
+      return latest_.activation.size() == 2 && std::abs(latest_.activation[0] - left) < 2e-3 &&
+             std::abs(latest_.activation[1] - right) < 2e-3;
+    };
+    if (run_until(there))
+      return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "activations are not " << left << " and " << right;
+  }
+
+  rviz::VisualizationFrame frame_;
+  ros::Subscriber state_;
+  frontalis::SimulationState latest_;
+};
+
+TEST_F(Panel, MovesTheFaceAndShowsIt)
+{
+  auto* const left = find<QSlider>("frontalis_left");
+  auto* const right = find<QSlider>("frontalis_right");
+  auto* const locked = find<QCheckBox>("locked");
+  ASSERT_TRUE(left && right && locked);
+  EXPECT_TRUE(locked->isChecked()) << "as test/ros/panel.rviz says";
+  EXPECT_DOUBLE_EQ(find<QDoubleSpinBox>("onset")->value(), 0.5);
+
+  left->setValue(700);
+  EXPECT_TRUE(reaches(0.7, 0.7));
+  EXPECT_EQ(right->value(), 700);
+  locked->setChecked(false);
+  right->setValue(200);
+  EXPECT_TRUE(reaches(0.7, 0.2));
+
+  find<QAbstractButton>("expression/wink")->click();
+  EXPECT_TRUE(reaches(0.6, 0));
+  // untouched sliders show what others command
+  EXPECT_TRUE(run_until([&] { return left->value() == 600 && right->value() == 0; }));
+  EXPECT_TRUE(run_until([&] { return find<QProgressBar>("speed")->value() > 0; }));
+
+  auto* const pause = find<QAbstractButton>("pause");
+  pause->click();
+  EXPECT_TRUE(run_until([&] { return latest_.paused && pause->text() == "Play"; }));
+  pause->click();
+  EXPECT_TRUE(run_until([&] { return !latest_.paused && pause->text() == "Pause"; }));
+  find<QAbstractButton>("reset")->click();
+  EXPECT_TRUE(reaches(0, 0));
+
+  const std::string saved = testing::TempDir() + "frontalis_panel_test.rviz";
+  ASSERT_TRUE(frame_.saveDisplayConfig(QString::fromStdString(saved)));
+  std::ifstream file(saved);
+  const std::string text{ std::istreambuf_iterator<char>(file), {} };
+  EXPECT_NE(text.find("Class: frontalis/FacePanel"), std::string::npos);
+  EXPECT_NE(text.find("Left Equals Right: false"), std::string::npos);
+  std::remove(saved.c_str());
+}
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+  testing::InitGoogleTest(&count, arguments);
+  QApplication application(count, arguments);
+  ros::init(count, arguments, "panel_test");
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""A face that is replaced while it runs, its live configuration, the probe, and the markers of its muscles."""
+
+import math
+import os
+import unittest
+
+import rospkg
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from frontalis.srv import LoadScene, Probe
+from geometry_msgs.msg import Point
+from visualization_msgs.msg import Marker, MarkerArray
+
+from face import LIMIT, Face, wait
+
+FOLDER = os.path.join(rospkg.RosPack().get_path("frontalis"), "test")
+
+
+class Scenes(unittest.TestCase):
+    def setUp(self):
+        self.face = Face()
+        self.face.wait_until_ready()
+        self.load = rospy.ServiceProxy("/face/load_scene", LoadScene)
+
+    def test_1_a_bad_scene_changes_nothing(self):
+        self.face.command(frontalis_left=0.5)
+        wait(lambda: abs(self.face.state.activation[0] - 0.5) < 1e-3, "the command")
+        time = self.face.state.time
+        for scene, why in (("nowhere.yaml", "nowhere.yaml"), ("", ""), (FOLDER + "/scene/five_faults.yaml", "five_faults"),
+                           (FOLDER + "/ros/pair.vtkhdf", "pair.vtkhdf")):
+            answer = self.load(scene=scene)
+            self.assertFalse(answer.success)
+            self.assertIn(why, answer.message)
+        wait(lambda: self.face.state.time > time + 0.1, "the old face, which goes on")
+        self.assertEqual(self.face.state.name, ["frontalis_left", "frontalis_right"])
+        self.assertAlmostEqual(self.face.state.activation[0], 0.5, 3)
+
+    def test_2_another_scene_takes_over(self):
+        answer = self.load(scene=FOLDER + "/ros/small.yaml")
+        self.assertTrue(answer.success, answer.message)
+        wait(lambda: self.face.state.name == ["lift"], "the new face")
+        self.face.command(lift=0.3)
+        wait(lambda: abs(self.face.state.activation[0] - 0.3) < 1e-3, "a command to the new face")
+        self.assertTrue(self.load(scene=FOLDER + "/ros/pair.yaml").success)
+        wait(lambda: len(self.face.state.name) == 2 and len(self.face.landmarks.poses) == 1, "the first face again")
+        self.assertEqual(self.face.target(), {"frontalis_left": 0, "frontalis_right": 0})
+
+    def test_3_configuration_changes_while_it_runs(self):
+        config = Client("/face", timeout=LIMIT)
+        markers = []
+        listener = rospy.Subscriber("/face/skin", Marker, markers.append)
+        wait(lambda: markers, "a marker")
+        colour = markers[-1].colors[0]
+        config.update_configuration({"skin_colour": "displacement", "frame_rate": 10, "effects_off": "contraction"})
+        # without displacement: the blue end of the scale, where skin is reddish
+        self.assertGreater(colour.r, colour.b)
+        wait(lambda: markers[-1].colors[0].b > markers[-1].colors[0].r, "false colours")
+        running = self.face.switch_effect("", False)
+        self.assertFalse(dict(zip(running.name, running.running))["contraction"])
+        # what cannot be done is refused as a whole
+        self.assertEqual(config.update_configuration({"effects_off": "magic"})["effects_off"], "contraction")
+        config.update_configuration({"skin_colour": "skin", "effects_off": "", "frame_rate": 0})
+        wait(lambda: markers[-1].colors[0].r > markers[-1].colors[0].b, "the colours of skin")
+        running = self.face.switch_effect("", False)
+        self.assertTrue(dict(zip(running.name, running.running))["contraction"])
+        listener.unregister()
+
+    def test_4_probe_reads_the_skin(self):
+        probe = rospy.ServiceProxy("/face/probe", Probe)
+        answer = probe(Point(0, 0, -0.02))
+        self.assertTrue(answer.success, answer.message)
+        self.assertLess(answer.distance, 0.01)
+        self.assertLess(answer.position.z, -0.01)
+        normal = answer.normal
+        self.assertAlmostEqual(math.hypot(normal.x, normal.y, normal.z), 1, 4)
+        self.assertFalse(probe(Point(math.nan, 0, 0)).success)
+
+    def test_5_muscles_are_lines_coloured_by_activation(self):
+        shown = []
+        rospy.Subscriber("/face/muscles", MarkerArray, shown.append)
+        self.face.command(frontalis_left=0.9, frontalis_right=0)
+
+        def coloured():
+            colours = {marker.ns: marker.color for marker in shown[-1].markers} if shown else {}
+            return colours and colours["frontalis_left"].r > colours["frontalis_left"].b
+
+        wait(coloured, "a red muscle")
+        for marker in shown[-1].markers:
+            self.assertEqual(marker.header.frame_id, "face")
+            self.assertGreater(len(marker.points), 1)
+            self.assertEqual(len(marker.points) % 2, 0)
+            for point in marker.points:
+                self.assertLess(abs(point.z), 0.02)
+
+    def test_6_cost_is_in_the_diagnostics(self):
+        wait(lambda: float(self.face.diagnostic("wall time per step [us]") or 0) > 0, "the time per step")
+        wait(lambda: float(self.face.diagnostic("memory of the solver [MB]") or 0) > 0, "the memory")
+
+
+if __name__ == "__main__":
+    rospy.init_node("scenes_test")
+    rostest.rosrun("frontalis", "scenes", Scenes)
