@@ -133,7 +133,7 @@ void add_restrictions(const Scene& scene, Content& content)
 {
   for (const SceneConstraint& c : scene.constraints)
   {
-    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.of, c.crop, c.bone, c.friction);
     if (!c.on.empty())
       content.add(c.on);
     if (c.pushed)

@@ -85,6 +85,17 @@ private:
   std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;
 };
 
+/// The nodes of voxels that hold some of a muscle.
+std::vector<std::size_t> nodes_of(const std::string& muscle, const Model& model)
+{
+  std::vector<std::size_t> nodes;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (std::int32_t f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+      if (model.muscles[model.fibre_muscle[f]].name == muscle)
+        nodes.insert(nodes.end(), model.voxel_nodes[e].begin(), model.voxel_nodes[e].end());
+  return nodes;
+}
+
 /// Index in the model of the bone that a constraint moves with, added if it is new; -1: none.
 std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 {
@@ -156,12 +167,25 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
-                  [&](std::size_t n, double, const PreparedSurface&)
-                  {
-                    if (restrictions[n].kind != Kind::rigid)
-                      restrictions[n] = { Kind::rigid, bone, static_cast<std::int32_t>(c) };
-                  });
+    const std::string place = place_in_scene(scene, "constraint", constraint);
+    std::vector<bool> near(nodes, false);
+    for_each_node(place, constraint.surfaces, constraint,
+                  [&](std::size_t n, double, const PreparedSurface&) { near[n] = true; });
+    std::vector<bool> held = constraint.of.empty() ? near : std::vector<bool>(nodes, false);
+    for (const std::string& muscle : constraint.of)
+    {
+      bool reaches = false;
+      for (const std::size_t n : nodes_of(muscle, model))
+        if (near[n])
+          reaches = held[n] = true;
+      if (!reaches)
+        throw failure("{}: of: no node of muscle '{}' lies within {} of these surfaces inside the crop; check the "
+                      "muscle's origin and 'within'",
+                      place, muscle, length_text(finder.reach_of(constraint.within), scene.unit));
+    }
+    for (std::size_t n = 0; n < nodes; ++n)
+      if (held[n] && restrictions[n].kind != Kind::rigid)
+        restrictions[n] = { Kind::rigid, bone, static_cast<std::int32_t>(c) };
   }
 
   for (std::size_t l = 0; l < scene.loads.size(); ++l)
