@@ -1,6 +1,7 @@
 #include "bake/voxels/model_stages.hpp"
 
 #include "frontalis/model/sample_field.hpp"
+#include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 
@@ -85,17 +86,6 @@ private:
   std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;
 };
 
-/// The nodes of voxels that hold some of a muscle.
-std::vector<std::size_t> nodes_of(const std::string& muscle, const Model& model)
-{
-  std::vector<std::size_t> nodes;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-    for (std::int32_t f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
-      if (model.muscles[model.fibre_muscle[f]].name == muscle)
-        nodes.insert(nodes.end(), model.voxel_nodes[e].begin(), model.voxel_nodes[e].end());
-  return nodes;
-}
-
 /// Index in the model of the bone that a constraint moves with, added if it is new; -1: none.
 std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 {
@@ -110,8 +100,8 @@ std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 
 }  // namespace
 
-void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
-                    BakeMonitor& monitor)
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
+                    const LocalFrame& frame, Model& model, BakeMonitor& monitor)
 {
   NodeFinder finder(frame, model, monitor);
   const std::size_t nodes = model.nodes.size();
@@ -172,16 +162,17 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     for_each_node(place, constraint.surfaces, constraint,
                   [&](std::size_t n, double, const PreparedSurface&) { near[n] = true; });
     std::vector<bool> held = constraint.of.empty() ? near : std::vector<bool>(nodes, false);
-    for (const std::string& muscle : constraint.of)
+    for (const std::string& name : constraint.of)
     {
-      bool reaches = false;
-      for (const std::size_t n : nodes_of(muscle, model))
-        if (near[n])
-          reaches = held[n] = true;
-      if (!reaches)
-        throw failure("{}: of: no node of muscle '{}' lies within {} of these surfaces inside the crop; check the "
-                      "muscle's origin and 'within'",
-                      place, muscle, length_text(finder.reach_of(constraint.within), scene.unit));
+      const auto m = static_cast<std::size_t>(index_of(scene.muscles, name, place, "muscle"));
+      const std::vector<std::size_t> origin = origin_nodes(m, fibres[m], near, frame, model);
+      if (origin.empty())
+        throw failure(
+            "{}: of: neither end of muscle '{}' lies within {} of these surfaces inside the crop; check the "
+            "muscle's origin and 'within'",
+            place, name, length_text(finder.reach_of(constraint.within), scene.unit));
+      for (const std::size_t n : origin)
+        held[n] = true;
     }
     for (std::size_t n = 0; n < nodes; ++n)
       if (held[n] && restrictions[n].kind != Kind::rigid)
