@@ -87,7 +87,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 {
   const bool measure = report != nullptr && report->measure_muscles;
   if (report != nullptr)
-    *report = { {}, {}, measure, {} };
+    *report = { {}, {}, {}, measure, {} };
   BakeMonitor monitor(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
     throw failure("{}: accuracy: samples is {}; it must be 1 to 32", scene.file, scene.accuracy.samples);
@@ -116,14 +116,18 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   copy_settings(scene, frame, model);
   build_nodes(model);
 
+  monitor.begin("fibres");
+  const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);
+
   monitor.begin("constraints");
-  restrict_nodes(scene, surfaces, frame, model, monitor);
+  restrict_nodes(scene, surfaces, fibres, frame, model, monitor);
   remove_islands(model, monitor);
   attach_nodes(scene, surfaces, frame, model, monitor);
 
-  monitor.begin("fibres");
-  const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);
   add_fibres(scene, fibres, frame, model, monitor);
+  scale_strength(scene, fibres, frame, model, report);
+  if (scene.accuracy.fibres == "spread")
+    spread_fibres(model);
 
   monitor.begin("layers");
   add_thin_layers(volumes, frame, model, monitor);

@@ -97,6 +97,14 @@ BakeSummary summary_of(const BakeReport& report)
                     1e6 * muscle.voxels, 1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1),
                     1e6 * muscle.mesh, 1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
                     muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name);
+  if (!report.forces.empty())
+    summary.muscles +=
+        fmt::format("strength {:>8} {:>9} {:>9} {:>7} {:>8}\n", "fibre mm", "model mm2", "people", "factor", "force N");
+  for (const BakeReport::MuscleForce& force : report.forces)
+    summary.muscles +=
+        fmt::format("strength {:8.1f} {:9.1f} {:>9} {:7.2f} {:8.2f}  {}\n", 1e3 * force.length,
+                    1e6 * force.cross_section, force.given > 0 ? fmt::format("{:.1f}", 1e6 * force.given) : "-",
+                    force.given > 0 ? force.given / force.cross_section : 1.0, force.force, force.name);
   return summary;
 }
 

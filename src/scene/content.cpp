@@ -101,7 +101,7 @@ void add_surface(const Surface& surface, Content& content)
 void add_muscle(const SceneMuscle& muscle, Content& content)
 {
   content.line("muscle", muscle.name, muscle.volume, muscle.fibre, muscle.stress_reference, muscle.passive,
-               muscle.tension_length, muscle.rise_time, muscle.fall_time);
+               muscle.tension_length, muscle.rise_time, muscle.fall_time, muscle.cross_section);
   for (const MuscleEnd& end : { muscle.origin, muscle.insertion })
     content.add(end.surface, end.points);
   content.add(muscle.ring ? (*muscle.ring ? "ring" : "open") : "");
@@ -133,7 +133,7 @@ void add_restrictions(const Scene& scene, Content& content)
 {
   for (const SceneConstraint& c : scene.constraints)
   {
-    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.crop, c.bone, c.friction);
+    content.line("constraint", c.name, c.kind, c.surfaces, c.within, c.of, c.crop, c.bone, c.friction);
     if (!c.on.empty())
       content.add(c.on);
     if (c.pushed)
@@ -168,7 +168,7 @@ void add_numerics(const Scene& scene, Content& content)
   const MassScaling& scaling = profile.mass_scaling;
   content.line("accuracy", profile.voxel, profile.samples, profile.fill_min, profile.time_step_share, scaling.kind,
                scaling.factor, scaling.time_step, profile.assumed_strain, profile.integration, profile.precision,
-               profile.time_step, profile.boundary, scaling.materials);
+               profile.time_step, profile.boundary, profile.fibres, scaling.materials);
   content.line("profile", profile.name);
   for (const AccuracyProfile& known : scene.profiles)
     content.line("measured", known.name, known.measured.error, known.measured.cost, known.measured.machine);

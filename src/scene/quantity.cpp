@@ -34,6 +34,7 @@ constexpr Unit units[] = {
   { Dimension::angle, "rad", 1 },       { Dimension::mass, "kg", 1 },           { Dimension::mass, "g", 1e-3 },
   { Dimension::force, "N", 1 },         { Dimension::force, "mN", 1e-3 },       { Dimension::spring, "N/m", 1 },
   { Dimension::spring, "N/mm", 1e3 },   { Dimension::drag, "Ns/m", 1 },         { Dimension::drag, "kg/s", 1 },
+  { Dimension::area, "m2", 1 },         { Dimension::area, "cm2", 1e-4 },       { Dimension::area, "mm2", 1e-6 },
 };
 
 /// Returns null if the unit does not exist.

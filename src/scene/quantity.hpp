@@ -11,6 +11,7 @@ enum class Dimension
 {
   number,        ///< without a unit
   length,        ///< m, cm, mm, um, in; default: the scene's length unit
+  area,          ///< m2, cm2, mm2; default: m2
   time,          ///< s, ms, us; default: s
   rate,          ///< 1/s, Hz; default: 1/s
   pressure,      ///< Pa, kPa, MPa, GPa; default: Pa

@@ -58,9 +58,11 @@ struct ConstraintKind
 
 constexpr ConstraintKind constraint_kinds[] = {
   { SceneConstraint::Kind::rigid, "rigid",
-    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames& names)
     {
       read_within(mapping, constraint);
+      if (const Node of = mapping.optional("of"); of.given())
+        constraint.of = of.references(names.muscles);
       read_place(mapping, constraint);
     } },
   { SceneConstraint::Kind::sliding, "sliding",

@@ -2,6 +2,8 @@
 
 #include "frontalis/physics/materials/lookup.hpp"
 
+#include <filesystem>
+
 namespace frontalis
 {
 namespace
@@ -100,7 +102,7 @@ void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& nam
 
 }  // namespace
 
-void read_materials(const Node& node, Scene& scene, SceneNames& names)
+void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNames& names)
 {
   const auto read = [&](const Node& entry, Mapping& mapping, SceneMaterial& material)
   {
@@ -114,7 +116,27 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names)
     read_viscosity(mapping.optional("viscosity"), material.viscosity);
     material.density = mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
   };
+  std::vector<SceneMaterial> library;
+  if (tissues.given() && !tissues.text().empty())
+  {
+    const std::string path = (std::filesystem::path(scene.file).parent_path() / tissues.text()).string();
+    const YAML::Node yaml = load_yaml(path, "tissues", "a mapping of materials");
+    ReadingContext context{ Faults(path), node.context().length_unit };
+    Names known{ "material", {}, true };
+    read_named(Node(yaml, "", 1, context), library, known, read);
+    if (!context.faults.empty())
+      throw Error(context.faults.text());
+  }
   read_named(node, scene.materials, names.materials, read);
+  for (SceneMaterial& material : library)
+    if (!names.materials.has(material.name))
+    {
+      material.of_library = true;
+      names.materials.names.push_back(material.name);
+      scene.materials.push_back(material);
+    }
+  if (tissues.given() && !node.given())
+    names.materials.complete = true;
 }
 
 }  // namespace frontalis

@@ -90,6 +90,7 @@ void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle,
     material = node.reference(names.materials);
   muscle.stress_reference =
       mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
+  muscle.cross_section = mapping.optional("cross_section").number(Dimension::area, positive, muscle.cross_section);
   muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, muscle.rise_time);
   muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, muscle.fall_time);
   muscle.passive = mapping.optional("passive").boolean(muscle.passive);
@@ -119,6 +120,14 @@ void find_volume(const Node& key, const std::string& material, SceneMuscle& musc
   volume.line = muscle.line;
   scene.volumes.push_back(volume);
   names.volumes.names.push_back(volume.name);
+}
+
+/// The name without _left or _right.
+std::string without_side(const std::string& name)
+{
+  const std::size_t at = name.rfind('_');
+  const std::string side = at == std::string::npos ? "" : name.substr(at);
+  return side == "_left" || side == "_right" ? name.substr(0, at) : name;
 }
 
 /// Names of the surfaces that `each` lists: its own, and the muscles of the sets that it names.
@@ -163,7 +172,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
           each.fault("'{}' is in two sets; once is enough", member);
         muscle.name = member;
         muscle.volume.clear();
-        if (!node.has(member))
+        if (!node.has(member) && !node.has(without_side(member)))
           find_volume(each, material, muscle, scene, names);
         materials[member] = material;
         scene.muscles.push_back(muscle);
@@ -173,18 +182,27 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   {
     if (entry.has("each"))
       continue;
-    if (place(name) == scene.muscles.end())
-      scene.muscles.emplace_back().name = name;
-    SceneMuscle& muscle = *place(name);
-    muscle.line = entry.line();
-    Mapping mapping(entry);
-    const Node volume = mapping.optional("volume");
-    if (volume.given())
-      muscle.volume = volume.reference(names.volumes);
-    read_fibres(mapping, names, muscle);
-    read_shared(mapping, names, muscle, materials[name]);
-    if (!volume.given() && entry.is_mapping())
-      find_volume(volume, materials[name], muscle, scene, names);
+    // a name without its side stands for both muscles of a set
+    Names made{ "muscle", {}, true };
+    for (const SceneMuscle& muscle : scene.muscles)
+      made.names.push_back(muscle.name);
+    for (const std::string& one : made.both_sides(name))
+    {
+      if (place(one) == scene.muscles.end())
+        scene.muscles.emplace_back().name = one;
+      SceneMuscle& muscle = *place(one);
+      muscle.line = entry.line();
+      Mapping mapping(entry);
+      const Node volume = mapping.optional("volume");
+      if (volume.given())
+        muscle.volume = volume.reference(names.volumes);
+      read_fibres(mapping, names, muscle);
+      read_shared(mapping, names, muscle, materials[one]);
+      if (!volume.given() && entry.is_mapping())
+        find_volume(volume, materials[one], muscle, scene, names);
+      if (entry.faulty())
+        break;
+    }
   }
   for (const SceneMuscle& muscle : scene.muscles)
     names.muscles.names.push_back(muscle.name);

@@ -23,6 +23,21 @@ std::string read_text(const std::string& path, const std::string& what)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
+// leaves out the tissues of the library that nothing uses
+void leave_out_unused(Scene& scene)
+{
+  const auto unused = [&](const SceneMaterial& material)
+  {
+    const auto has = [&](const auto& item) { return item.material == material.name; };
+    const std::vector<std::string>& scaled = scene.accuracy.mass_scaling.materials;
+    return material.of_library && std::none_of(scene.volumes.begin(), scene.volumes.end(), has) &&
+           std::none_of(scene.layers.begin(), scene.layers.end(), has) &&
+           std::find(scaled.begin(), scaled.end(), material.name) == scaled.end();
+  };
+  auto& all = scene.materials;
+  all.erase(std::remove_if(all.begin(), all.end(), unused), all.end());
+}
+
 void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 {
   Mapping mapping(root);
@@ -33,7 +48,11 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   const Node mesh_directory = mapping.optional("mesh_dir");
   read_frame(mapping.optional("frame"), scene.frame);
   read_surfaces(mapping.required("surfaces", "a mapping of surfaces"), mesh_directory, options, scene, names);
-  read_materials(mapping.required("materials", "a mapping of materials"), scene, names);
+  const Node tissues = mapping.optional("tissues");
+  read_materials(
+      tissues,
+      tissues.given() ? mapping.optional("materials") : mapping.required("materials", "a mapping of materials"), scene,
+      names);
   read_volumes(mapping.required("volumes", "a mapping of volumes"), scene, names);
   read_layers(mapping.optional("layers"), scene, names);
   read_muscles(mapping.optional("muscles"), scene, names);
@@ -47,6 +66,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_accuracy(mapping.optional("accuracy"), options, scene, names);
   read_expressions(mapping.optional("expressions"), scene, names);
   read_demo(mapping.optional("demo"), scene, names);
+  leave_out_unused(scene);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ struct SceneNames
 void read_frame(const Node& node, FaceFrame& frame);
 void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
                    SceneNames& names);
-void read_materials(const Node& node, Scene& scene, SceneNames& names);
+/// Reads the section, and before it the file that `tissues` names, whose materials an entry of the section replaces.
+void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNames& names);
 void read_volumes(const Node& node, Scene& scene, SceneNames& names);
 void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);

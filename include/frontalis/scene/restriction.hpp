@@ -31,7 +31,8 @@ struct SceneConstraint
   std::string name;
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
-  double within = -1;  ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
+  double within = -1;           ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
+  std::vector<std::string> of;  ///< rigid: muscles; only nodes of voxels that hold some of these; empty: all nodes
   Region crop;
   std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
   double friction = 0;  ///< sliding, contact and self_contact: Coulomb friction coefficient

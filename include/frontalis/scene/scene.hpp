@@ -70,7 +70,8 @@ struct AccuracyProfile
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend
   std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
-  std::string boundary = "staircase";     ///< where bones attach tissue: nodes near them; true: at their surface
+  std::string fibres = "sampled";      ///< voxels that a muscle acts on: those that it fills; spread: around them too
+  std::string boundary = "staircase";  ///< where bones attach tissue: nodes near them; true: at their surface
   MeasuredAccuracy measured;
 };
 

@@ -30,6 +30,7 @@ struct SceneMaterial
   /// Surface that two fibre families follow: the shortest rotation from their common normal to the surface's normal at
   /// the closest point turns them. Empty: the directions are the same everywhere.
   std::string along;
+  bool of_library = false;  ///< from the file of `tissues`: left out if nothing uses it
   int line = 0;
 };
 
@@ -69,6 +70,7 @@ struct SceneMuscle
   std::string volume;
   Vector3 fibre{ 0, 0, 0 };         ///< unit vector in scene axes; 0: the fibres follow `net` or the shape
   double stress_reference = 0.3e6;  ///< active stress at full activation [Pa]
+  double cross_section = 0;         ///< of all fibres in people [m2]; 0: that of the muscle's volume
   bool passive = false;             ///< whether the fibres have the passive stress of Blemker et al. 2005
   bool tension_length = true;       ///< whether the active stress follows the tension-length curve
   int line = 0;

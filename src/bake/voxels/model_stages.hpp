@@ -5,6 +5,8 @@
 namespace frontalis
 {
 
+struct MuscleFibres;
+
 /// Scene to local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node of the grid.
 struct LocalFrame
 {
@@ -65,8 +67,13 @@ void copy_poses(const Scene& scene, Model& model);
 /// side with most of the tissue within two voxels of it. If several constraints apply to a node, rigid takes precedence
 /// over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several sliding
 /// surfaces the nearest. Throws Error for a constraint that restricts no node.
-void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
-                    BakeMonitor& monitor);
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
+                    const LocalFrame& frame, Model& model, BakeMonitor& monitor);
+
+/// Of the nodes `near` a bone, those where a muscle originates: corners of its voxels at the end of its fibres (15 % of
+/// their length) that has more of them. Empty if none of its ends is near.
+std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
+                                      const LocalFrame& frame, const Model& model);
 
 /// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: those of constraints
 /// without a `within` of their own.

@@ -1,6 +1,7 @@
 #include "bake/voxels/model_stages.hpp"
 
 #include "frontalis/model/sample_field.hpp"
+#include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 
@@ -99,8 +100,8 @@ std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 
 }  // namespace
 
-void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
-                    BakeMonitor& monitor)
+void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
+                    const LocalFrame& frame, Model& model, BakeMonitor& monitor)
 {
   NodeFinder finder(frame, model, monitor);
   const std::size_t nodes = model.nodes.size();
@@ -156,12 +157,26 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
     const std::int32_t bone = bone_of(constraint, model);
-    for_each_node(place_in_scene(scene, "constraint", constraint), constraint.surfaces, constraint,
-                  [&](std::size_t n, double, const PreparedSurface&)
-                  {
-                    if (restrictions[n].kind != Kind::rigid)
-                      restrictions[n] = { Kind::rigid, bone, static_cast<std::int32_t>(c) };
-                  });
+    const std::string place = place_in_scene(scene, "constraint", constraint);
+    std::vector<bool> near(nodes, false);
+    for_each_node(place, constraint.surfaces, constraint,
+                  [&](std::size_t n, double, const PreparedSurface&) { near[n] = true; });
+    std::vector<bool> held = constraint.of.empty() ? near : std::vector<bool>(nodes, false);
+    for (const std::string& name : constraint.of)
+    {
+      const auto m = static_cast<std::size_t>(index_of(scene.muscles, name, place, "muscle"));
+      const std::vector<std::size_t> origin = origin_nodes(m, fibres[m], near, frame, model);
+      if (origin.empty())
+        throw failure(
+            "{}: of: neither end of muscle '{}' lies within {} of these surfaces inside the crop; check the "
+            "muscle's origin and 'within'",
+            place, name, length_text(finder.reach_of(constraint.within), scene.unit));
+      for (const std::size_t n : origin)
+        held[n] = true;
+    }
+    for (std::size_t n = 0; n < nodes; ++n)
+      if (held[n] && restrictions[n].kind != Kind::rigid)
+        restrictions[n] = { Kind::rigid, bone, static_cast<std::int32_t>(c) };
   }
 
   for (std::size_t l = 0; l < scene.loads.size(); ++l)

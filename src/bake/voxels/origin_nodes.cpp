@@ -1,0 +1,36 @@
+#include "bake/fibres/fibres.hpp"
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double end_share = 0.15;  // of the fibres' length
+
+}  // namespace
+
+std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
+                                      const LocalFrame& frame, const Model& model)
+{
+  std::vector<std::pair<std::size_t, double>> voxels;  // with their places along the fibres
+  double first = 1e300, last = -1e300;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (std::int32_t f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
+      if (static_cast<std::size_t>(model.fibre_muscle[f]) == muscle)
+      {
+        const double place = fibres.along(frame.voxel_centre(model, e));
+        voxels.emplace_back(e, place);
+        first = std::min(first, place);
+        last = std::max(last, place);
+      }
+  std::array<std::vector<std::size_t>, 2> ends;
+  for (const auto& [e, place] : voxels)
+    for (int end = 0; end < 2; ++end)
+      if (std::abs(place - (end == 0 ? first : last)) <= end_share * (last - first))
+        for (const std::int32_t node : model.voxel_nodes[e])
+          if (near[node])
+            ends[end].push_back(node);
+  return ends[0].size() >= ends[1].size() ? ends[0] : ends[1];
+}
+
+}  // namespace frontalis
