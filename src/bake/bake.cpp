@@ -4,6 +4,7 @@
 #include "bake/messages.hpp"
 #include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/self_contacts.hpp"
+#include "bake/voxels/shells.hpp"
 #include "frontalis/model/effects.hpp"
 
 namespace frontalis
@@ -135,7 +136,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   turn_families(scene, surfaces, frame, model, monitor);
 
   monitor.begin("skin");
-  for (const auto bind : { bind_surfaces, bind_contacts, bind_self_contacts })
+  for (const auto bind : { bind_surfaces, bind_contacts, bind_self_contacts, bind_shells })
     bind(scene, surfaces, frame, model, monitor);
   copy_poses(scene, model);
 

@@ -124,7 +124,7 @@ void add_anatomy(const Scene& scene, Content& content)
       content.add(term.share, term.time);
   }
   for (const Layer& layer : scene.layers)
-    content.line("layer", layer.name, layer.surface, layer.volume, layer.material, layer.thickness);
+    content.line("layer", layer.name, layer.surface, layer.volume, layer.material, layer.thickness, layer.shell);
   for (const SceneMuscle& muscle : scene.muscles)
     add_muscle(muscle, content);
 }

@@ -91,6 +91,7 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names)
       volume.reference(names.tissue_volumes);
     layer.material = mapping.required("material", "the name of a material").reference(names.materials);
     layer.thickness = mapping.required("thickness", "a length").number(Dimension::length, positive, 0);
+    layer.shell = mapping.optional("shell").boolean(false);
   };
   read_list(node, scene.layers, read);
 }

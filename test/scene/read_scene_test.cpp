@@ -185,6 +185,8 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_EQ(scene.layers[0].name, "outer");
   EXPECT_NEAR(scene.layers[0].thickness, 20e-6, 1e-18);
   EXPECT_NEAR(scene.layers[1].thickness, 1e-3, 1e-15);
+  EXPECT_FALSE(scene.layers[0].shell);
+  EXPECT_TRUE(scene.layers[1].shell);
 }
 
 TEST(EveryKey, ways_to_give_fibres)

@@ -3,6 +3,7 @@
 #include "frontalis/model/contact.hpp"
 #include "frontalis/model/restriction.hpp"
 #include "frontalis/model/self_contact.hpp"
+#include "frontalis/model/shell.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
 
@@ -57,6 +58,7 @@ struct Model
   std::vector<AttachedNode> attached;
   std::vector<Contact> contacts;
   std::vector<SelfContact> self_contacts;
+  std::vector<Shell> shells;
 
   // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]

@@ -43,6 +43,7 @@ struct Layer
   std::string material;
   double thickness = 0;  ///< [m]
   int line = 0;
+  bool shell = false;  ///< whether it is a shell that voxels carry, instead of a part of the voxels
 };
 
 /// Origin or insertion of a muscle's fibres: the region of the muscle nearest to a surface or to a polyline.

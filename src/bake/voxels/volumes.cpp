@@ -54,8 +54,8 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
 
 void Volumes::add_layers(const Scene& scene, double sample_spacing)
 {
-  // Layers of one volume and surface lie one below the other. A thin layer forms no band: the next band begins at the
-  // bottom of the last one.
+  // Layers of one volume and surface lie one below the other. A thin layer or a shell forms no band: the next band
+  // begins at the bottom of the last one.
   struct Stack
   {
     double bottom = 0, next_band = 0;
@@ -71,6 +71,8 @@ void Volumes::add_layers(const Scene& scene, double sample_spacing)
       throw failure("{}: thickness is {:g} m; it must be above 0", name, layer.thickness);
     Stack& stack = stacks[{ layer.volume, layer.surface }];
     stack.bottom += layer.thickness;
+    if (layer.shell)
+      continue;
     if (layer.thickness < sample_spacing)
     {
       thin_layers_.push_back({ below, entry.volume->crop, layer.thickness, material, layer.name });

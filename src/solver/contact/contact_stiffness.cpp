@@ -4,6 +4,7 @@
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/pushed_contact.hpp"
+#include "solver/stepping/bound_stiffness.hpp"
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>
@@ -76,14 +77,7 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
 // What contact adds to a node is shared by its voxels in proportion to their own bounds, which voxels_ holds before.
 void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
 {
-  const std::vector<double> added = rows(model, false);
-  for (std::size_t e = 0; e < voxels_.size(); ++e)
-  {
-    double share = 0;
-    for (const auto node : model.voxel_nodes[e])
-      share = std::max(share, added[node] / of_voxels[node]);
-    voxels_[e] *= static_cast<float>(share);
-  }
+  share_rows(model, rows(model, false), of_voxels, voxels_);
   for (std::size_t c = 0; c < bodies_; ++c)
     if (model.contacts[c].mass > 0)
     {
@@ -145,23 +139,11 @@ void ContactStiffness::add(const Binding& binding, const std::vector<double>& ar
   surfaces_.push_back(std::move(surface));
 }
 
-// The stiffness of a point on the nodes of its voxel is k w w^T, w its weights. The rows of these matrices, added over
-// all points, bound the eigenvalues of their sum divided by the masses (Gershgorin).
 std::vector<double> ContactStiffness::rows(const Model& model, bool alone) const
 {
   std::vector<double> rows(model.nodes.size(), 0);
   for (const Surface& surface : surfaces_)
-    for (std::size_t p = 0; p < surface.points.size(); ++p)
-    {
-      const auto& at = surface.binding->coordinates[p];
-      double weight[8], sum = 0;
-      physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-      for (const double w : weight)
-        sum += std::abs(w);
-      for (std::size_t b = 0; b < 8; ++b)
-        rows[model.voxel_nodes[surface.binding->voxel[p]][b]] +=
-            (alone ? 1 : surface.moves) * double(surface.points[p]) * std::abs(weight[b]) * sum;
-    }
+    add_stiffness_rows(model, *surface.binding, surface.points, alone ? 1 : surface.moves, rows);
   return rows;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/element/node_motion.hpp"
-#include "solver/cpu/slide_kernel.hpp"
+#include "solver/cpu/part_kernels.hpp"
 #include "solver/cpu/voxel_rows.hpp"
 
 namespace frontalis
@@ -79,7 +79,7 @@ struct CpuKernelChoice
 {
   CpuKernel<float> single;
   CpuKernel<double> wide;
-  SlideKernel<float> slide;
+  PartKernels<float> parts;
   CpuMonitorKernel monitor;
   const char* name;
 };

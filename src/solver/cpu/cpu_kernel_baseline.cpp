@@ -5,11 +5,15 @@ namespace frontalis
 {
 
 void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
+void shell_kernel_baseline(const ShellArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
-  return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run,
-           slide_kernel_baseline, CpuMonitor<xsimd::default_arch>::run, name };
+  return { CpuKernelBody<xsimd::default_arch, float>::run,
+           CpuKernelBody<xsimd::default_arch, double>::run,
+           { slide_kernel_baseline, shell_kernel_baseline },
+           CpuMonitor<xsimd::default_arch>::run,
+           name };
 }
 
 }  // namespace frontalis

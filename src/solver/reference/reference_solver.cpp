@@ -13,7 +13,7 @@
 namespace frontalis
 {
 
-ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input, 0, slide_plainly<double>)
+ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input, 0, {})
 {
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());

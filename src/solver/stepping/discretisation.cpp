@@ -73,6 +73,17 @@ physics::Kinematics<double> at_rest()
   return physics::kinematics(none, none, none, scale);
 }
 
+}  // namespace
+
+double shear_at_rest(const Material& material)
+{
+  return material.law == Law::neo_hookean ? material.parameters[0]
+                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
+}
+
+namespace
+{
+
 bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
 {
   for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
@@ -80,13 +91,6 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
         std::find(materials.begin(), materials.end(), model.mixture_material[m]) != materials.end())
       return true;
   return false;
-}
-
-// Shear stiffness of a material at rest [Pa].
-double shear_at_rest(const Material& material)
-{
-  return material.law == Law::neo_hookean ? material.parameters[0]
-                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
 }
 
 // Rigid nodes, and nodes with a prescribed displacement in every direction. Empty if these are all nodes, so that a

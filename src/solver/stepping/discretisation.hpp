@@ -41,6 +41,9 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
+/// Shear stiffness of a material at rest [Pa].
+double shear_at_rest(const Material& material);
+
 /// The properties of a model that every backend needs, in double precision. The properties of a voxel are computed on
 /// request and not stored, because each backend stores them in its own form.
 class Discretisation

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "bake/mesh/surface_mesh.hpp"
+
+namespace frontalis
+{
+
+/// The same surface in triangles whose edges are about `edge` [m] long: nearly all between 4/5 and 4/3 of it (Botsch &
+/// Kobbelt, A remeshing approach to multiresolution modeling, SGP 2004). Keeps the orientation and, roughly, the
+/// borders.
+TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge);
+
+}  // namespace frontalis

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "solver/cpu/shell_kernel.hpp"
+#include "solver/cpu/slide_kernel.hpp"
+
+namespace frontalis
+{
+
+/// Kernels of effects on nodes.
+template <class Real>
+struct PartKernels
+{
+  SlideKernel<Real> slide = slide_plainly<Real>;
+  ShellKernel<Real> shell = shell_plainly<Real>;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "solver/cpu/shell_kernel.hpp"
+#include "solver/shell/shell_mesh.hpp"
+#include "solver/stepping/node_part.hpp"
+
+#include <array>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Forces of layers that are shells, on the nodes of the voxels that carry their vertices. Threads first place the
+/// vertices: prepare_step(), then find the forces of their part of the triangles: before_step(). In add_forces() each
+/// adds up those on the vertices in its voxels, and passes them on to the nodes of its planes through the transposed
+/// binding, both in a fixed order.
+template <class Real>
+class ShellForces : public NodePart<Real>
+{
+public:
+  ShellForces(const Model& model, ShellKernel<Real> kernel);
+
+  void run(EffectSet running) override { runs_ = running.has(Effect::shell); }
+  void reset() override {}
+  void list_arrays(ArrayList& list) override;
+  bool idle() const override { return !runs_ || blocks_.empty(); }
+  bool pushes() const override { return true; }
+  bool prepares() const override { return true; }
+  void prepare_step(const NodeShare& share, const Real* const u[3]) override;
+  void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override;
+  void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
+  void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
+                    std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
+
+private:
+  using Block = ShellBlock<Real>;
+  using Force = std::array<Real, 3>;
+  struct Vertex
+  {
+    std::array<std::int32_t, 8> node;
+    std::array<Real, 8> weight;
+  };
+  struct Part
+  {
+    std::int32_t vertex;
+    Real weight;
+  };
+
+  void add_blocks();
+
+  ShellMesh mesh_;
+  ShellKernel<Real> kernel_;
+  bool runs_ = true;
+  std::vector<Block> blocks_;
+  std::vector<Vertex> vertices_;
+  std::vector<std::int32_t> plane_vertices_;       // first vertex in each plane of voxels, and their number
+  std::vector<std::int32_t> place_begin_, place_;  // where the forces of each vertex are in forces_
+  std::vector<std::int32_t> nodes_;                // that carry vertices, ascending
+  std::vector<std::int32_t> part_begin_;
+  std::vector<Part> parts_;  // of the force on each of these nodes
+  // of the step under way
+  std::array<std::vector<Real>, 3> u_;            // of vertices [m]
+  std::vector<Real> forces_;                      // ShellArguments::forces
+  std::vector<std::vector<Force>> vertex_force_;  // one list per thread [N]
+};
+
+}  // namespace frontalis

@@ -1,0 +1,119 @@
+// layers that are shells: their triangles, depth, material, and what they leave in the voxels
+
+#include "scene_pieces.hpp"
+
+#include "frontalis/model/effects.hpp"
+#include "frontalis/model/model_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace frontalis
+{
+namespace
+{
+
+using namespace test;
+
+constexpr double radius = 12e-3, voxel = 1.5e-3, corneum = 0.02e-3, dermis = 1e-3;
+
+Scene ball_in_shells()
+{
+  Scene scene = plain_scene(voxel);
+  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, radius, 0.7e-3) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.materials.push_back(material("corneum"));
+  scene.layers = { { "corneum", "skin", "tissue", "corneum", corneum, 1, true },
+                   { "dermis", "skin", "tissue", "dermis", dermis, 2, true } };
+  return scene;
+}
+
+double distance(const Vector3& a, const Vector3& b)
+{
+  return std::sqrt(std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2));
+}
+
+TEST(BakeShell, covers_the_surface_at_the_depth_of_the_layer_with_edges_of_a_voxel)
+{
+  const Model model = bake(ball_in_shells());
+  ASSERT_EQ(model.shells.size(), 2U);
+  EXPECT_TRUE(effects_of(model).has(Effect::shell));
+  const double depths[] = { 0.5 * corneum, corneum + 0.5 * dermis };
+  for (std::size_t s = 0; s < 2; ++s)
+  {
+    const Shell& shell = model.shells[s];
+    EXPECT_EQ(model.materials[shell.material].name, s == 0 ? "corneum" : "dermis");
+    double area = 0, shortest = 1, sum = 0, farthest = 0;
+    for (const auto& t : shell.surface.triangles)
+    {
+      const auto& v = shell.surface.vertices;
+      const double a = distance(v[t[0]], v[t[1]]), b = distance(v[t[1]], v[t[2]]), c = distance(v[t[2]], v[t[0]]);
+      const double half = 0.5 * (a + b + c);
+      area += std::sqrt(half * (half - a) * (half - b) * (half - c));
+      shortest = std::min({ shortest, a, b, c });
+      sum += (a + b + c) / 3;
+    }
+    for (const Vector3& v : shell.surface.vertices)
+      farthest = std::max(farthest, std::abs(distance(transformed(model.to_scene, v), {}) - (radius - depths[s])));
+    EXPECT_NEAR(area / (4 * pi * std::pow(radius - depths[s], 2)), 1, 0.03);
+    EXPECT_NEAR(sum / static_cast<double>(shell.surface.triangles.size()) / (1.2 * voxel), 1, 0.1);
+    EXPECT_GT(shortest, 0.6 * voxel);
+    EXPECT_LT(farthest, 0.05e-3);
+  }
+}
+
+TEST(BakeShell, nothing_of_it_is_in_the_voxels)
+{
+  const Model model = bake(ball_in_shells());
+  for (std::size_t m = 0; m < model.mixture_material.size(); ++m)
+    EXPECT_TRUE(model.materials[model.mixture_material[m]].name == "fat" || model.mixture_proportion[m] == 0);
+  Scene scene = ball_in_shells();
+  for (Layer& layer : scene.layers)
+    layer.shell = false;
+  EXPECT_TRUE(bake(scene).shells.empty());
+}
+
+TEST(BakeShell, is_the_same_in_the_model_file)
+{
+  const Model model = bake(ball_in_shells());
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("shell_test_" + std::to_string(::getpid()))).string();
+  write_model(model, file);
+  const Model read = read_model(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(read.shells.size(), 2U);
+  for (std::size_t s = 0; s < 2; ++s)
+  {
+    EXPECT_EQ(read.shells[s].name, model.shells[s].name);
+    EXPECT_EQ(read.shells[s].thickness, model.shells[s].thickness);
+    EXPECT_EQ(read.shells[s].material, model.shells[s].material);
+    EXPECT_EQ(read.shells[s].surface.vertices, model.shells[s].surface.vertices);
+    EXPECT_EQ(read.shells[s].surface.triangles, model.shells[s].surface.triangles);
+    EXPECT_EQ(read.shells[s].binding.voxel, model.shells[s].binding.voxel);
+    EXPECT_EQ(read.shells[s].binding.coordinates, model.shells[s].binding.coordinates);
+  }
+}
+
+TEST(BakeShell, is_refused_where_the_surface_is_far_from_the_tissue)
+{
+  Scene scene = ball_in_shells();
+  scene.surfaces.push_back(sphere_surface("shield", { 0, 0, 0 }, 2 * radius, 2e-3));
+  scene.layers = { { "film", "shield", "tissue", "corneum", corneum, 7, true } };
+  try
+  {
+    bake(scene);
+    FAIL() << "no error";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find(":7: layer 'film': no triangle of surface 'shield'"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace frontalis

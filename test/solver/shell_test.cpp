@@ -1,0 +1,221 @@
+// Layers that are shells: energy, momentum, threads, switches, the time step.
+
+#include "backends.hpp"
+#include "shell_model.hpp"
+
+#include "frontalis/model/effects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+using namespace test;
+using Vectors = std::vector<std::array<double, 3>>;
+
+class ShellBackend : public testing::TestWithParam<Backend>
+{
+protected:
+  std::unique_ptr<Solver> make(const Model& model, int threads = 2, bool ledger = true) const
+  {
+    SolverSettings settings{ GetParam(), threads, 0 };
+    settings.ledger = ledger;
+    return make_solver(std::make_shared<const Model>(model), settings);
+  }
+};
+
+std::vector<Backend> host_backends()
+{
+  std::vector<Backend> backends = available_backends();
+  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
+  return backends;
+}
+
+Model film_on_block(bool free = true, double young = 1e6)
+{
+  BlockSettings settings;
+  settings.voxels = { { 7, 6, 4 } };
+  Model model = block_model(settings);
+  for (std::size_t n = 0; n < model.nodes.size() && !free; ++n)
+    if (model.nodes[n][2] == 0)
+      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  ShellSettings film;
+  film.young = young;
+  add_shell(model, film);
+  check_model(model);
+  return model;
+}
+
+Vectors displacements(const Solver& solver)
+{
+  Vectors u;
+  solver.displacements(u);
+  return u;
+}
+
+// velocities that bend, stretch and shear the film
+Vectors disturbance(const Model& model, double speed)
+{
+  Vectors v(model.nodes.size());
+  for (std::size_t n = 0; n < v.size(); ++n)
+  {
+    const auto p = rest(model, n);
+    v[n] = { { speed * std::sin(700 * p[0] + 300 * p[1]), speed * std::cos(500 * p[1] - 200 * p[2]),
+               speed * std::sin(900 * p[0]) * p[2] / 4e-3 } };
+  }
+  return v;
+}
+
+TEST_P(ShellBackend, a_strained_block_strains_its_film)
+{
+  const Model model = film_on_block();
+  const auto solver = make(model);
+  const double a = 0.03, b = -0.02;
+  Vectors u(model.nodes.size());
+  for (std::size_t n = 0; n < u.size(); ++n)
+    u[n] = { { a * rest(model, n)[0], b * rest(model, n)[1], 0 } };
+  solver->set_displacements(u);
+  const ShellSettings s;
+  const double mu = s.young / (2 * (1 + s.poisson)), lambda = s.young * s.poisson / (1 - s.poisson * s.poisson);
+  const double expected = 7e-3 * 6e-3 * s.thickness * (mu * (a * a + b * b) + 0.5 * lambda * (a + b) * (a + b));
+  EXPECT_NEAR(solver->ledger()["shell"], expected, 1e-5 * expected);
+}
+
+TEST_P(ShellBackend, energy_and_momentum_are_kept)
+{
+  const Model model = film_on_block(true, 10e6);
+  const auto solver = make(model);
+  const Vectors v = disturbance(model, 0.1);
+  std::array<double, 3> before{}, after{}, length{};
+  const double mass = model.materials[0].density * 1e-9 / 8;
+  const auto momentum = [&](const Vectors& moved, std::array<double, 3>& sum)
+  {
+    for (const auto& nodes : model.voxel_nodes)
+      for (const auto n : nodes)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          sum[axis] += mass * moved[n][axis];
+          length[axis] += mass * std::abs(moved[n][axis]);
+        }
+  };
+  solver->set_velocities(v);
+  double largest = 0;
+  for (int k = 0; k < 20; ++k)
+  {
+    solver->advance(0.5e-3, solver->controls());
+    const EnergyLedger ledger = solver->ledger();
+    EXPECT_LT(std::abs(ledger.imbalance()), 2e-3 * ledger.largest);
+    largest = std::max(largest, ledger["shell"] / ledger.largest);
+  }
+  EXPECT_GT(largest, 0.1);
+  // momentum from two places of the centre of mass
+  const double time = solver->time();
+  momentum(displacements(*solver), before);
+  solver->advance(1e-3, solver->controls());
+  momentum(displacements(*solver), after);
+  std::array<double, 3> given{};
+  momentum(v, given);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR((after[axis] - before[axis]) / (solver->time() - time), given[axis], 1e-4 * length[axis]);
+}
+
+TEST_P(ShellBackend, threads_do_not_change_a_bit)
+{
+  const Model model = film_on_block(false);
+  Vectors expected;
+  for (const int threads : { 1, 2, 3 })
+  {
+    const auto solver = make(model, threads);
+    solver->set_velocities(disturbance(model, 0.2));
+    solver->advance(5e-3, solver->controls());
+    if (threads == 1)
+      expected = displacements(*solver);
+    EXPECT_EQ(displacements(*solver), expected) << threads;
+  }
+}
+
+TEST_P(ShellBackend, moves_as_the_reference_does)
+{
+  const Model model = film_on_block(false);
+  const auto solver = make(model), reference = make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 });
+  for (Solver* const one : { solver.get(), reference.get() })
+  {
+    one->set_velocities(disturbance(model, 0.2));
+    one->advance(4e-3, one->controls());
+  }
+  const Vectors u = displacements(*solver), right = displacements(*reference);
+  for (std::size_t n = 0; n < u.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(u[n][axis], right[n][axis], 2e-7);
+}
+
+TEST_P(ShellBackend, none_costs_nothing)
+{
+  const Model with = film_on_block();
+  EXPECT_TRUE(effects_of(with).has(Effect::shell));
+  EXPECT_EQ(presence_of(with, Effect::shell).nodes, with.shells[0].surface.vertices.size());
+  Model off = with, never = with;
+  switch_off(off, EffectSet().with(Effect::shell));
+  never.shells.clear();
+  for (const Model& model : { off, never })
+  {
+    for (const Allocation& allocation : make(model)->allocations())
+      EXPECT_NE(allocation.effect, Effect::shell) << allocation.what;
+    EXPECT_GT(make(model)->time_step(), make(with)->time_step());
+  }
+  std::size_t bytes = 0;
+  for (const Allocation& allocation : make(with)->allocations())
+    bytes += allocation.effect == Effect::shell ? allocation.bytes : 0;
+  EXPECT_GT(bytes, 100 * with.shells[0].surface.triangles.size());
+}
+
+TEST_P(ShellBackend, it_is_switched_while_running)
+{
+  Model model = film_on_block(false), without = model;
+  switch_off(without, EffectSet().with(Effect::shell));
+  SolverSettings settings{ GetParam(), 2, 1e-5 };
+  settings.ledger = true;
+  const auto solver = make_solver(std::make_shared<const Model>(model), settings);
+  const auto other = make_solver(std::make_shared<const Model>(without), settings);
+  solver->switch_effect(Effect::shell, false);
+  for (Solver* const one : { solver.get(), other.get() })
+  {
+    one->set_velocities(disturbance(model, 0.2));
+    one->advance(2e-3, one->controls());
+  }
+  EXPECT_EQ(displacements(*solver), displacements(*other));
+  EXPECT_EQ(solver->ledger()["shell"], 0);
+  solver->switch_effect(Effect::shell, true);
+  EXPECT_GT(solver->ledger()["shell"], 0);
+  solver->advance(1e-3, solver->controls());
+  EXPECT_NE(displacements(*solver), displacements(*other));
+}
+
+// Undamped at the full step, a film that sets the frequency gains no energy.
+TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
+{
+  Model model = film_on_block(true, 300e6);
+  model.time_step_share = 1;
+  Model plain = model;
+  plain.shells.clear();
+  for (const auto estimate : { TimeStepEstimate::element, TimeStepEstimate::assembled })
+  {
+    model.time_step_estimate = estimate;
+    const auto solver = make(model);
+    EXPECT_LT(solver->time_step(), 0.5 * make(plain)->time_step());
+    solver->set_velocities(disturbance(model, 1e-3));
+    for (int k = 0; k < 10; ++k)
+      solver->advance(0.2e-3, solver->controls());
+    const EnergyLedger ledger = solver->ledger();
+    EXPECT_LT(std::abs(ledger.imbalance()), 0.02 * ledger.largest);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, ShellBackend, testing::ValuesIn(host_backends()), backend_name);
+
+}  // namespace
+}  // namespace frontalis
