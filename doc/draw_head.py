@@ -98,7 +98,7 @@ def eye_of(vertices):
     return actor_of(centre + size * ball, faces, colours)
 
 
-def draw(actors, views, picture, size=560):
+def draw(actors, views, picture, size=440):
     """views: azimuth and elevation [degrees], the point looked at and half the height of the picture there [mm]."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)

@@ -60,9 +60,123 @@ void read_dimension(const std::string& name, const Node& node, const Names& land
   head.dimensions.push_back(dimension);
 }
 
-void read_depths(const Node& root, HeadTemplate& head)
+double read_coordinate(const Node& node, double fallback)
 {
+  return node.number(Dimension::length, any_number, fallback);
+}
+
+/// Points of an outline, given by the two coordinates that are not across it.
+std::vector<Vector3> read_flat_points(const Node& list)
+{
+  std::vector<Vector3> points;
+  for (const Node& point : list.entries())
+  {
+    const auto pair = point.entries();
+    if (pair.size() != 2)
+      point.fault("found {} numbers; must be two", pair.size());
+    else
+      points.push_back({ read_coordinate(pair[0], 0), read_coordinate(pair[1], 0), 0 });
+  }
+  return points;
+}
+
+void read_outline(const Node& node, HeadTemplate::Solid& solid)
+{
+  Mapping fields(node);
+  static const std::vector<std::string> axes{ "x", "y", "z" };
+  if (const std::string axis = fields.required("across", "x, y or z").choice(axes); !axis.empty())
+    solid.axis = axis[0] - 'x';
+  solid.points = read_flat_points(fields.required("points", "a list of positions in the plane"));
+  if (solid.points.size() < 3)
+    node.fault("found {} points; must be at least three", solid.points.size());
+  solid.from = read_coordinate(fields.optional("from"), solid.from);
+  solid.to = read_coordinate(fields.optional("to"), solid.to);
+  if (const Node apex = fields.optional("apex"); apex.given())
+  {
+    solid.centre = read_place(apex);
+    solid.depth = read_coordinate(fields.required("at", "the plane of the points"), 0) - solid.centre[solid.axis];
+  }
+}
+
+HeadTemplate::Solid read_solid(const Node& entry)
+{
+  using Kind = HeadTemplate::Solid::Kind;
+  // in the order of Solid::Kind
+  static const std::vector<std::string> kinds{ "below", "above", "ellipsoid", "outline", "tube", "teeth" };
+  HeadTemplate::Solid solid;
+  Mapping mapping(entry);
+  const std::string kind = one_of(entry, mapping, kinds);
+  if (kind.empty())
+    return solid;
+  solid.kind = static_cast<Kind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+  const Node node = mapping.optional(kind);
+  if (solid.kind == Kind::below || solid.kind == Kind::above)
+  {
+    solid.depth = read_length(node, not_negative);
+    return solid;
+  }
+  if (solid.kind == Kind::outline)
+  {
+    read_outline(node, solid);
+    return solid;
+  }
+  Mapping fields(node);
+  if (solid.kind == Kind::ellipsoid)
+  {
+    solid.centre = read_place(fields.required("centre", "a position"));
+    solid.axes = fields.required("axes", "three semi-axes").vector(Dimension::length, positive, { 1, 1, 1 });
+    return solid;
+  }
+  const Node points = fields.required("points", "a list of positions");
+  if (solid.kind == Kind::teeth)
+    solid.points = read_flat_points(points);
+  else
+    for (const Node& point : points.entries())
+      solid.points.push_back(read_place(point));
+  if (solid.points.size() < 2 && !points.faulty())
+    points.fault("found {} positions; must be at least two", solid.points.size());
+  if (solid.kind == Kind::tube)
+  {
+    const Node radii = fields.required("radii", "as many lengths as points");
+    for (const Node& radius : radii.entries())
+      solid.sizes.push_back({ read_length(radius), 0, 0 });
+    if (solid.sizes.size() != solid.points.size() && !radii.faulty())
+      radii.fault("found {} radii; must be as many as points, {}", solid.sizes.size(), solid.points.size());
+    return solid;
+  }
+  solid.to = read_coordinate(fields.required("edge", "a height"), 0);
+  solid.from = read_coordinate(fields.required("neck", "a height"), 0);
+  for (const Node& size : fields.required("sizes", "a list of [width, at the edge, at the neck]").entries())
+    solid.sizes.push_back(size.vector(Dimension::length, positive, { 1, 1, 1 }));
+  return solid;
+}
+
+void read_bones(const Node& root, HeadTemplate& head)
+{
+  using Kind = HeadTemplate::BoneStep::Kind;
+  static const std::vector<std::string> kinds{ "add", "cut", "keep" };  // in the order of BoneStep::Kind
   Mapping mapping(root);
+  for (const auto& [name, list] : mapping.required("bones", "a mapping").named_pairs())
+  {
+    auto& steps = head.bones.emplace_back(name, std::vector<HeadTemplate::BoneStep>()).second;
+    for (const Node& entry : list.entries())
+    {
+      HeadTemplate::BoneStep step;
+      Mapping fields(entry);
+      const std::string kind = one_of(entry, fields, kinds);
+      if (kind.empty())
+        continue;
+      step.kind = static_cast<Kind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+      const Node solids = fields.optional(kind);
+      if (solids.is_list())
+        for (const Node& solid : solids.entries())
+          step.solids.push_back(read_solid(solid));
+      else
+        step.solids.push_back(read_solid(solids));
+      step.round = read_length(fields.optional("round"), not_negative);
+      steps.push_back(step);
+    }
+  }
   for (const Node& entry : mapping.required("depths", "a list of places and depths").entries())
   {
     HeadTemplate::DepthSite site;
@@ -128,7 +242,7 @@ void read_root(const Node& root, HeadTemplate& head)
   }
   for (const auto& [name, node] : mapping.required("dimensions", "a mapping").named_pairs())
     read_dimension(name, node, landmarks, head);
-  read_beside(mapping.required("bones", "a YAML file"), head, [&](const Node& node) { read_depths(node, head); });
+  read_beside(mapping.required("bones", "a YAML file"), head, [&](const Node& node) { read_bones(node, head); });
   read_beside(mapping.required("muscles", "a YAML file"), head,
               [&](const Node& node)
               {
@@ -141,8 +255,9 @@ void read_root(const Node& root, HeadTemplate& head)
 
 std::vector<std::string> HeadTemplate::parts() const
 {
-  std::vector<std::string> names{ "skin",        "face",        "visible",  "skull",    "mandible",
-                                  "teeth_upper", "teeth_lower", "eye_left", "eye_right" };
+  std::vector<std::string> names{ "skin", "face", "visible", "eye_left", "eye_right" };
+  for (const auto& [bone, steps] : bones)
+    names.push_back(bone);
   const std::vector<std::string> others = muscle_parts();
   names.insert(names.end(), others.begin(), others.end());
   return names;

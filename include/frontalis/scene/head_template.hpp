@@ -3,6 +3,7 @@
 #include "frontalis/scene/geometry.hpp"
 
 #include <memory>
+#include <utility>
 
 namespace frontalis
 {
@@ -25,6 +26,41 @@ struct HeadTemplate
     Vector3 at{ 0, 0, 0 };         ///< the closest point of the skin is taken
     double depth = 0;              ///< [m]
     Vector3 direction{ 0, 0, 0 };  ///< into the head; 0: against the skin's normal
+  };
+  /// A solid of which bones are built. Those about the midline are symmetric; all are mirrored at y = 0.
+  struct Solid
+  {
+    enum class Kind
+    {
+      below,      ///< `depth` or more below the hull, which is the bones' outer surface
+      above,      ///< less than `depth` below the hull
+      ellipsoid,  ///< centre, axes (semi-axes)
+      outline,    ///< closed curve through `points` in the plane across `axis`, from `from` to `to` along it; with
+                  ///< `depth` a cone: the curve stands `depth` from the apex `centre`
+      tube,       ///< round a curve through `points` with the radii `sizes`
+      teeth       ///< along a curve through `points` from the midline; edges at z = `to`, necks at `from`;
+                  ///< `sizes`: width, thickness at the edge and at the neck of each tooth
+    };
+    Kind kind = Kind::below;
+    double depth = 0;
+    Vector3 centre{ 0, 0, 0 }, axes{ 0, 0, 0 };
+    int axis = 0;
+    double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
+    std::vector<Vector3> points;  ///< of an outline: the two coordinates that are not `axis`, and 0
+    std::vector<Vector3> sizes;   ///< [m]
+  };
+  /// One step of building a bone: what all `solids` share is added to it, cut from it, or all that is left of it.
+  struct BoneStep
+  {
+    enum class Kind
+    {
+      add,
+      cut,
+      keep
+    };
+    Kind kind = Kind::add;
+    std::vector<Solid> solids;
+    double round = 0;  ///< radius of the edges that it makes [m]
   };
   /// A line across a muscle: positions near the skin, and its depth as a proportion of the soft tissue (1: the bone).
   struct Curve
@@ -49,6 +85,7 @@ struct HeadTemplate
   std::map<std::string, int> landmarks;  ///< index of a vertex of the cage
   std::vector<Dimension> dimensions;
   std::vector<DepthSite> depths;
+  std::vector<std::pair<std::string, std::vector<BoneStep>>> bones;
   std::vector<Muscle> muscles;
   Vector3 eye{ 0, 0, 0 };  ///< centre of the left eyeball [m]
   double eye_radius = 0;   ///< [m]

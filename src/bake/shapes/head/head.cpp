@@ -11,8 +11,8 @@ namespace frontalis
 namespace
 {
 
-constexpr double default_edge = 1.75e-3, skull_edge = 2.5e-3;  // [m]
-constexpr int default_levels = 2;                              // of the skin that depths are measured from
+constexpr double default_edge = 1.75e-3, skull_edge = 2e-3;  // [m]
+constexpr int default_levels = 2;                            // of the skin that depths are measured from
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
 int levels_for(const PolygonMesh& cage, double edge)
@@ -93,13 +93,6 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
   // a margin of bone beyond the skin is never reached
   Box half = bounding_box(default_skin_);
   half.min()[1] = 0;
-  half.min()[2] = name == "skull" ? -90e-3 : -122e-3;
-  if (name != "skull")
-  {
-    half.min()[0] = -100e-3;
-    half.max()[2] = -24e-3;
-    half.max()[1] = 70e-3;
-  }
   TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge);
   for (Vector3& p : mesh.vertices)
   {
@@ -118,7 +111,7 @@ TriangleMesh Head::part(const std::string& name, double wanted_edge) const
     return skin(name, edge);
   if (name == "eye_left" || name == "eye_right")
     return eye(name == "eye_left", edge);
-  if (name == "skull" || name == "mandible" || name == "teeth_upper" || name == "teeth_lower")
+  if (bones_->has(name))
     return bone(name, edge);
   if (const auto muscle = net(name))
     return net_surface(*muscle, edge);

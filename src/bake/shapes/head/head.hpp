@@ -2,6 +2,7 @@
 
 #include "bake/mesh/subdivide.hpp"
 #include "bake/mesh/triangle_tree.hpp"
+#include "bake/shapes/head/solids.hpp"
 #include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/tissue.hpp"
 
@@ -35,18 +36,29 @@ public:
 
   /// Outer surface of skull, teeth and mandible, as if the nose's and the eyes' openings were closed.
   double hull(const Vector3d& p) const;
-  /// A part by name: skull, mandible, teeth_upper, teeth_lower.
+  bool has(const std::string& name) const { return bones_.count(name) > 0; }
   double part(const std::string& name, const Vector3d& p) const;
   /// The bone or eyeball closest to the skin.
   double any(const Vector3d& p) const;
 
 private:
-  double skull(const Vector3d& p, double hull) const;
-  double mandible(const Vector3d& p, double hull) const;
-  double teeth(const Vector3d& p, double hull, bool upper) const;
+  struct Bone
+  {
+    explicit Bone(const std::vector<HeadTemplate::BoneStep>& from);
+    double operator()(const Vector3d& p, double hull) const;
+
+    struct Step
+    {
+      HeadTemplate::BoneStep::Kind kind;
+      std::vector<HeadSolid> solids;
+      double round;
+    };
+    std::vector<Step> steps;
+  };
 
   Vector3d eye_;
   double eye_radius_;
+  std::map<std::string, Bone> bones_;
   std::vector<Vector3d> centres_;
   std::vector<double> weights_;
   Eigen::Vector4d linear_{ 0, 0, 0, 0 };
@@ -63,7 +75,7 @@ class Head
 public:
   Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions);
 
-  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2.5). Throws Error on an unknown part.
+  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2). Throws Error on an unknown part.
   TriangleMesh part(const std::string& name, double edge) const;
   /// Control net of a muscle; nothing if the part is not one.
   std::optional<ControlNet> net(const std::string& part) const;

@@ -9,6 +9,8 @@ namespace
 constexpr int tetrahedra[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 },
                                    { 0, 6, 4, 7 }, { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
 
+/// Marching tetrahedra. Grid points that are close to the surface are moved onto it first, so that no triangle is thin
+/// (Labelle & Shewchuk, Isosurface stuffing, SIGGRAPH 2007).
 class Marching
 {
 public:
@@ -18,15 +20,22 @@ public:
     for (int a = 0; a < 3; ++a)
       size_[a] = std::max(2, static_cast<int>(std::ceil(half.sizes()[a] / edge)) + 1);
     values_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
+    for (int k = 0; k < size_[2]; k += block)
+      for (int j = 0; j < size_[1]; j += block)
+        for (int i = 0; i < size_[0]; i += block)
+          sample(f, { i, j, k });
+    places_.reserve(values_.size());
+    std::vector<std::size_t> snapped;
     for (int k = 0; k < size_[2]; ++k)
       for (int j = 0; j < size_[1]; ++j)
         for (int i = 0; i < size_[0]; ++i)
         {
-          const bool border = i == 0 || i == size_[0] - 1 || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
-          const double value = f(at({ i, j, k }));
-          // the surface is closed at the border, and no corner lies on it
-          values_[number({ i, j, k })] = border ? std::max(value, edge) : std::abs(value) < 1e-9 ? 1e-9 : value;
+          places_.push_back(snapped_place({ i, j, k }));
+          if (places_.back() != at({ i, j, k }))
+            snapped.push_back(places_.size() - 1);
         }
+    for (const std::size_t n : snapped)
+      values_[n] = 0;
   }
 
   TriangleMesh surface() const
@@ -42,6 +51,7 @@ public:
 
 private:
   using Index = std::array<int, 3>;
+  static constexpr int block = 4;
 
   std::size_t number(const Index& i) const
   {
@@ -52,45 +62,87 @@ private:
     return { origin_[0] + edge_ * i[0], i[1] == 0 ? origin_[1] : origin_[1] + edge_ * i[1], origin_[2] + edge_ * i[2] };
   }
 
+  /// Values at a block of grid points; one for all where it says that the surface is far, since f is about a distance.
+  void sample(const std::function<double(const Vector3d&)>& f, const Index& first)
+  {
+    const double middle = f(at(first) + Vector3d::Constant(0.5 * (block - 1) * edge_));
+    const bool near = std::abs(middle) < 1.5 * block * edge_;
+    for (int k = first[2]; k < std::min(size_[2], first[2] + block); ++k)
+      for (int j = first[1]; j < std::min(size_[1], first[1] + block); ++j)
+        for (int i = first[0]; i < std::min(size_[0], first[0] + block); ++i)
+        {
+          const bool border = i == 0 || i == size_[0] - 1 || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
+          const double value = near ? f(at({ i, j, k })) : middle;
+          // the surface is closed at the border, and no corner lies on it
+          values_[number({ i, j, k })] = border ? std::max(value, edge_) : std::abs(value) < 1e-9 ? 1e-9 : value;
+        }
+  }
+
+  Vector3d snapped_place(const Index& i) const
+  {
+    const Vector3d rest = at(i);
+    const double value = values_[number(i)];
+    Vector3d place = rest;
+    double least = 0.3 * edge_;
+    for (int n = 1; n < 8; ++n)
+      for (const int side : { -1, 1 })
+      {
+        const Index other{ i[0] + side * (n & 1), i[1] + side * (n >> 1 & 1), i[2] + side * (n >> 2 & 1) };
+        bool there = i[1] > 0 || other[1] == 0;  // points of the plane of symmetry stay in it
+        for (std::size_t a = 0; a < 3; ++a)
+          there = there && other[a] >= 0 && other[a] < size_[a];
+        if (!there || (value < 0) == (values_[number(other)] < 0))
+          continue;
+        const Vector3d away = value / (value - values_[number(other)]) * (at(other) - rest);
+        if (away.norm() >= least)
+          continue;
+        least = away.norm();
+        place = rest + away;
+      }
+    return place;
+  }
+
   void add(TriangleMesh& mesh, const Index& cell, const int (&corner)[4]) const
   {
     std::array<Index, 4> index{};
-    std::array<double, 4> value{};
     std::vector<int> in, out;
     for (int c = 0; c < 4; ++c)
     {
       index[c] = { cell[0] + (corner[c] & 1), cell[1] + (corner[c] >> 1 & 1), cell[2] + (corner[c] >> 2 & 1) };
-      value[c] = values_[number(index[c])];
-      (value[c] < 0 ? in : out).push_back(c);
+      (values_[number(index[c])] < 0 ? in : out).push_back(c);
     }
     if (in.empty() || out.empty())
       return;
-    const auto cut = [&](int a, int b) -> Vector3d
+    using Cut = std::pair<int, int>;  // corners inside and outside
+    const auto place = [&](const Cut& cut) -> Vector3d
     {
-      // from the lower corner on, so that neighbours find the same point
-      if (number(index[a]) > number(index[b]))
-        std::swap(a, b);
-      const double share = value[a] / (value[a] - value[b]);
-      return at(index[a]) + std::min(0.98, std::max(0.02, share)) * (at(index[b]) - at(index[a]));
+      const std::size_t inner = number(index[cut.first]), outer = number(index[cut.second]);
+      if (values_[outer] == 0)
+        return places_[outer];
+      // from the lower number on, so that neighbours find the same point
+      const std::size_t a = std::min(inner, outer), b = std::max(inner, outer);
+      return places_[a] + values_[a] / (values_[a] - values_[b]) * (places_[b] - places_[a]);
     };
     const Vector3d outward = at(index[out[0]]) - at(index[in[0]]);
-    const auto triangle = [&](const Vector3d& a, const Vector3d& b, const Vector3d& c)
+    const auto triangle = [&](const Cut& a, const Cut& b, const Cut& c)
     {
-      const bool turned = (b - a).cross(c - a).dot(outward) < 0;
+      // snapped corners may lie on a line, those of the grid do not
+      const auto middle = [&](const Cut& cut) -> Vector3d { return at(index[cut.first]) + at(index[cut.second]); };
+      const bool turned = (middle(b) - middle(a)).cross(middle(c) - middle(a)).dot(outward) < 0;
       const auto base = static_cast<std::int32_t>(mesh.vertices.size());
-      for (const Vector3d& p : { a, turned ? c : b, turned ? b : c })
+      for (const Vector3d& p : { place(a), place(turned ? c : b), place(turned ? b : c) })
         mesh.vertices.push_back(to_array(p));
       mesh.triangles.push_back({ base, base + 1, base + 2 });
     };
     if (in.size() == 1)
-      triangle(cut(in[0], out[0]), cut(in[0], out[1]), cut(in[0], out[2]));
+      triangle({ in[0], out[0] }, { in[0], out[1] }, { in[0], out[2] });
     else if (in.size() == 3)
-      triangle(cut(in[0], out[0]), cut(in[1], out[0]), cut(in[2], out[0]));
+      triangle({ in[0], out[0] }, { in[1], out[0] }, { in[2], out[0] });
     else
     {
-      const Vector3d a = cut(in[0], out[0]), b = cut(in[0], out[1]), c = cut(in[1], out[1]), d = cut(in[1], out[0]);
-      triangle(a, b, c);
-      triangle(a, c, d);
+      const Cut a{ in[0], out[0] }, c{ in[1], out[1] };
+      triangle(a, { in[0], out[1] }, c);
+      triangle(a, c, { in[1], out[0] });
     }
   }
 
@@ -98,6 +150,7 @@ private:
   double edge_;
   Index size_{};
   std::vector<double> values_;
+  std::vector<Vector3d> places_;  ///< of the grid points
 };
 
 }  // namespace
