@@ -32,11 +32,17 @@ public:
     for (const Contact& contact : model.contacts)
       bodies_.push_back(contact_body(contact, view(contact.field)));
     for (const auto& point : host.points())
-      points_.push_back(contact_point(model.contacts[point.body], point));
+      points_.push_back(contact_point(model.contacts[point.body], bodies_[point.body], point));
+    for (const float4& word : no_samples())
+      samples_.insert(samples_.end(), points_.size(), word);
     for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
       state->assign(points_.size(), float4{ 0, 0, 0, 0 });
     holds_.assign(points_.size(), {});
     g_.contact.bodies = bodies_.data();
+    g_.contact.points = points_.data();
+    g_.contact.point_count = static_cast<std::uint32_t>(points_.size());
+    g_.contact.body_count = static_cast<std::uint32_t>(bodies_.size());
+    g_.contact.samples = samples_.data();
     g_.contact.grips = grips_.data();
     g_.contact.holds = holds_.data();
     g_.contact.forces = forces_.data();
@@ -59,6 +65,12 @@ public:
       poses.insert(poses.end(), pose.translation.begin(), pose.translation.end());
     }
     g_.poses = poses.data();
+    std::vector<float> of_bodies;
+    for (const ContactBody& body : bodies_)
+      add_pose(body, now.bone_before, of_bodies);
+    std::vector<float4> rows(of_bodies.size() / 4);
+    std::memcpy(rows.data(), of_bodies.data(), of_bodies.size() * sizeof(float));
+    g_.contact.poses = rows.data();
     const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
     Components unused = u_;
     double* const ignored[3] = { unused[0].data(), unused[1].data(), unused[2].data() };
@@ -70,15 +82,16 @@ public:
       float weight[8];
       const auto& c = points_[p].coordinates;
       physics::trilinear_weights(c[0], c[1], c[2], weight);
-      physics::Vec3<float> moved{ 0, 0, 0 }, force{ 0, 0, 0 };
+      physics::Vec3<float> moved{ 0, 0, 0 };
       for (int b = 0; b < 8; ++b)
       {
         EXPECT_EQ(weight[b], corner_weight(b, c[0], c[1], c[2]));
         const auto node = model_.voxel_nodes[host.points()[p].voxel][b];
         add_part(moved, weight[b], make_float4(float(u_[0][node]), float(u_[1][node]), float(u_[2][node]), 0));
       }
-      touching += find_push(g_, static_cast<std::uint32_t>(p), points_[p], moved, 0, force) ? 1 : 0;
-      EXPECT_EQ(force.z, forces_[p].z);
+      const Push push = find_push(g_, points_[p], { static_cast<std::uint32_t>(p), 0, true, moved });
+      touching += push.free_way > 0 ? 0 : 1;
+      EXPECT_EQ(push.force.z, holds_[p].touching == int(physics::Touching::no) ? 0 : forces_[p].z);
       found.push_back(found_at(g_.contact, p, host.points()[p]));
     }
     account.follow(found, now);
@@ -113,7 +126,7 @@ private:
   Components u_;
   std::vector<ContactBody> bodies_;
   std::vector<ContactPoint> points_;
-  std::vector<float4> grips_, forces_, arms_, clearances_;
+  std::vector<float4> grips_, forces_, arms_, clearances_, samples_;
   std::vector<ContactHold> holds_;
   StepArguments g_{};
 
