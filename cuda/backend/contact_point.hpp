@@ -1,8 +1,12 @@
 #pragma once
 
-#include "cuda/kernels/contact_arguments.hpp"
+#include "cuda/kernels/step_kernel.hpp"
 #include "frontalis/model/sample_field.hpp"
 #include "solver/contact/body_contact.hpp"
+
+#include <array>
+#include <cstring>
+#include <vector>
 
 namespace frontalis
 {
@@ -15,12 +19,37 @@ using HostContact = BodyContact<double>;
 /// A body in the form of the device, with its field there.
 inline ContactBody contact_body(const Contact& contact, const physics::DistanceField& field)
 {
-  return { field, static_cast<float>(1 / contact.field.spacing), static_cast<float>(contact.reach),
-           static_cast<float>(contact.friction) };
+  ContactBody body{ field,
+                    contact.field.radius > 0 ? 0 : static_cast<float>(1 / contact.field.spacing),
+                    static_cast<float>(contact.reach),
+                    static_cast<float>(contact.friction),
+                    contact.bone,
+                    {} };
+  for (const auto& point : contact.points)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      body.middle[axis] += point[axis] / static_cast<double>(contact.points.size());
+  return body;
+}
+
+/// Appends the pose of a body (ContactArguments::poses).
+inline void add_pose(const ContactBody& body, const std::vector<RigidTransform>& bones, std::vector<float>& to)
+{
+  const RigidTransform pose = body.bone < 0 ? RigidTransform() : bones[body.bone];
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    double shift = -body.middle[i];
+    for (std::size_t j = 0; j < 3; ++j)
+    {
+      const double turn = pose.rotation[3 * j + i];
+      to.push_back(static_cast<float>(turn - (i == j ? 1 : 0)));
+      shift += turn * (body.middle[j] - pose.translation[j]);
+    }
+    to.push_back(static_cast<float>(shift));
+  }
 }
 
 /// A point of the host in the form of the device.
-inline ContactPoint contact_point(const Contact& contact, const HostContact::Point& from)
+inline ContactPoint contact_point(const Contact& contact, const ContactBody& body, const HostContact::Point& from)
 {
   const auto at = physics::field_point(view(contact.field), from.rest);
   const auto& c = from.coordinates;
@@ -28,9 +57,19 @@ inline ContactPoint contact_point(const Contact& contact, const HostContact::Poi
            from.stiffness,
            { static_cast<float>(at.offset.x), static_cast<float>(at.offset.y), static_cast<float>(at.offset.z) },
            from.body,
+           { static_cast<float>(from.rest.x - body.middle[0]), static_cast<float>(from.rest.y - body.middle[1]),
+             static_cast<float>(from.rest.z - body.middle[2]) },
+           static_cast<float>(norm(at.offset) - contact.field.radius),
            { at.cell[0], at.cell[1], at.cell[2] },
-           contact.bone,
-           { from.rest.x, from.rest.y, from.rest.z } };
+           0 };
+}
+
+/// The samples of a point of which none are stored yet.
+inline std::array<float4, sample_words> no_samples()
+{
+  std::array<float4, sample_words> words{};
+  std::memcpy(&words.back().w, &no_cell, sizeof no_cell);
+  return words;
 }
 
 /// What a step has left of a point, in the form of the host.

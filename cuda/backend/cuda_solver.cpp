@@ -244,9 +244,6 @@ std::string missing_device()
                      device.minor, cudaGetErrorString(usable));
 }
 
-// Radius [m] up to which single precision resolves the distance from a sphere to 0.06 um.
-constexpr double largest_sphere = 1;
-
 std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, const SolverSettings& settings,
                                          const std::string& remark)
 {
@@ -254,16 +251,9 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
   for (const Contact& contact : model->contacts)
-  {
     if (contact.mass > 0)
       throw BackendUnavailable(
           fmt::format("backend cuda: body {} is pushed, which is computed on the CPU alone so far", contact.name));
-    if (contact.field.radius > largest_sphere)
-      throw BackendUnavailable(fmt::format(
-          "backend cuda: body {} is a sphere of {:.3g} m; above {:.3g} m its distance is too coarse in single "
-          "precision",
-          contact.name, contact.field.radius, largest_sphere));
-  }
   if (!model->self_contacts.empty())
     throw BackendUnavailable(
         "backend cuda: the model has contact of tissue with itself, which is computed on the CPU alone so far");

@@ -63,8 +63,6 @@ private:
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
-  /// The part of contact, which has followed the latest step; null if the model has no contact.
-  const DevicePart* followed_contact() const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   struct State;

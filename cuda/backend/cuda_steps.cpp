@@ -37,13 +37,23 @@ StepArguments CudaSolver::arguments(double dt) const
   return g;
 }
 
-// Copies the cleared frequency bound, the activations, the poses and the relaxation times of viscous stresses to the
-// device in one transfer from page-locked memory. `relaxation` is empty if launches do not relax stresses.
+// Copies the cleared frequency bound, the motion of bodies that tissue may touch, the activations, the poses and the
+// relaxation times of viscous stresses to the device in one transfer from page-locked memory. `relaxation` is empty if
+// launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
-  const std::size_t poses_at = sizeof(double) * (1 + muscles);
-  const std::size_t relaxation_at = poses_at + sizeof(double) * 12 * (plan.steps + 1) * bones;
+  const DevicePart* const touching = device_.touching();
+  const bool touches = touching != nullptr && !touching->idle();
+  std::vector<std::vector<RigidTransform>> poses;
+  for (int step = 0; (bones > 0 || touches) && step <= plan.steps; ++step)
+    poses.push_back(step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone);
+  const std::vector<float> bodies = touches ? touching->motion(poses) : std::vector<float>();
+  // a multiple of the size of float4
+  constexpr std::size_t bodies_at = 16;
+  const std::size_t activation_at = bodies_at + sizeof(double) * ((bodies.size() + 1) / 2);
+  const std::size_t poses_at = activation_at + sizeof(double) * muscles;
+  const std::size_t relaxation_at = poses_at + (bones > 0 ? sizeof(double) * 12 * poses.size() * bones : 0);
   const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
   if (bytes > slot.staged.size())
   {
@@ -51,28 +61,33 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
     slot.controls = DeviceArray<char>(bytes);
   }
   char* const staged = slot.staged.data();
-  std::memset(staged, 0, sizeof(double));
-  if (muscles > 0)
+  std::memset(staged, 0, bodies_at);
+  const auto put = [staged](std::size_t at, const auto& values)
   {
-    std::memcpy(staged + sizeof(double), plan.begin.activation.data(), muscles * sizeof(float));
-    std::memcpy(staged + sizeof(double) + muscles * sizeof(float), plan.end.activation.data(), muscles * sizeof(float));
-  }
-  for (int step = 0; bones > 0 && step <= plan.steps; ++step)
-  {
-    const std::vector<RigidTransform> poses = step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone;
-    for (std::size_t b = 0; b < bones; ++b)
+    if (!values.empty())
+      std::memcpy(staged + at, values.data(), values.size() * sizeof(values[0]));
+  };
+  put(bodies_at, bodies);
+  put(activation_at, plan.begin.activation);
+  put(activation_at + muscles * sizeof(float), plan.end.activation);
+  std::size_t pose_at = poses_at;
+  for (const std::vector<RigidTransform>& of_step : poses)
+    for (const RigidTransform& pose : of_step)
     {
-      char* const pose = staged + poses_at + sizeof(double) * 12 * (step * bones + b);
-      std::memcpy(pose, poses[b].rotation.data(), 9 * sizeof(double));
-      std::memcpy(pose + 9 * sizeof(double), poses[b].translation.data(), 3 * sizeof(double));
+      put(pose_at, pose.rotation);
+      put(pose_at + 9 * sizeof(double), pose.translation);
+      pose_at += 12 * sizeof(double);
     }
-  }
-  if (!relaxation.empty())
-    std::memcpy(staged + relaxation_at, relaxation.data(), sizeof(float) * relaxation.size());
+  put(relaxation_at, relaxation);
   require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
   char* const controls = slot.controls.data();
   g.frequency_bound = reinterpret_cast<std::uint32_t*>(controls);
-  g.activation_begin = reinterpret_cast<const float*>(controls + sizeof(double));
+  if (touches)
+  {
+    g.contact.poses = reinterpret_cast<const float4*>(controls + bodies_at);
+    g.contact.ways = reinterpret_cast<const float*>(controls + bodies_at) + (bodies.size() - poses.size());
+  }
+  g.activation_begin = reinterpret_cast<const float*>(controls + activation_at);
   g.activation_end = g.activation_begin + muscles;
   g.poses = reinterpret_cast<const double*>(controls + poses_at);
   g.relaxation = relaxation.empty() ? nullptr : reinterpret_cast<const float*>(controls + relaxation_at);
@@ -257,27 +272,21 @@ void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& led
 }
 
 // With a ledger the host has followed every step.
-const DevicePart* CudaSolver::followed_contact() const
+std::vector<Reaction> CudaSolver::reactions() const
 {
   DevicePart* const contact = device_.touching();
   if (contact == nullptr)
-    return nullptr;
+    return {};
   synchronise();
   if (!account_ && !contact->idle())
     contact->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
-  return contact;
-}
-
-std::vector<Reaction> CudaSolver::reactions() const
-{
-  const DevicePart* const contact = followed_contact();
-  return contact == nullptr ? std::vector<Reaction>() : contact->reactions();
+  return contact->reactions();
 }
 
 std::int64_t CudaSolver::lost_points() const
 {
-  const DevicePart* const contact = followed_contact();
-  return contact == nullptr ? 0 : contact->lost_points();
+  synchronise();
+  return device_.touching() == nullptr ? 0 : device_.touching()->lost_points();
 }
 
 Monitor CudaSolver::monitor()

@@ -3,9 +3,12 @@
 #include "cuda/backend/device_model.hpp"
 #include "cuda/kernels/contact_kernels.hpp"
 
+#include "solver/contact/body_motion.hpp"
+
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <set>
 
 namespace frontalis
 {
@@ -39,7 +42,7 @@ std::unique_ptr<DevicePart> touching_part(const Model& model, const Discretisati
 
 DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
                                      const std::vector<std::uint32_t>& device_node)
-    : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0)
+    : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0), far_corner_(far_corner(model))
 {
   for (const auto& point : host_.points())
     ++first_point_[point.voxel + 1];
@@ -51,6 +54,7 @@ DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& d
   add_points(model);
   for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
     *state = DeviceArray<float4>(point_.size());
+  clearances_.clear();
   holds_ = DeviceArray<ContactHold>(point_.size());
   reset();
 }
@@ -61,9 +65,12 @@ void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
   std::vector<PatchContact> of_patch;
   std::vector<ContactVoxel> voxels;
   std::vector<uint4> corners;
+  std::vector<float4> watched;
   for (const Patch& patch : patches.patches)
   {
-    PatchContact contact{ static_cast<std::uint32_t>(point_.size()), 0, static_cast<std::uint32_t>(voxels.size()), 0 };
+    PatchContact contact{ static_cast<std::uint32_t>(point_.size()),  0, static_cast<std::uint32_t>(voxels.size()), 0,
+                          static_cast<std::uint32_t>(watched.size()), 0 };
+    std::set<std::uint16_t> places;
     for (std::uint32_t v = 0; v < patch.voxels; ++v)
     {
       const auto e = patches.voxel[patch.voxel_begin + v];
@@ -71,20 +78,30 @@ void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
       for (auto p = first_point_[e]; p < first_point_[e + 1]; ++p, ++contact.points)
       {
         point_.push_back(p);
-        uint4 places;
-        static_assert(sizeof places == sizeof patches.corner[0], "eight places are read as four words");
-        std::memcpy(&places, &patches.corner[patch.voxel_begin + v], sizeof places);
-        corners.push_back(places);
+        uint4 words;
+        static_assert(sizeof words == sizeof patches.corner[0], "eight places are read as four words");
+        std::memcpy(&words, &patches.corner[patch.voxel_begin + v], sizeof words);
+        corners.push_back(words);
       }
-      if (contact.points > first)
-        voxels.push_back({ v, first, contact.points });
+      if (contact.points == first)
+        continue;
+      voxels.push_back({ v, first, contact.points });
+      const auto& of_voxel = patches.corner[patch.voxel_begin + v];
+      places.insert(of_voxel.begin(), of_voxel.end());
     }
+    for (const std::uint32_t place : places)
+    {
+      watched.push_back({ 0, 0, 0, 0 });
+      std::memcpy(&watched.back().w, &place, sizeof place);
+    }
+    contact.nodes = static_cast<std::uint32_t>(places.size());
     contact.voxels = static_cast<std::uint32_t>(voxels.size()) - contact.voxel_begin;
     of_patch.push_back(contact);
   }
   patches_ = DeviceArray<PatchContact>(of_patch);
   voxels_ = DeviceArray<ContactVoxel>(voxels);
   corners_ = DeviceArray<uint4>(corners);
+  watched_ = DeviceArray<float4>(watched);
 }
 
 void DeviceBodyContact::add_to_strips(const Model& model, const std::vector<std::uint32_t>& device_node)
@@ -130,19 +147,22 @@ void DeviceBodyContact::add_to_strips(const Model& model, const std::vector<std:
 
 void DeviceBodyContact::add_points(const Model& model)
 {
-  std::vector<ContactBody> bodies;
   for (const Contact& contact : model.contacts)
-    bodies.push_back(contact_body(contact, fields_.add(contact.field)));
-  bodies_ = DeviceArray<ContactBody>(bodies);
+    host_bodies_.push_back(contact_body(contact, fields_.add(contact.field)));
+  bodies_ = DeviceArray<ContactBody>(host_bodies_);
   std::vector<ContactPoint> points;
   copy_.resize(host_.points().size());
   for (const auto p : point_)
   {
     const auto& from = host_.points()[p];
     copy_[p] = static_cast<std::uint32_t>(points.size());
-    points.push_back(contact_point(model.contacts[from.body], from));
+    points.push_back(contact_point(model.contacts[from.body], host_bodies_[from.body], from));
   }
   points_ = DeviceArray<ContactPoint>(points);
+  std::vector<float4> samples;
+  for (const float4& word : no_samples())
+    samples.insert(samples.end(), points.size(), word);
+  samples_ = DeviceArray<float4>(samples);
 }
 
 void DeviceBodyContact::describe(StepArguments& g) const
@@ -152,18 +172,44 @@ void DeviceBodyContact::describe(StepArguments& g) const
                 voxels_.data(),
                 patches_.data(),
                 corners_.data(),
+                watched_.data(),
+                static_cast<float>(1 / host_.spread()),
                 nodes_.data(),
                 bound_.data(),
                 node_voxels_.data(),
                 pushes_.data(),
                 static_cast<std::uint32_t>(point_.size()),
                 static_cast<std::uint32_t>(bound_.size()),
+                static_cast<std::uint32_t>(host_bodies_.size()),
+                nullptr,
+                nullptr,
                 grips_.data(),
                 holds_.data(),
                 forces_.data(),
                 arms_.data(),
+                samples_.data(),
                 clearances_.data(),
                 false };
+}
+
+std::vector<float> DeviceBodyContact::motion(const std::vector<std::vector<RigidTransform>>& bones) const
+{
+  std::vector<float> poses, ways;
+  double way = 0;
+  for (std::size_t step = 0; step < bones.size(); ++step)
+  {
+    double longest = 0;
+    for (const ContactBody& body : host_bodies_)
+    {
+      add_pose(body, bones[step], poses);
+      if (step > 0 && body.bone >= 0)
+        longest = std::max(longest, longest_way(bones[step - 1][body.bone], bones[step][body.bone], far_corner_));
+    }
+    way += longest;
+    ways.push_back(static_cast<float>(way));
+  }
+  poses.insert(poses.end(), ways.begin(), ways.end());
+  return poses;
 }
 
 void DeviceBodyContact::list_arrays(ArrayList& list)
@@ -172,8 +218,9 @@ void DeviceBodyContact::list_arrays(ArrayList& list)
   fields_.list_arrays(effect, list);
   list.add(effect, "points", bodies_.bytes() + points_.bytes() + corners_.bytes() + nodes_.bytes());
   list.add(effect, "their voxels", voxels_.bytes() + patches_.bytes() + bound_.bytes() + node_voxels_.bytes());
+  list.add(effect, "points", watched_.bytes() + samples_.bytes() + clearances_.bytes());
   list.add(effect, "forces", pushes_.bytes());
-  for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+  for (auto* const state : { &grips_, &forces_, &arms_ })
     list_state(list, effect, "forces", *state);
   list_state(list, effect, "forces", holds_);
   host_.list_arrays(list);
@@ -188,7 +235,7 @@ void DeviceBodyContact::run(EffectSet running)
 
 void DeviceBodyContact::reset()
 {
-  for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
+  for (auto* const state : { &grips_, &forces_, &arms_ })
     state->clear();
   holds_.clear();
   host_.reset();
@@ -229,6 +276,14 @@ void DeviceBodyContact::follow(const ConstraintStep& step)
   for (std::size_t p = 0; p < copy_.size(); ++p)
     found.push_back(found_at(left, copy_[p], host_.points()[p]));
   host_.follow(found, step);
+}
+
+std::int64_t DeviceBodyContact::lost_points() const
+{
+  std::vector<ContactHold> holds;
+  holds_.download(holds);
+  return std::count_if(copy_.begin(), copy_.end(),
+                       [&](std::uint32_t copy) { return holds[copy].touching == int(physics::Touching::lost); });
 }
 
 void DeviceBodyContact::add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open,

@@ -28,7 +28,8 @@ public:
   void add_springs(const StepArguments& g, cudaStream_t stream) const override;
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
-  std::int64_t lost_points() const override { return host_.lost_points(); }
+  std::int64_t lost_points() const override;
+  std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& bones) const override;
   void add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open, Vectors& forces,
                     EnergyLedger& ledger) override;
 
@@ -41,7 +42,9 @@ private:
   std::vector<std::uint32_t> first_point_;  // of each voxel among the host's points, and their number
   std::vector<std::uint32_t> point_;        // of the host, of each point on the device
   std::vector<std::uint32_t> copy_;         // of each point of the host, one on the device
+  std::array<double, 3> far_corner_;        // of the grid [m]
   DeviceFields fields_;
+  std::vector<ContactBody> host_bodies_;
   DeviceArray<ContactBody> bodies_;
   DeviceArray<ContactPoint> points_;
   DeviceArray<ContactVoxel> voxels_;
@@ -49,7 +52,8 @@ private:
   DeviceArray<uint4> corners_, nodes_;
   DeviceArray<std::uint32_t> bound_;
   DeviceArray<std::int32_t> node_voxels_;
-  DeviceArray<float4> pushes_, grips_, forces_, arms_, clearances_;
+  DeviceArray<float4> watched_, pushes_, samples_, clearances_;
+  DeviceArray<float4> grips_, forces_, arms_;
   DeviceArray<ContactHold> holds_;
 };
 

@@ -38,7 +38,7 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
     const auto point = physics::field_point(view(surface.field), { rest[0], rest[1], rest[2] });
     const std::size_t index = sliding.size();
     if (surface.field.radius > 0)
-      samples[index].x = static_cast<float>(surface.field.radius + node.distance);
+      samples[index].x = static_cast<float>(norm(point.offset) - surface.field.radius - node.distance);
     else
       samples[(sample_words - 1) * count + index].w = static_cast<float>(1 / surface.field.spacing);
     at.push_back({ static_cast<float>(point.offset.x), static_cast<float>(point.offset.y),

@@ -29,6 +29,10 @@ public:
   /// Sets the arguments that steps need.
   virtual void describe(StepArguments& g) const = 0;
 
+  /// Motion of bodies in the steps of a plan, from the bones' poses at the start of each: ContactArguments::poses, then
+  /// ways.
+  virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& bones) const = 0;
+
   // for strips
   /// Pushes the nodes before a step.
   virtual void push(const StepArguments& g, int step, cudaStream_t stream) const = 0;
@@ -41,7 +45,7 @@ public:
   /// Leaves the latest step to the host's account. Called after each step if energies are asked for.
   virtual void follow(const ConstraintStep& step) = 0;
   virtual std::vector<Reaction> reactions() const = 0;
-  /// See NodePart::lost_points.
+  /// See NodePart::lost_points. Needs no follow().
   virtual std::int64_t lost_points() const = 0;
   /// See NodePart::add_energies.
   virtual void add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open, Vectors& forces,

@@ -12,9 +12,11 @@ namespace frontalis
 struct ContactBody
 {
   physics::DistanceField field;
-  float inverse_spacing;  ///< of its samples [1/m]
+  float inverse_spacing;  ///< of its samples [1/m]; 0: a sphere
   float reach;            ///< Contact::reach [m]
   float friction;
+  std::int32_t bone;  ///< that the body is; -1: it stands still
+  double middle[3];   ///< of the points that may touch it, at rest [m]
 };
 
 /// A point of the tissue that may touch a body.
@@ -24,9 +26,10 @@ struct alignas(16) ContactPoint
   float stiffness;       ///< [N/m]
   float offset[3];       ///< of its rest position in its cell of the body's field [m]; see physics::FieldPoint
   std::int32_t body;     ///< into ContactArguments::bodies
+  float arm[3];          ///< from ContactBody::middle to its rest position [m]
+  float distance;        ///< from a sphere, at rest [m]
   std::int32_t cell[3];
-  std::int32_t bone;  ///< that the body is; -1: it stands still
-  double rest[3];     ///< [m]
+  std::int32_t unused;
 };
 
 /// State of a point besides that of its friction.
@@ -37,17 +40,18 @@ struct alignas(8) ContactHold
 };
 
 /// Points [first, end) of a voxel. In a patch they count from the patch's first.
-struct ContactVoxel
+struct alignas(16) ContactVoxel
 {
   std::uint32_t column;  ///< the voxel's number in its patch
   std::uint32_t first, end;
 };
 
 /// What a patch has of contact.
-struct PatchContact
+struct alignas(16) PatchContact
 {
   std::uint32_t point_begin, points;  ///< into the arrays of points
   std::uint32_t voxel_begin, voxels;  ///< into ContactArguments::voxels
+  std::uint32_t node_begin, nodes;    ///< into ContactArguments::watched
 };
 
 /// Contact with bodies in device memory. Points are sorted by voxel. In patches every copy of a voxel has copies of its
@@ -59,18 +63,26 @@ struct ContactArguments
   const ContactVoxel* voxels;
   const PatchContact* patches;  ///< per patch
   const uint4* corners;         ///< of the voxel of each point in a patch, as StepArguments::patch_corners
+  float4* watched;              ///< nodes of these voxels: displacement when the points were looked at [m], place
+  float inverse_spread;         ///< a point moves at most by the largest way of its voxel's nodes over this
   // in strips
   const uint4* nodes;               ///< two per point: device nodes of its voxel
   const std::uint32_t* bound;       ///< device nodes of voxels with points
   const std::int32_t* node_voxels;  ///< per bound node, the voxels of which it is corner 0 .. 7; negative: none
   float4* pushes;                   ///< force on each point in this step [N]
-  std::uint32_t point_count, bound_count;
+  std::uint32_t point_count, bound_count, body_count;
 
-  // state. Places are relative to that at rest, in the frame of the body.
+  // motion of the bodies in the steps of a plan
+  const float4* poses;  ///< [step][body][3], at its start: rows of the inverse rotation minus 1, and of the shift [m]
+  const float* ways;    ///< [step]: at most the way [m] of any body against the tissue since the plan began
+
+  // State. Places are relative to that at rest, in the frame of the body.
   float4* grips;  ///< physics::Grip: anchor [m], normal force [N]
   ContactHold* holds;
-  float4* forces;      ///< in the latest step: on each point [N]; lost to friction [J]
-  float4* arms;        ///< of these forces, from the origin of the body's frame [m]
+  float4* forces;  ///< of points that touched in the latest step of a launch: on each [N]; lost to friction [J]
+  float4* arms;    ///< of these forces, from the origin of the body's frame [m]
+  // These depend on places alone, not on time.
+  float4* samples;     ///< see sample_words
   float4* clearances;  ///< place and distance [m]: within this distance of that place the point is not looked at
 
   /// Forces are those of points that all touch and stick, as ContactStiffness::add_forces() has them.

@@ -22,11 +22,11 @@ __global__ void __launch_bounds__(block) find_pushes(const __grid_constant__ Ste
   const std::uint32_t node[corners] = { low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w };
   float weight[corners];
   physics::trilinear_weights(point.coordinates[0], point.coordinates[1], point.coordinates[2], weight);
-  physics::Vec3<float> moved{ 0, 0, 0 }, force{ 0, 0, 0 };
+  physics::Vec3<float> moved{ 0, 0, 0 };
 #pragma unroll
   for (std::uint32_t b = 0; b < corners; ++b)
     add_part(moved, weight[b], g.u[g.first][node[b]]);
-  find_push(g, p, point, moved, step, force);
+  const physics::Vec3<float> force = find_push(g, point, { p, step, true, moved }).force;
   g.contact.pushes[p] = make_float4(force.x, force.y, force.z, 0);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/kernels/bone_pose.cuh"
+#include "cuda/kernels/kept_samples.cuh"
 #include "frontalis/physics/trilinear.hpp"
 
 namespace frontalis
@@ -23,75 +24,143 @@ __device__ __forceinline__ float corner_weight(std::uint32_t b, float x, float y
   return (b & 1 ? x : 1 - x) * (b & 2 ? y : 1 - y) * (b & 4 ? z : 1 - z);
 }
 
-/// Leaves the force of a point in this step.
-__device__ __forceinline__ void leave_force(const StepArguments& g, std::uint32_t index, const ContactPoint& point,
-                                            const physics::Vec3<float>& moved, int step,
-                                            const physics::Vec3<float>& force, float lost)
+/// Pose of a body at the start of a step: its inverse rotation is 1 + `less`. In the body's frame a point at
+/// middle + arm + moved has gone from its rest position by moved + shift + less * (arm + moved).
+struct BodyPose
+{
+  physics::Vec3<float> less[3];  ///< rows
+  physics::Vec3<float> shift;
+
+  __device__ __forceinline__ physics::Vec3<float> gone(const physics::Vec3<float>& arm,
+                                                       const physics::Vec3<float>& moved) const
+  {
+    const physics::Vec3<float> at = arm + moved;
+    return moved + shift + physics::Vec3<float>{ dot(less[0], at), dot(less[1], at), dot(less[2], at) };
+  }
+  /// Turns a vector from the body's frame to the scene's.
+  __device__ __forceinline__ physics::Vec3<float> turned(const physics::Vec3<float>& v) const
+  {
+    return v + v.x * less[0] + v.y * less[1] + v.z * less[2];
+  }
+};
+
+__device__ __forceinline__ BodyPose body_pose_at(const StepArguments& g, int step, std::int32_t body)
+{
+  const float4* const from = g.contact.poses + 3 * (static_cast<std::size_t>(step) * g.contact.body_count + body);
+  const float4 x = from[0], y = from[1], z = from[2];
+  return { { { x.x, x.y, x.z }, { y.x, y.y, y.z }, { z.x, z.y, z.z } }, { x.w, y.w, z.w } };
+}
+
+/// Copies the samples of another cell to a point. Returns false, and copies nothing, if none are stored there.
+static __device__ __noinline__ bool enter_contact_cell(const ContactArguments& c, std::uint32_t index,
+                                                       std::uint32_t code)
+{
+  const ContactPoint& point = c.points[index];
+  const KeptSamples kept{ c.samples, c.point_count, index };
+  if (!kept.copy(c.bodies[point.body].field, point.cell, code, 0))
+    return false;
+  kept.number(27) = __uint_as_float(code);
+  return true;
+}
+
+/// The distance of a point that has gone by `gone` from its body. Returns false if no samples are stored there.
+__device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint32_t index, const ContactPoint& point,
+                                            const ContactBody& body, const physics::Vec3<float>& gone,
+                                            physics::FieldValue<float>& value)
+{
+  const physics::Vec3<float> offset{ point.offset[0], point.offset[1], point.offset[2] };
+  if (body.inverse_spacing == 0)
+  {
+    value = physics::sphere_value(point.distance, offset, gone);
+    return true;
+  }
+  const KeptSamples kept{ c.samples, c.point_count, index };
+  return kept.value_at(body.inverse_spacing, offset + gone, __float_as_uint(kept.number(27)), value,
+                       [&](std::uint32_t code) { return aside(enter_contact_cell)(c, index, code); });
+}
+
+/// A place in the frame of a bone, in double precision.
+__device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& g, int step, const ContactBody& body,
+                                                           const ContactPoint& point, const physics::Vec3<float>& moved)
 {
   double origin[3] = { 0, 0, 0 };
-  if (point.bone >= 0)
+  if (body.bone >= 0)
   {
-    const Pose pose = pose_at(g, step, point.bone);
+    const Pose pose = pose_at(g, step, body.bone);
     for (int axis = 0; axis < 3; ++axis)
       origin[axis] = pose.t[axis];
   }
-  g.contact.forces[index] = make_float4(force.x, force.y, force.z, lost);
-  g.contact.arms[index] = make_float4(static_cast<float>(point.rest[0] + double(moved.x) - origin[0]),
-                                      static_cast<float>(point.rest[1] + double(moved.y) - origin[1]),
-                                      static_cast<float>(point.rest[2] + double(moved.z) - origin[2]), 0);
+  return { body.middle[0] + double(point.arm[0]) + double(moved.x) - origin[0],
+           body.middle[1] + double(point.arm[1]) + double(moved.y) - origin[1],
+           body.middle[2] + double(point.arm[2]) + double(moved.z) - origin[2] };
 }
 
-/// Finds the force [N] on a point that has moved by `moved` [m] at the start of a step. Returns false, and leaves
-/// `force` as it is, if there is none.
-__device__ __forceinline__ bool find_push(const StepArguments& g, std::uint32_t index, const ContactPoint& point,
-                                          const physics::Vec3<float>& moved, int step, physics::Vec3<float>& force)
+/// A point in a step.
+struct PointStep
 {
-  using Point = physics::Vec3<double>;
+  std::uint32_t index;
+  int step;
+  bool last;                   ///< of the launch: the force is left for the host
+  physics::Vec3<float> moved;  ///< from rest, at the start of the step [m]
+};
+
+/// What a step finds of a point.
+struct Push
+{
+  physics::Vec3<float> force;  ///< on it [N]
+  float free_way;              ///< by which it may move before it must be looked at again [m]
+};
+
+/// Leaves the force of a point in this step.
+__device__ __forceinline__ void leave_force(const StepArguments& g, const PointStep& at, const ContactPoint& point,
+                                            const ContactBody& body, const physics::Vec3<float>& force, float lost)
+{
+  if (!at.last)
+    return;
+  const physics::Vec3<double> arm = from_bone(g, at.step, body, point, at.moved);
+  g.contact.forces[at.index] = make_float4(force.x, force.y, force.z, lost);
+  g.contact.arms[at.index] =
+      make_float4(static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z), 0);
+}
+
+/// Finds the force on a point, which is zero if it does not touch.
+__device__ __forceinline__ Push find_push(const StepArguments& g, const ContactPoint& point, const PointStep& at)
+{
   using Place = physics::Vec3<float>;
   using physics::Touching;
   const ContactArguments& c = g.contact;
   if (c.spring)
+    return { -point.stiffness * at.moved, 0 };
+  const float4 held = c.grips[at.index], clear = c.clearances[at.index];
+  ContactHold hold = c.holds[at.index];
+  const ContactBody& body = c.bodies[point.body];
+  BodyPose pose{};
+  Place gone = at.moved;
+  if (body.bone >= 0)
   {
-    force = -point.stiffness * moved;
-    return true;
-  }
-  const float4 held = c.grips[index], clear = c.clearances[index];
-  ContactHold hold = c.holds[index];
-  const Point rest{ point.rest[0], point.rest[1], point.rest[2] };
-  Place gone = moved;
-  if (point.bone >= 0)
-  {
-    const Point at = pose_at(g, step, point.bone).inwards(rest + Point{ moved.x, moved.y, moved.z }) - rest;
-    gone = { static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z) };
+    pose = body_pose_at(g, at.step, point.body);
+    gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
   }
   const Place away = gone - Place{ clear.x, clear.y, clear.z };
-  const bool far = dot(away, away) < clear.w * clear.w;
+  const float way = norm(away);
+  const bool far = way < clear.w;
   if (far && hold.touching == int(Touching::no) && held.w == 0)
-    return false;
+    return { { 0, 0, 0 }, clear.w - way };
 
-  const ContactBody& body = c.bodies[point.body];
   physics::Grip<float> grip{ { held.x, held.y, held.z }, held.w, hold.along };
   const auto response = static_cast<float>(g.friction_response);
   physics::FieldValue<float> value{};
-  const Place offset{ point.offset[0], point.offset[1], point.offset[2] };
-  const bool sampled =
-      !far && physics::sample(body.field, body.inverse_spacing,
-                              { { point.cell[0], point.cell[1], point.cell[2] }, offset + gone }, value);
+  const bool sampled = !far && distance_at(c, at.index, point, body, gone, value);
   if (sampled && value.value < 0)
   {
     if (hold.touching != int(Touching::yes))
       grip = { gone, grip.normal, 0 };
     const auto touch = physics::touch<float>(value, gone, grip, point.stiffness, body.friction, response);
-    c.grips[index] = make_float4(touch.grip.anchor.x, touch.grip.anchor.y, touch.grip.anchor.z, touch.grip.normal);
-    c.holds[index] = { touch.grip.along, int(Touching::yes) };
-    force = touch.force;
-    if (point.bone >= 0)
-    {
-      const Point turned = pose_at(g, step, point.bone).turned({ double(force.x), double(force.y), double(force.z) });
-      force = { static_cast<float>(turned.x), static_cast<float>(turned.y), static_cast<float>(turned.z) };
-    }
-    leave_force(g, index, point, moved, step, force, touch.lost);
-    return true;
+    c.grips[at.index] = make_float4(touch.grip.anchor.x, touch.grip.anchor.y, touch.grip.anchor.z, touch.grip.normal);
+    c.holds[at.index] = { touch.grip.along, int(Touching::yes) };
+    const Place force = body.bone >= 0 ? pose.turned(touch.force) : touch.force;
+    leave_force(g, at, point, body, force, touch.lost);
+    return { force, 0 };
   }
   const float lost = physics::let_go(grip, point.stiffness, response);
   if (!(body.friction > 0 && grip.normal > point.stiffness * static_cast<float>(physics::forgotten_depth)))
@@ -99,22 +168,25 @@ __device__ __forceinline__ bool find_push(const StepArguments& g, std::uint32_t 
   const bool was_inside = hold.touching == int(Touching::yes) || hold.touching == int(Touching::lost);
   const bool lost_inside = was_inside && !sampled && !far;
   hold.touching = int(lost_inside ? Touching::lost : was_inside ? Touching::let_go : Touching::no);
-  c.grips[index] = make_float4(held.x, held.y, held.z, grip.normal);
-  c.holds[index] = { grip.along, hold.touching };
+  c.grips[at.index] = make_float4(held.x, held.y, held.z, grip.normal);
+  c.holds[at.index] = { grip.along, hold.touching };
+  float distance = 0;
   if (lost_inside)
-    c.clearances[index].w = 0;
+    c.clearances[at.index].w = 0;
   else if (!far)
   {
-    const Point place = rest + Point{ gone.x, gone.y, gone.z };
     // a little less, for what rounding takes
-    const float way =
-        0.999f * (sampled
-                      ? value.value / static_cast<float>(physics::steepest_field)
-                      : static_cast<float>(physics::distance_without_samples(body.field, double(body.reach), place)));
-    c.clearances[index] = make_float4(gone.x, gone.y, gone.z, way);
+    distance = 0.999f * (sampled ? value.value / static_cast<float>(physics::steepest_field)
+                                 : static_cast<float>(physics::distance_without_samples(
+                                       body.field, double(body.reach),
+                                       physics::Vec3<double>{ body.middle[0], body.middle[1], body.middle[2] } +
+                                           physics::Vec3<double>{ double(point.arm[0]) + double(gone.x),
+                                                                  double(point.arm[1]) + double(gone.y),
+                                                                  double(point.arm[2]) + double(gone.z) })));
+    c.clearances[at.index] = make_float4(gone.x, gone.y, gone.z, distance);
   }
-  leave_force(g, index, point, moved, step, { 0, 0, 0 }, lost);
-  return false;
+  leave_force(g, at, point, body, { 0, 0, 0 }, lost);
+  return { { 0, 0, 0 }, hold.touching == int(Touching::no) && grip.normal == 0 ? distance : 0 };
 }
 
 }  // namespace cuda

@@ -25,6 +25,8 @@ struct PatchMemory
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
   std::uint32_t width;  // length of a row of `force`
   float4* push;         // of each point of contact: force on it and its coordinates
+  std::uint32_t*
+      least;  // two entries: see put_pushes(). While a slow thread reads that of a patch, the next uses another.
 };
 
 template <Effects With>
@@ -32,12 +34,14 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
 {
   extern __shared__ float4 all[];
   float4* const push = all + launch.most_halo + launch.most_nodes;
-  float* const v = reinterpret_cast<float*>(push + (has<With, Effects::contact> ? 2 * launch.most_points : 0));
+  float4* const least = push + (has<With, Effects::contact> ? 2 * launch.most_points : 0);
+  float* const v = reinterpret_cast<float*>(least + (has<With, Effects::contact> ? 1 : 0));
   return { all,
            { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
            v + 3 * launch.most_nodes,
            launch.most_voxels + 1,
-           push };
+           push,
+           reinterpret_cast<std::uint32_t*>(least) };
 }
 
 /// Step number, stored in place of the inverse mass. Its highest bit is set, which no inverse mass has.
@@ -138,12 +142,53 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Finds the forces on the patch's points of contact. Threads take points from the last thread on, because the first
-/// ones have the more voxels. Returns whether one of this thread's points is pushed.
-__device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchContact& contact,
-                                           const PatchMemory& memory, int step)
+/// What a thread knows of its patch's contact in a step. Points are skipped until nodes and bodies together have moved
+/// as far as the nearest point was away when they were looked at. At the start of a launch they are looked at. The
+/// bodies' way since the start of the plan may become `until`, less that of the nodes.
+struct ContactWatch
 {
-  bool pushed = false;
+  float way;      ///< by which nodes may have moved since [m]; not positive: points are looked at
+  float4 node;    ///< the first of its watched nodes
+  bool moved_on;  ///< one of its nodes has moved farther
+};
+
+__device__ __forceinline__ ContactWatch fetch_watch(const StepArguments& g, const PatchContact& contact, float until,
+                                                    int step)
+{
+  ContactWatch watch{ 0, {}, false };
+  if (contact.points == 0 || step == g.step_begin)
+    return watch;
+  watch.way = (until - g.contact.ways[step]) * g.contact.inverse_spread;
+  if (threadIdx.x < contact.nodes)
+    watch.node = g.contact.watched[contact.node_begin + threadIdx.x];
+  return watch;
+}
+
+/// Compares the displacements of watched nodes.
+__device__ __forceinline__ void look_at_watched(const StepArguments& g, const PatchContact& contact,
+                                                const PatchMemory& memory, ContactWatch& watch)
+{
+  if (!(watch.way > 0))
+    return;
+  for (std::uint32_t i = threadIdx.x; i < contact.nodes; i += blockDim.x)
+  {
+    const float4 then = i == threadIdx.x ? watch.node : g.contact.watched[contact.node_begin + i];
+    const float4 now = memory.place[__float_as_uint(then.w)];
+    const float x = now.x - then.x, y = now.y - then.y, z = now.z - then.z;
+    // also where the motion has diverged
+    if (!(x * x + y * y + z * z < watch.way * watch.way))
+      watch.moved_on = true;
+  }
+}
+
+/// Finds the forces on the patch's points of contact. Threads take points from the last thread on, because the first
+/// ones have the more voxels. Returns whether one of this thread's points is pushed. Lowers `least`, bits of the way by
+/// which all points may move before they must be looked at again.
+__device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchContact& contact,
+                                           const PatchMemory& memory, int step, std::uint32_t* least)
+{
+  constexpr float endless = 1e30f;
+  float free_way = endless;
   for (std::uint32_t p = blockDim.x - 1 - threadIdx.x; p < contact.points; p += blockDim.x)
   {
     const std::uint32_t index = contact.point_begin + p;
@@ -153,16 +198,25 @@ __device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchCo
     split(__ldg(g.contact.corners + index), corner);
     float weight[8];
     physics::trilinear_weights(at[0], at[1], at[2], weight);
-    physics::Vec3<float> moved{ 0, 0, 0 }, force{ 0, 0, 0 };
+    physics::Vec3<float> moved{ 0, 0, 0 };
 #pragma unroll
     for (int b = 0; b < 8; ++b)
       add_part(moved, weight[b], memory.place[corner[b]]);
-    if (find_push(g, index, point, moved, step, force))
-      pushed = true;
-    memory.push[2 * p] = make_float4(force.x, force.y, force.z, at[0]);
+    const Push push = find_push(g, point, { index, step, step + 1 == g.step_end, moved });
+    free_way = fminf(free_way, push.free_way);
+    memory.push[2 * p] = make_float4(push.force.x, push.force.y, push.force.z, at[0]);
     memory.push[2 * p + 1] = make_float4(at[1], at[2], 0, 0);
   }
-  return pushed;
+  for (std::uint32_t i = threadIdx.x; i < contact.nodes; i += blockDim.x)
+  {
+    float4& watched = g.contact.watched[contact.node_begin + i];
+    const float4 now = memory.place[__float_as_uint(watched.w)];
+    watched = make_float4(now.x, now.y, now.z, watched.w);
+  }
+  if (free_way < endless)
+    atomicMin(least, __float_as_uint(free_way));
+  // a point that touches may not move at all
+  return free_way == 0;
 }
 
 /// Adds the forces on points to those on the corners of their voxels, in the order of the points. Each thread has a
@@ -188,15 +242,23 @@ __device__ __forceinline__ void add_pushes(const StepArguments& g, const PatchCo
   }
 }
 
-/// Ends the computation of voxels with a barrier; with contact, adds its forces to theirs.
+/// Ends the computation of voxels with a barrier; with contact, adds its forces to theirs. `until`: see
+/// ContactWatch.
 template <Effects With>
 __device__ __forceinline__ void end_voxels(const StepArguments& g, const PatchContact& contact,
-                                           const PatchMemory& memory, int step)
+                                           const ContactWatch& watch, const PatchMemory& memory, int step,
+                                           std::uint32_t* least, float& until)
 {
   if (!has<With, Effects::contact>)
     return __syncthreads();
-  const bool asked = !g.forces_only || g.contact.spring;
-  if (__syncthreads_or(asked && put_pushes(g, contact, memory, step)) == 0)
+  // all threads have the same answer
+  if (contact.points == 0 || (g.forces_only && !g.contact.spring))
+    return __syncthreads();
+  if (watch.way > 0 && __syncthreads_or(watch.moved_on) == 0)
+    return;
+  const bool any = __syncthreads_or(put_pushes(g, contact, memory, step, least)) != 0;
+  until = any ? 0 : __uint_as_float(*least) + g.contact.ways[step];
+  if (!any)
     return;
   add_pushes(g, contact, memory);
   __syncthreads();
@@ -290,6 +352,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
+  float until[most_turns];  // with contact: see ContactWatch
+  std::uint32_t round = 0;
   std::uint32_t filled = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
@@ -315,12 +379,20 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     filled = 0;
     const Activations activation = activations_at(g, step, activations);
     const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
-    for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
+    int turn = 0;
+    for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x, ++turn)
     {
       const Patch patch = g.patches[p];
       PatchContact contact{};
+      ContactWatch watch{};
       if (has<With, Effects::contact>)
+      {
         contact = g.contact.patches[p];
+        watch = fetch_watch(g, contact, until[turn], step);
+        round ^= 1;
+        if (threadIdx.x == 0)
+          memory.least[round] = 0xffffffffu;
+      }
       VoxelFetch voxel{};
       // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
@@ -335,6 +407,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
       }
       __syncthreads();
+      if (has<With, Effects::contact>)
+        look_at_watched(g, contact, memory, watch);
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -344,7 +418,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         else
           put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }
-      end_voxels<With>(g, contact, memory, step);
+      end_voxels<With>(g, contact, watch, memory, step, memory.least + round, until[turn]);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/kernels/bone_pose.cuh"
+#include "cuda/kernels/kept_samples.cuh"
 #include "frontalis/physics/element/sliding_node.hpp"
 
 namespace frontalis
@@ -9,8 +10,6 @@ namespace cuda
 {
 
 // Nodes that slide on surfaces. In each step a node uses the tangent plane of its field's level set at its position.
-// The samples around it are read from a copy per node, in loads that the threads of a warp share. In most steps a node
-// stays in its cell and the copy is valid.
 
 struct NodeState
 {
@@ -42,10 +41,9 @@ __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
   return static_cast<std::uint32_t>(index) < g.rubbing_count;
 }
 
-/// The n-th of the 28 numbers of a node's samples (see sample_words).
-__device__ __forceinline__ float& sample_of(const StepArguments& g, std::int32_t index, int n)
+__device__ __forceinline__ KeptSamples samples_of(const StepArguments& g, std::int32_t index)
 {
-  return reinterpret_cast<float*>(g.samples + n / 4 * g.sliding_count + index)[n % 4];
+  return { g.samples, g.sliding_count, static_cast<std::uint32_t>(index) };
 }
 
 template <Effects With>
@@ -53,7 +51,7 @@ __device__ __forceinline__ void fetch_sliding(const StepArguments& g, std::int32
 {
   fetch.at = g.sliding_at[index];
   fetch.plane = g.planes[index];
-  fetch.inverse_spacing = sample_of(g, index, 27);
+  fetch.inverse_spacing = samples_of(g, index).number(27);
   if (has<With, Effects::friction> && rubs(g, index))
   {
     fetch.friction = g.friction[index];
@@ -65,59 +63,25 @@ __device__ __forceinline__ void fetch_sliding(const StepArguments& g, std::int32
 static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int32_t index, std::uint32_t code)
 {
   const SlidingNodeField node = g.sliding[index];
-  std::int32_t cell[3];
-  for (int axis = 0; axis < 3; ++axis)
-    cell[axis] = node.cell[axis] + static_cast<std::int32_t>(code >> 10 * axis & 1023u) - middle_cell;
-  const physics::DistanceField& field = g.fields[node.surface];
-  const float* const first = field.around(cell);
-  if (first == nullptr)
+  if (!samples_of(g, index).copy(g.fields[node.surface], node.cell, code, node.level))
     return false;
-  const physics::FieldSamples samples = physics::gather(first);
-  for (int n = 0; n < 27; ++n)
-    sample_of(g, index, n) = samples.value[n] - node.level;
   g.sliding_at[index].w = __uint_as_float(code);
   return true;
-}
-
-/// Hides the address of a rarely called function from the compiler, which would otherwise allocate the registers of the
-/// function and its caller together and spill.
-template <class Function>
-__device__ __forceinline__ Function* aside(Function* function)
-{
-  auto address = reinterpret_cast<std::uint64_t>(function);
-  asm volatile("" : "+l"(address));
-  return reinterpret_cast<Function*>(address);
 }
 
 /// A node's field minus its level at displacement `u`. Returns false if no samples are stored there.
 __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
                                          const physics::Vec3<float>& u, physics::FieldValue<float>& value)
 {
-  const physics::Vec3<float> offset = physics::Vec3<float>{ fetch.at.x, fetch.at.y, fetch.at.z } + u;
+  const physics::Vec3<float> at{ fetch.at.x, fetch.at.y, fetch.at.z };
+  const KeptSamples kept = samples_of(g, index);
   if (fetch.inverse_spacing == 0)
   {
-    value = physics::sphere_value(sample_of(g, index, 0), offset);
+    value = physics::sphere_value(kept.number(0), at, u);
     return true;
   }
-  std::int32_t cell[3] = { middle_cell, middle_cell, middle_cell };
-  const physics::Vec3<float> place = physics::enter_cell(fetch.inverse_spacing, offset, cell);
-  if (((cell[0] | cell[1] | cell[2]) & ~1023) != 0)
-    return false;
-  const std::uint32_t code = cell[0] | cell[1] << 10 | cell[2] << 20;
-  if (code != __float_as_uint(fetch.at.w) && !aside(enter_cell)(g, index, code))
-    return false;
-  physics::FieldSamples samples;
-  FRONTALIS_UNROLL
-  for (int w = 0; w < sample_words; ++w)
-  {
-    const float4 word = g.samples[w * g.sliding_count + index];
-    const float of[4] = { word.x, word.y, word.z, word.w };
-    FRONTALIS_UNROLL
-    for (int n = 4 * w; n < 4 * w + 4 && n < 27; ++n)
-      samples.value[n] = of[n - 4 * w];
-  }
-  value = physics::spline(samples, fetch.inverse_spacing, place);
-  return true;
+  return kept.value_at(fetch.inverse_spacing, at + u, __float_as_uint(fetch.at.w), value,
+                       [&](std::uint32_t code) { return aside(enter_cell)(g, index, code); });
 }
 
 /// The plane on which a node at displacement `u` slides in this step; without samples there, that of the latest step.

@@ -71,7 +71,8 @@ struct SlidingNodeField
 
 /// A sliding node's copy of the field near its position, in words of 16 bytes at a stride of `sliding_count`: the
 /// samples of a cell minus the level [m], and the inverse of their spacing [1/m]. On a sphere the inverse spacing is 0,
-/// and the first entry is the radius at the level [m].
+/// and the first entry is the distance at rest minus the level [m]. Points of contact have such copies as well, at a
+/// stride of their number, with the code of the cell as the last entry.
 constexpr int sample_words = 7;
 
 /// The cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is the cell of the rest position.
@@ -258,8 +259,8 @@ constexpr int strip_blocks(Effects effects)
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
                                   std::size_t most_points = 0)
 {
-  return sizeof(float4) * (most_halo + most_nodes + 2 * most_points) + 3 * sizeof(float) * most_nodes +
-         25 * sizeof(float) * (most_voxels + 1);
+  return sizeof(float4) * (most_halo + most_nodes + (most_points > 0 ? 2 * most_points + 1 : 0)) +
+         3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 
 /// Number of blocks of the patch kernel that the device runs at once; 0 if it has no code for the device.

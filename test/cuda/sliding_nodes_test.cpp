@@ -3,31 +3,13 @@
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
 
-#include <cuda_runtime.h>
-
-#include <cstdint>
-#include <cstring>
-
 #include "cuda/kernels/step_kernel.hpp"
 #include "frontalis/model/sample_field.hpp"
 
 #include <cmath>
 #include <vector>
 
-// replacements for what only nvcc defines
-#define __noinline__
-static inline std::uint32_t __float_as_uint(float x)
-{
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-static inline float __uint_as_float(std::uint32_t bits)
-{
-  float x = 0;
-  std::memcpy(&x, &bits, sizeof x);
-  return x;
-}
+#include "device_on_host.hpp"
 
 #include "cuda/kernels/sliding_nodes.cuh"
 
@@ -61,7 +43,7 @@ public:
     at_ = { static_cast<float>(point.offset.x), static_cast<float>(point.offset.y), static_cast<float>(point.offset.z),
             0 };
     if (field.radius > 0)
-      samples_[0].x = static_cast<float>(field.radius + level_);
+      samples_[0].x = static_cast<float>(norm(point.offset) - field.radius - level_);
     else
       samples_[sample_words - 1].w = static_cast<float>(1 / field.spacing);
     forget_samples();

@@ -39,6 +39,30 @@ TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
   }
 }
 
+// Friction depends on the history of each point. The plate is a sphere of 1 km.
+TEST_P(BodiesTouch, forces_and_friction_are_those_of_the_reference)
+{
+  for (const bool flat : { false, true })
+  {
+    Model model = block_and_finger(0.4);
+    if (flat)
+      model.contacts[0].field = plate(4.2e-3, 1);
+    const double time_step = 0.9 * make(model)->time_step();
+    const auto found = make(model, 2, true, time_step);
+    const auto expected = make_solver(std::make_shared<const Model>(model), { "reference", 1, time_step, true });
+    for (Solver* const solver : { found.get(), expected.get() })
+      press_and_stroke(*solver, 20e-3);
+    const std::array<double, 3> force = expected->reactions()[0].force;
+    for (std::size_t axis : { 0, 2 })
+    {
+      EXPECT_GT(std::abs(force[axis]), 1e-3);
+      EXPECT_NEAR(found->reactions()[0].force[axis], force[axis], 2e-3 * std::abs(force[axis])) << flat << axis;
+    }
+    const double lost = expected->ledger()["friction"];
+    EXPECT_NEAR(found->ledger()["friction"], lost, 5e-3 * lost) << flat;
+  }
+}
+
 // The solver skips points that are far from a body, but must notice a body that approaches at a high speed.
 TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
 {

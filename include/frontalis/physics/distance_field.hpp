@@ -106,7 +106,7 @@ FRONTALIS_LAW bool sample(const DistanceField& field, const T& inverse_spacing, 
 {
   if (field.radius > 0)
   {
-    value = sphere_value(static_cast<T>(field.radius), point.offset);
+    value = sphere_value(norm(point.offset) - static_cast<T>(field.radius), point.offset, { T(0), T(0), T(0) });
     return true;
   }
   const Vec3<T> place = enter_cell(inverse_spacing, point.offset, point.cell);

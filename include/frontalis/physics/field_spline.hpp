@@ -81,12 +81,17 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
            N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)) };
 }
 
-/// Distance from a sphere at `offset` [m] from its centre, in the same form.
+/// Distance of a point from a sphere, in the same form. The point has gone by `way` [m] from a place that is `offset`
+/// [m] from the sphere's centre and `distance` [m] from its surface. These are found in double precision: then single
+/// precision resolves the result as finely as the way, however large the sphere is.
 template <class T>
-FRONTALIS_LAW FieldValue<T> sphere_value(const T& radius, const Vec3<T>& offset)
+FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offset, const Vec3<T>& way)
 {
-  const T distance = Number<T>::max(norm(offset), T(1e-9));
-  return { distance - radius, (T(1) / distance) * offset, T(1.4142136) / distance, distance };
+  const Vec3<T> now = offset + way;
+  const T from_centre = Number<T>::max(norm(now), T(1e-9));
+  // the difference of two lengths is that of their squares over their sum
+  return { distance + dot(T(2) * offset + way, way) / (from_centre + norm(offset)), (T(1) / from_centre) * now,
+           T(1.4142136) / from_centre, from_centre };
 }
 
 }  // namespace physics

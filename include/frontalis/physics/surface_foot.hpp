@@ -20,10 +20,12 @@ struct SurfaceTriangle
 template <class T>
 struct SurfaceFoot
 {
-  T gap;           ///< from the surface, negative behind it [m]
-  Vec3<T> normal;  ///< of the surface, unit vector: the point is x = foot + (gap + bulge) * normal
+  T gap;             ///< from the surface, negative behind it [m]
+  Vec3<T> gradient;  ///< of the gap: nearly the normal
+  Vec3<T> normal;    ///< of the surface, unit vector: the point is x = foot + (gap + bulge) * normal
   T weight[3];     ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
   T inside[3];     ///< the same, of the nearest point in the triangle
+  T spread[3];     ///< derivatives of the gap by the corners' normals along normal - gradient [m]
   Vec3<T> mean_normal;  ///< interpolated there, its length not 1
   Vec3<T> mean_place;   ///< that point
   // the triangle's plane
@@ -38,8 +40,9 @@ struct SurfaceFoot
 /// gap is measured from the quadratic surface that belongs to these normals. It bulges over the triangle by
 ///   1/2 (sum of w_i n_i . a_i - (sum of w_i n_i) . (sum of w_i a_i))
 /// (w barycentric coordinates, a corners, n normals): over a chord h of a circle of radius r by h^2 / (8 r) in the
-/// middle. Only then is the normal the gradient of the gap, up to the cube of the angle between two normals, and a
-/// point that slides over the triangles of a curved surface does not climb up and down.
+/// middle. Then the normal is nearly the gradient of the gap, and a point that slides over the triangles of a curved
+/// surface hardly climbs up and down. The gradient is that of the gap as it is, from the derivatives of the equation
+/// of the foot, so that forces along it add no energy.
 template <class T>
 FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, const Vec3<T>& x)
 {
@@ -77,28 +80,48 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   }
   const T stretch = N::sqrt(N::max(dot(direction, direction), N::of(1e-12))), share = T(1) / sum;
   foot.normal = (T(1) / stretch) * direction;
+  T counts[3];
   for (int i = 0; i < 3; ++i)
+  {
+    counts[i] = N::select(foot.inside[i] > T(0), T(1), T(0));
+    foot.spread[i] = way * foot.inside[i];
     foot.inside[i] = share * foot.inside[i];
+  }
   foot.mean_normal = share * direction;
   const Vec3<T> mean = foot.inside[1] * ab + foot.inside[2] * ac;
   foot.mean_place = a[0] + mean;
   const T bulge =
       N::of(0.5) * (foot.inside[1] * dot(n[1], ab) + foot.inside[2] * dot(n[2], ac) - dot(foot.mean_normal, mean));
   foot.gap = way * stretch - bulge;
+  // The foot solves x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; of the bulge, by each weight:
+  const Vec3<T> side[3] = { { T(0), T(0), T(0) }, ab, ac };
+  T bulges[3];
+  for (int i = 0; i < 3; ++i)
+    bulges[i] = N::of(0.5) * (dot(n[i], side[i] - mean) - dot(foot.mean_normal, side[i]));
+  const T all = foot.inside[0] * bulges[0] + foot.inside[1] * bulges[1] + foot.inside[2] * bulges[2];
+  for (int i = 0; i < 3; ++i)
+    bulges[i] = share * counts[i] * (bulges[i] - all);
+  const Vec3<T> turn1 = counts[1] * n[1] - counts[0] * n[0], turn2 = counts[2] * n[2] - counts[0] * n[0];
+  const Vec3<T> first = ab + way * turn1, second = ac + way * turn2, across = cross(first, second);
+  foot.gradient = (T(1) / N::max(dot(across, direction), N::of(0.1) * length)) *
+                  ((way * dot(foot.normal, turn1) - bulges[1] + bulges[0]) * cross(second, direction) +
+                   (way * dot(foot.normal, turn2) - bulges[2] + bulges[0]) * cross(direction, first) +
+                   stretch * across);
   return foot;
 }
 
-/// The force on a corner of the triangle [N] that belongs to forces on the point: `pressed` along the foot's normal,
-/// `along` perpendicular to it. Together with corner_turn() those on the three corners are opposite to the two on the
-/// point, in sum and in moment, to rounding: the first has one line of action, and the couple of the second, which acts
-/// at the height of the point, is taken up by forces normal to the triangle.
+/// The force on a corner of the triangle [N] that belongs to forces on the point: `pressed` times the gradient of the
+/// gap, and `along` perpendicular to it. Together with corner_turn() those on the three corners are opposite to the two
+/// on the point, in sum and in moment, to rounding: the first are gradients of the gap, which depends on relative places
+/// alone, and the couple of the second, which acts at the height of the point, is taken up by forces normal to the
+/// triangle.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed, const Vec3<T>& along)
 {
   const T couple = foot.height * dot(foot.slope[corner], along);
   const T bulging = Number<T>::of(0.5) * pressed * foot.inside[corner];
-  return couple * foot.facet_normal - foot.below[corner] * along - (foot.weight[corner] * pressed) * foot.normal -
+  return couple * foot.facet_normal - foot.below[corner] * along - (foot.weight[corner] * pressed) * foot.gradient -
          bulging * (triangle.normal[corner] - foot.mean_normal);
 }
 
@@ -108,7 +131,8 @@ template <class T>
 FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                   const T& pressed)
 {
-  return (Number<T>::of(-0.5) * pressed * foot.inside[corner]) * (triangle.corner[corner] - foot.mean_place);
+  return (pressed * foot.spread[corner]) * (foot.normal - foot.gradient) +
+         (Number<T>::of(-0.5) * pressed * foot.inside[corner]) * (triangle.corner[corner] - foot.mean_place);
 }
 
 /// What a corner's displacement [m] contributes to that of the triangle at the place of the point. It is zero, less the

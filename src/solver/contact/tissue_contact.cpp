@@ -240,9 +240,9 @@ typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p
     for (int i = 0; i < 3; ++i)
       way = way - physics::carried(foot, i, placed[corners[i]].place - placed[corners[i]].before);
   }
-  const auto held = physics::touch<double>({ gap, foot.normal, 0, 0 }, way, grip, stiff, friction, response);
+  const auto held = physics::touch<double>({ gap, foot.gradient, 0, 0 }, way, grip, stiff, friction, response);
   const double pressed = -stiff * gap;
-  const Vector along = held.force - pressed * foot.normal;
+  const Vector along = held.force - pressed * foot.gradient;
   pair.point = held.force;
   const physics::SurfaceTriangle<double> triangle = surface_.triangle(track.triangle, placed);
   for (int i = 0; i < 3; ++i)
