@@ -98,7 +98,7 @@ void FaceNode::on_expression(const std_msgs::String& message)
                  const std::lock_guard<std::mutex> lock(target_mutex_);
                  running.set_expression(message.data);
                  end_demo("expression");
-                 const auto activation = expression_activation(running.model(), message.data);
+                 const auto activation = expression_controls(running.model(), message.data).activation;
                  for (std::size_t muscle = 0; muscle < activation.size(); ++muscle)
                    target_[running.model().muscles[muscle].name] = activation[muscle];
                });
