@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 namespace frontalis
 {
@@ -27,8 +28,9 @@ public:
         continue;
       }
       FacePose pose;
+      std::set<std::string> named;
       for (const auto& [key, value] : entry.pairs())
-        add(key, value, weights, pose);
+        add(key, value, weights, pose, named);
       for (auto& [muscle, weight] : pose.activation)
         weight = std::clamp(weight, -1.0, 1.0);
       if (!shared_ || !pose.activation.empty() || !pose.bones.empty())
@@ -46,7 +48,8 @@ public:
   }
 
 private:
-  void add(const std::string& key, const Node& value, const Bound& weights, FacePose& pose) const
+  void add(const std::string& key, const Node& value, const Bound& weights, FacePose& pose,
+           std::set<std::string>& named) const
   {
     if (key == "bones")
       return read_bones(value, pose.bones);
@@ -62,7 +65,10 @@ private:
       return;
     }
     for (const std::string& muscle : in_scene(key, value, names_.muscles))
-      pose.activation[muscle] += weight;
+      if (named.insert(muscle).second)
+        pose.activation[muscle] += weight;
+      else
+        value.fault("'{}' has an activation already; a muscle may stand once", muscle);
   }
 
   static void add_bone(const BonePose& added, double share, std::vector<BonePose>& poses)
@@ -87,18 +93,15 @@ private:
     return pose;
   }
 
-  /// The one of this name, or else the left and the right one.
+  /// Those that a name stands for and, of a shared file, that the scene has.
   std::vector<std::string> in_scene(const std::string& name, const Node& place, const Names& known) const
   {
-    std::vector<std::string> there;
-    for (const std::string& sided : { name + "_left", name + "_right" })
-      if (known.has(sided))
-        there.push_back(sided);
-    if (known.has(name) || (there.empty() && !shared_))
-      there = { name };
-    if (!shared_ && there[0] == name)
-      place.check_known(name, known);
-    return there;
+    std::vector<std::string> meant = known.both_sides(name);
+    if (!shared_)
+      place.check_known(meant[0], known);
+    else if (!known.has(meant[0]))
+      meant.clear();
+    return meant;
   }
 
   Scene& scene_;
