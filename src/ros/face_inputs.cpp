@@ -306,27 +306,28 @@ void FaceInputs::on_expression(const Expression& message)
          check_duration("onset", message.onset);
          check_duration("hold", message.hold);
          check_duration("release", message.release);
-         std::vector<double> sum(model_->muscles.size(), 0.0);
+         const std::vector<float> tone = rest_controls(*model_).activation;
+         std::vector<double> sum(tone.begin(), tone.end());
          for (std::size_t entry = 0; entry < message.name.size(); ++entry)
          {
            const double share = intensity.empty() ? 1 : intensity[entry];
            if (!(share >= 0 && share <= 1))
              throw Error(fmt::format("intensity of '{}' is {}; must be from 0 to 1", message.name[entry], share));
-           const auto activation = expression_activation(*model_, message.name[entry]);
+           const auto activation = expression_controls(*model_, message.name[entry]).activation;
            for (std::size_t muscle = 0; muscle < sum.size(); ++muscle)
-             sum[muscle] += share * activation[muscle];
+             sum[muscle] += share * (activation[muscle] - tone[muscle]);
          }
          const auto before = present(now);
          std::map<std::string, MuscleCommands::Course> courses;
          for (std::size_t muscle = 0; muscle < sum.size(); ++muscle)
          {
            const std::string& name = model_->muscles[muscle].name;
-           const double value = std::min(sum[muscle], 1.0), held = now + message.onset;
+           const double value = std::clamp(sum[muscle], 0.0, 1.0), held = now + message.onset;
            auto& course = courses[name];
            course = { { now, before.at(name) }, { held, value } };
            if (message.hold > 0)
              course.insert(course.end(),
-                           { { held + message.hold, value }, { held + message.hold + message.release, 0 } });
+                           { { held + message.hold, value }, { held + message.hold + message.release, tone[muscle] } });
          }
          command(topic, running, now, courses, now);
        });
