@@ -71,6 +71,7 @@ struct AccuracyProfile
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend
   std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
   std::string boundary = "staircase";     ///< where bones attach tissue: nodes near them; true: at their surface
+  std::string gaps = "glued";             ///< tissue on both sides of a gap thinner than a voxel; or parted
   MeasuredAccuracy measured;
 };
 

@@ -23,8 +23,8 @@ public:
   {
     edge_ = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
     positions_.reserve(model.nodes.size());
-    for (const auto& node : model.nodes)
-      positions_.push_back(frame.grid_point(model, node[0], node[1], node[2]));
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      positions_.push_back(frame.to_scene(to_vector(rest_position(model, n))));
   }
 
   /// Distances of nodes from a surface of a constraint or a load. `within` below 0 stands for the default.
