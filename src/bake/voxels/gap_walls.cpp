@@ -120,8 +120,8 @@ std::uint64_t GapWalls::enclosing(const Vector3d& p, const Vector3d& centre, std
   return at_centre;
 }
 
-bool GapWalls::part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q,
-                    const std::vector<Piece>& pieces) const
+GapWalls::Way GapWalls::way_out(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q,
+                                const std::vector<Piece>& pieces) const
 {
   struct Event
   {
@@ -138,7 +138,7 @@ bool GapWalls::part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& 
     if (way == 0)
       continue;
     if (static_cast<std::size_t>(piece.wall) >= bodies_ || count == 32)
-      return true;
+      return Way::and_in;
     const auto v = corners(mesh, mesh.triangles[piece.triangle]);
     const Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]);
     const double a = normal.dot(p - v[0]), b = normal.dot(q - v[0]);
@@ -151,10 +151,10 @@ bool GapWalls::part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& 
     enclosing = events[e].enters ? enclosing | events[e].bit : enclosing & ~events[e].bit;
     const bool tissue = is_tissue(enclosing);
     if (left && tissue)
-      return true;
+      return Way::and_in;
     left = left || !tissue;
   }
-  return false;
+  return left ? Way::out : Way::inside;
 }
 
 double GapWalls::gap_at(const Volumes& volumes, const Vector3d& p, const Vector3d& away, double widest) const

@@ -31,9 +31,25 @@ public:
                           const std::vector<Piece>& pieces) const;
   /// Whether tissue between p and q is interrupted: by a slit, or by something else with tissue behind it. `enclosing`:
   /// of p; `pieces`: at least those between the points.
-  bool part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const;
+  bool part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
+  {
+    return way_out(p, enclosing, q, pieces) == Way::and_in;
+  }
+
+  /// Whether the way from a point p of the tissue to q leaves the tissue or is cut by a slit.
+  bool leaves(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
+  {
+    return way_out(p, enclosing, q, pieces) != Way::inside;
+  }
 
 private:
+  enum class Way
+  {
+    inside,
+    out,     ///< leaves the tissue
+    and_in,  ///< leaves it and comes back, or is cut by a slit
+  };
+  Way way_out(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const;
   /// The conditions of a tissue volume; bits of bodies.
   struct Tissue
   {

@@ -283,13 +283,44 @@ void Gaps::part(Voxels& voxels, BakeMonitor& monitor)
         parted, moved, static_cast<int>(*std::max_element(flap_.begin(), flap_.end())), voxels.joints.size());
 }
 
-std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
+VoxelPlace Gaps::place_of(const Vector3d& p) const
 {
   const Vector3d at = (p - grid_.lower).cwiseQuotient(grid_.spacing).array().floor();
-  if (!(at.cwiseAbs().maxCoeff() < 1e6))
-    return std::nullopt;
-  const VoxelPlace middle{ { static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]),
-                             static_cast<std::int32_t>(at[2]) } };
+  VoxelPlace place{};
+  for (int a = 0; a < 3; ++a)
+    place[a] = static_cast<std::int32_t>(std::clamp(at[a], -1.0, 1e9));
+  return place;
+}
+
+bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) const
+{
+  const VoxelPlace place = place_of(centre);
+  const Tissue* const tissue = tissue_at(place);
+  if (tissue == nullptr || level(place) != Level::at_gap)
+    return true;
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < tissue->points.size(); ++i)
+    if (tissue->part[i] >= 0 && flap_[tissue->copies[tissue->part[i]]] == flap)
+      near.emplace_back((tissue->points[i] - point).squaredNorm(), i);
+  constexpr std::size_t most_looks = 8;
+  const auto looks = static_cast<std::ptrdiff_t>(std::min(near.size(), most_looks));
+  std::partial_sort(near.begin(), near.begin() + looks, near.end());
+  // surfaces of bone and the limits of tissue may be a little apart
+  const double tolerance = 0.1 * grid_.spacing.minCoeff();
+  return std::any_of(near.begin(), near.begin() + looks,
+                     [&](const auto& entry)
+                     {
+                       const Vector3d& x = tissue->points[entry.second];
+                       const double length = std::sqrt(entry.first);
+                       const Vector3d end = x + std::max(0.0, 1 - tolerance / length) * (point - x);
+                       return !walls_.leaves(x, tissue->enclosing[entry.second], end,
+                                             walls_.pieces_in(Box(x).extend(end)));
+                     });
+}
+
+std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
+{
+  const VoxelPlace middle = place_of(p);
   if (level(middle) != Level::at_gap)
     return std::nullopt;
   struct Found

@@ -35,6 +35,11 @@ public:
   };
   std::optional<Owner> owner(const Vector3d& p) const;
 
+  /// Whether the tissue of a voxel extends to a point of a surface, so that the surface may hold it: there is no gap in
+  /// between. `centre`: of the voxel, scene coordinates. True for voxels that are not near a gap.
+  bool extends_to(const Vector3d& centre, int flap, const Vector3d& point) const;
+  bool near_gap(const Vector3d& p) const { return level(place_of(p)) == Level::at_gap; }
+
 private:
   /// Tissue in a voxel.
   struct Tissue
@@ -64,6 +69,7 @@ private:
   Level level(const VoxelPlace& place) const;
   const Tissue* tissue_at(const VoxelPlace& place) const;
   std::size_t cell(const VoxelPlace& place) const;
+  VoxelPlace place_of(const Vector3d& p) const;
 
   const Scene& scene_;
   const Volumes& volumes_;

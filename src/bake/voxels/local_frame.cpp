@@ -86,10 +86,7 @@ std::int32_t LocalFrame::owner(const Model& model, const VoxelIndex& index, cons
   const Vector3d cell = to_local(found->centre).cwiseQuotient(to_vector(model.spacing)).array().floor();
   std::int32_t voxel = index.find({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
                                       static_cast<std::int32_t>(cell[2]) } });
-  const std::int32_t lowest = found->flap == 0 ? 0 : model.flaps[found->flap - 1].first;
-  const std::int32_t end =
-      static_cast<std::size_t>(found->flap) == model.flaps.size() ? model.size[2] : model.flaps[found->flap].first;
-  while (voxel >= 0 && (model.voxels[voxel][2] < lowest || model.voxels[voxel][2] >= end))
+  while (voxel >= 0 && flap_of(model, voxel) != found->flap)
     voxel = index.another(voxel);
   return voxel;
 }

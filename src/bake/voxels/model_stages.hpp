@@ -5,6 +5,13 @@
 namespace frontalis
 {
 
+/// Number of the flap that a voxel of the model is in, from 1; 0: the body.
+inline int flap_of(const Model& model, std::size_t voxel)
+{
+  const auto above = [&](const Model::Flap& flap) { return flap.first > model.voxels[voxel][2]; };
+  return static_cast<int>(std::find_if(model.flaps.begin(), model.flaps.end(), above) - model.flaps.begin());
+}
+
 /// Scene to local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node of the grid.
 struct LocalFrame
 {
