@@ -261,6 +261,8 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
     throw BackendUnavailable("backend cuda: the model has layers that are shells, which the CPU alone computes so far");
   if (!model->attached.empty())
     throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
+  if (!model->joints.empty())
+    throw BackendUnavailable("backend cuda: the model has parted gaps, which are computed on the CPU alone so far");
   return std::make_unique<TimeStepper>(std::move(model), settings,
                                        [&](const BackendInput& input)
                                        { return std::make_unique<cuda::CudaSolver>(input, remark); });

@@ -54,12 +54,6 @@ void expect_room(const Model& model, const VoxelCut& cut)
 
 }  // namespace
 
-std::array<double, 3> rest_position(const Model& model, std::int32_t node)
-{
-  const auto& n = model.nodes[node];
-  return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
-}
-
 Effects effects_of(const Model& model, const Discretisation& discretisation)
 {
   Effects effects = Effects::none;

@@ -19,8 +19,6 @@ namespace cuda
 /// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-std::array<double, 3> rest_position(const Model& model, std::int32_t node);
-
 /// The effects that a model's kernels must compute because of its voxels and its friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 

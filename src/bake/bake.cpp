@@ -3,6 +3,7 @@
 #include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/contact_bodies.hpp"
+#include "bake/voxels/gaps.hpp"
 #include "bake/voxels/self_contacts.hpp"
 #include "bake/voxels/shells.hpp"
 #include "frontalis/model/effects.hpp"
@@ -103,8 +104,9 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("voxels");
   Model model;
   LocalFrame frame;
+  Gaps gaps(scene, volumes, surfaces, grid);
   {
-    const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
+    Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
                                    attaching_surfaces(scene, surfaces), monitor);
     check_volumes(scene, volumes, voxels, monitor);
     check_layers(scene, volumes, voxels);
@@ -112,10 +114,11 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
                   "voxels or a smaller fill_min");
+    gaps.part(voxels, monitor);
     frame = assemble_voxels(grid, voxels, model);
+    frame.gaps = model.flaps.empty() ? nullptr : &gaps;
   }
   copy_settings(scene, frame, model);
-  build_nodes(model);
 
   monitor.begin("fibres");
   const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);
@@ -124,6 +127,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   restrict_nodes(scene, surfaces, fibres, frame, model, monitor);
   remove_islands(model, monitor);
   attach_nodes(scene, surfaces, frame, model, monitor);
+  settle_joints(model);
 
   add_fibres(scene, fibres, frame, model, monitor);
   scale_strength(scene, fibres, frame, model, report);

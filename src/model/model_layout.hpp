@@ -72,6 +72,12 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive("size", model.size);
   archive("voxels", model.voxels);
   archive("fill", model.fill);
+  if (archive.group_if(!model.flaps.empty(), "flaps"))
+  {
+    archive.table("flaps", model.flaps, Column{ "first", &Model::Flap::first }, Column{ "shift", &Model::Flap::shift });
+    archive.table("joints", model.joints, Column{ "node", &Model::Joint::node },
+                  Column{ "master", &Model::Joint::master });
+  }
 
   archive.table("materials", model.materials, Column{ "name", &Material::name }, Column{ "law", &Material::law },
                 Column{ "parameters", &Material::parameters }, Column{ "density", &Material::density },

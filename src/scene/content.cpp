@@ -116,7 +116,7 @@ void add_anatomy(const Scene& scene, Content& content)
     add_surface(surface, content);
   for (const Volume& v : scene.volumes)
     content.line("volume", v.name, v.closed_by, v.inside, v.outside, v.without, v.within, v.depth_min, v.depth_max,
-                 v.crop, v.material, v.priority, v.tissue);
+                 v.crop, v.material, v.priority, v.tissue, v.slits);
   for (const SceneMaterial& material : scene.materials)
   {
     content.line("material", material.name, material.law, material.density, material.parameters, material.families[0],
@@ -171,7 +171,7 @@ void add_numerics(const Scene& scene, Content& content)
   const MassScaling& scaling = profile.mass_scaling;
   content.line("accuracy", profile.voxel, profile.samples, profile.fill_min, profile.time_step_share, scaling.kind,
                scaling.factor, scaling.time_step, profile.assumed_strain, profile.integration, profile.precision,
-               profile.time_step, profile.boundary, profile.fibres, scaling.materials);
+               profile.time_step, profile.boundary, profile.fibres, profile.gaps, scaling.materials);
   content.line("profile", profile.name);
   for (const AccuracyProfile& known : scene.profiles)
     content.line("measured", known.name, known.measured.error, known.measured.cost, known.measured.machine);

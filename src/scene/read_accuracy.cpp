@@ -75,6 +75,7 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   choose("time_step", { "element", "assembled" }, profile.time_step);
   choose("boundary", { "staircase", "true" }, profile.boundary);
   choose("fibres", { "sampled", "spread" }, profile.fibres);
+  choose("gaps", { "glued", "parted" }, profile.gaps);
   if (const Node node_of_key = mapping.optional("measured"); node_of_key.given())
   {
     Mapping measured(node_of_key);

@@ -60,6 +60,8 @@ void read_volumes(const Node& node, Scene& scene, SceneNames& names)
     volume.inside = inside.references(names.surfaces);
     volume.outside = mapping.optional("outside").references(names.surfaces);
     volume.without = mapping.optional("without").references(names.surfaces);
+    const Node slits = mapping.optional("slits");
+    volume.slits = slits.references(names.surfaces);
     if (within.given())
       read_depth(within, volume, names);
     if (entry.is_mapping() && !closed_by.given() && !inside.given() && !within.given())
@@ -67,6 +69,8 @@ void read_volumes(const Node& node, Scene& scene, SceneNames& names)
 
     volume.crop = read_region(mapping.optional("crop"));
     volume.tissue = mapping.optional("tissue").boolean(false);
+    if (slits.given() && !volume.tissue)
+      slits.fault("found slits in a volume that is not tissue; must be in a volume with 'tissue: true'");
     const Node material = volume.tissue ? mapping.required("material", "the name of a material, as for all tissue")
                                         : mapping.optional("material");
     volume.material = material.reference(names.materials);

@@ -49,6 +49,22 @@ struct Model
   std::vector<std::array<std::int32_t, 3>> nodes;
   std::vector<std::array<std::int32_t, 8>> voxel_nodes;  ///< corner b = i + 2j + 4k
 
+  /// Planes of the grid with tissue from the second side of a gap, so that it shares no node with the first side: what
+  /// has k >= first rests `shift` planes lower.
+  struct Flap
+  {
+    std::int32_t first = 0;
+    std::int32_t shift = 0;
+  };
+  std::vector<Flap> flaps;  ///< ascending; empty without gaps
+  /// Two nodes that are one: where a flap continues in other tissue. Both rest at one place.
+  struct Joint
+  {
+    std::int32_t node = 0;
+    std::int32_t master = 0;  ///< not the node of another joint; it may have several nodes
+  };
+  std::vector<Joint> joints;
+
   // constraints
   std::vector<std::string> bones;
   std::vector<std::string> constraints;  ///< names, in the scene's order
@@ -132,10 +148,19 @@ struct Model
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
 
+/// Where a voxel or a node of the grid rests, in voxel edges from the origin: its own place, unless it is in a flap.
+inline std::array<std::int32_t, 3> rest_place(const Model& model, std::array<std::int32_t, 3> place)
+{
+  for (auto flap = model.flaps.rbegin(); flap != model.flaps.rend(); ++flap)
+    if (place[2] >= flap->first)
+      return { { place[0], place[1], place[2] - flap->shift } };
+  return place;
+}
+
 /// Position of a node at rest, local [m].
 inline std::array<double, 3> rest_position(const Model& model, std::size_t node)
 {
-  const auto& n = model.nodes[node];
+  const auto n = rest_place(model, model.nodes[node]);
   return { { n[0] * model.spacing[0], n[1] * model.spacing[1], n[2] * model.spacing[2] } };
 }
 

@@ -72,6 +72,7 @@ struct Volume
   std::vector<std::string> inside;
   std::vector<std::string> outside;
   std::vector<std::string> without;
+  std::vector<std::string> slits;  ///< surfaces, open or closed, at which the tissue is cut
   std::string within;
   double depth_min = 0;
   double depth_max = 0;

@@ -73,6 +73,7 @@ struct AccuracyProfile
   std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
   std::string fibres = "sampled";      ///< voxels that a muscle acts on: those that it fills; spread: around them too
   std::string boundary = "staircase";  ///< where bones attach tissue: nodes near them; true: at their surface
+  std::string gaps = "glued";          ///< tissue on both sides of a gap thinner than a voxel; or parted
   MeasuredAccuracy measured;
 };
 

@@ -36,7 +36,7 @@ public:
   MasterFinder(const LocalFrame& frame, const Model& model)
       : frame_(frame),
         model_(model),
-        index_(model.voxels, model.size),
+        index_(model),
         spacing_(to_vector(model.spacing)),
         edge_(spacing_.maxCoeff()),
         restricted_(model.nodes.size(), false)
@@ -70,7 +70,7 @@ public:
     if (candidate.node.surface >= 0)
       return candidate.side *
              level_at(model_.constraint_surfaces[candidate.node.surface].field, rest_position(model_, node));
-    const Vector3d p = frame_.grid_point(model_, model_.nodes[node][0], model_.nodes[node][1], model_.nodes[node][2]);
+    const Vector3d p = frame_.to_scene(rest(node));
     return candidate.side * candidate.surface->signed_distance(p, candidate.surface->tree().closest(p));
   }
 
@@ -109,7 +109,10 @@ private:
   /// Takes the corner nearest to y of a voxel with free corners as master.
   bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate) const
   {
-    const std::int32_t voxel = index_.find(place);
+    std::int32_t voxel = index_.find(place);
+    if (const std::int32_t owner = frame_.owner(model_, index_, y);
+        owner >= 0 && rest_place(model_, model_.voxels[owner]) == place)
+      voxel = owner;
     if (voxel < 0)
       return false;
     const auto& corners = model_.voxel_nodes[voxel];
@@ -148,8 +151,7 @@ public:
   {
     if (rigid.constraint < 0 || !attaches(scene_, scene_.constraints[rigid.constraint]))
       return std::nullopt;
-    const auto& n = model_.nodes[rigid.node];
-    const Vector3d p = frame_.grid_point(model_, n[0], n[1], n[2]);
+    const Vector3d p = frame_.to_scene(to_vector(rest_position(model_, rigid.node)));
     Candidate best;
     const auto [surface, nearest] = nearest_surface(rigid.constraint, p);
     best.surface = surface;
@@ -177,8 +179,7 @@ public:
       return std::nullopt;
     Candidate found;
     found.node = { sliding.node, 0, 0, -1, sliding.surface, sliding.constraint };
-    const auto& n = model_.nodes[sliding.node];
-    found.surface = nearest_surface(sliding.constraint, frame_.grid_point(model_, n[0], n[1], n[2])).first;
+    found.surface = nearest_surface(sliding.constraint, frame_.to_scene(to_vector(rest))).first;
     found.side = side_at(*found.surface, value.value);
     found.distance = found.side * value.value;
     const Vector3d gradient(value.gradient.x, value.gradient.y, value.gradient.z);

@@ -15,26 +15,41 @@ constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [
 class PointBinder
 {
 public:
-  PointBinder(const Model& model, double extrapolation)
-      : model_(model), index_(model.voxels, model.size), extrapolation_(extrapolation)
+  PointBinder(const Model& model, const LocalFrame& frame, double extrapolation)
+      : model_(model), frame_(frame), index_(model), extrapolation_(extrapolation)
   {
   }
 
   /// Returns false if no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
-  bool bind(const Vector3d& local, std::int32_t& voxel, std::array<float, 3>& coordinates) const
+  /// `inwards`: unit vector into the tissue, which tells on which side of a gap the point is.
+  bool bind(const Vector3d& local, const Vector3d& inwards, std::int32_t& voxel,
+            std::array<float, 3>& coordinates) const
   {
+    voxel = frame_.owner(model_, index_, local + 0.02 * model_.spacing[0] * inwards);
+    if (voxel >= 0)
+    {
+      set_coordinates(local, voxel, coordinates);
+      return true;
+    }
     VoxelPlace cell{};
     for (int a = 0; a < 3; ++a)
       cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
     voxel = index_.find(cell);
     if (voxel < 0)
       voxel = nearest(local, cell);
-    for (int a = 0; a < 3 && voxel >= 0; ++a)
-      coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - model_.voxels[voxel][a]);
+    if (voxel >= 0)
+      set_coordinates(local, voxel, coordinates);
     return voxel >= 0;
   }
 
 private:
+  void set_coordinates(const Vector3d& local, std::int32_t voxel, std::array<float, 3>& coordinates) const
+  {
+    const VoxelPlace place = rest_place(model_, model_.voxels[voxel]);
+    for (int a = 0; a < 3; ++a)
+      coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - place[a]);
+  }
+
   /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel.
   std::int32_t nearest(const Vector3d& local, const VoxelPlace& cell) const
   {
@@ -68,9 +83,26 @@ private:
   }
 
   const Model& model_;
+  const LocalFrame& frame_;
   VoxelIndex index_;
   double extrapolation_;
 };
+
+/// Unit vectors at the vertices of a surface, local axes, opposite to its normals.
+std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFrame& frame)
+{
+  std::vector<Vector3d> normals(surface.vertices.size(), Vector3d::Zero());
+  for (const Triangle& t : surface.triangles)
+  {
+    const auto v = corners(surface, t);
+    const Vector3d normal = frame.turn(Vector3d((v[2] - v[0]).cross(v[1] - v[0])));
+    for (const std::int32_t c : t)
+      normals[c] += normal;
+  }
+  for (Vector3d& normal : normals)
+    normal.normalize();
+  return normals;
+}
 
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
                     BakeMonitor& monitor)
@@ -79,9 +111,10 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   const std::size_t count = surface.vertices.size();
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
+  const std::vector<Vector3d> inwards = inward_normals(surface, frame);
   parallel_for(monitor, count, grain,
                [&](std::size_t v)
-               { binder.bind(frame.to_local(to_vector(surface.vertices[v])), voxel[v], coordinates[v]); });
+               { binder.bind(frame.to_local(to_vector(surface.vertices[v])), inwards[v], voxel[v], coordinates[v]); });
 
   BoundMesh bound;
   std::vector<bool> keep(surface.triangles.size(), true);
@@ -122,7 +155,9 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
           place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit));
     std::int32_t voxel = -1;
     std::array<float, 3> coordinates{};
-    if (!binder.bind(closest.point, voxel, coordinates))
+    const auto corner = corners(model.skin, model.skin.triangles[closest.triangle]);
+    const Vector3d inwards = (corner[2] - corner[0]).cross(corner[1] - corner[0]).normalized();
+    if (!binder.bind(closest.point, inwards, voxel, coordinates))
       throw Error(place + ": no voxel is near enough to carry it; raise the skin's 'extrapolation'");
     model.landmarks.push_back(landmark.name);
     model.landmark_positions.push_back(to_array(closest.point));
@@ -142,14 +177,14 @@ double extrapolation_of(const Scene& scene, const Model& model)
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
                     double extrapolation, BakeMonitor& monitor)
 {
-  return bind_mesh(whole, crop, frame, PointBinder(model, extrapolation), monitor);
+  return bind_mesh(whole, crop, frame, PointBinder(model, frame, extrapolation), monitor);
 }
 
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)
 {
   const double extrapolation = extrapolation_of(scene, model);
-  const PointBinder binder(model, extrapolation);
+  const PointBinder binder(model, frame, extrapolation);
 
   if (!scene.skin.surface.empty())
   {

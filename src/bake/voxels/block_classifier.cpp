@@ -37,14 +37,42 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
   voxels_.band_size = nothing_.band;
 }
 
-void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end)
+BlockState BlockClassifier::unknown() const
 {
   BlockState state;
   state.inside_body.assign(volumes_.bodies(), Answer::unknown);
   state.depth.resize(volumes_.depth_fields().size());
   state.inside_volume.assign(volumes_.entries().size(), Answer::unknown);
   state.in_sight.assign(volumes_.entries().size(), Answer::unknown);
-  visit(begin, end, state);
+  return state;
+}
+
+void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end) { visit(begin, end, unknown()); }
+
+void BlockClassifier::sample_alone(const VoxelPlace& place)
+{
+  const VoxelPlace end{ { place[0] + 1, place[1] + 1, place[2] + 1 } };
+  BlockState state = unknown();
+  const Box box(grid_.corner(place), grid_.corner(end));
+  decide(box, state);
+  sample(box, state);
+}
+
+std::vector<char> BlockClassifier::tissue_samples(const VoxelPlace& place)
+{
+  std::vector<char> tissue(offsets_.size(), 0);
+  is_tissue_ = &tissue;
+  sample_alone(place);
+  is_tissue_ = nullptr;
+  return tissue;
+}
+
+void BlockClassifier::add_part(const VoxelPlace& place, const std::vector<char>& chosen)
+{
+  chosen_ = &chosen;
+  sample_alone(place);
+  chosen_ = nullptr;
+  add_voxel(place, std::accumulate(share_.material.begin(), share_.material.end(), 0.0));
 }
 
 void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state)

@@ -38,10 +38,17 @@ public:
   /// Adds the voxels of the block from `begin` to `end` (exclusive).
   void visit(const VoxelPlace& begin, const VoxelPlace& end);
 
+  /// For each sample of a voxel whether it is tissue.
+  std::vector<char> tissue_samples(const VoxelPlace& place);
+  /// Adds the part of a voxel that the samples chosen represent. The voxel's fill is that part too.
+  void add_part(const VoxelPlace& place, const std::vector<char>& chosen);
+
   Voxels take() { return std::move(voxels_); }
 
 private:
+  BlockState unknown() const;
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
+  void sample_alone(const VoxelPlace& place);
 
   // These determine unknown entries of a block's state. decide() returns whether all entries are known then.
   bool decide(const Box& box, BlockState& state);
@@ -67,8 +74,10 @@ private:
   double fill_min_;
   const std::vector<const PreparedSurface*>& kept_at_;
   double voxel_volume_;
-  double reach_;                   ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;  ///< from the voxel's lower corner to the samples, in voxel edges
+  double reach_;                               ///< half the diagonal of a voxel [m]
+  std::vector<Vector3d> offsets_;              ///< from the voxel's lower corner to the samples, in voxel edges
+  const std::vector<char>* chosen_ = nullptr;  ///< samples that are looked at; null: all
+  std::vector<char>* is_tissue_ = nullptr;     ///< receives whether each sample is tissue; null: it is not asked for
   Voxels voxels_;
 
   /// Proportions of a voxel, or of each voxel of a uniform block, by index.

@@ -23,6 +23,15 @@ std::vector<std::int32_t> face_components(const Model& model, std::vector<std::s
       if (const std::int32_t other = index.find(place); other >= 0)
         parts.union_set(e, static_cast<std::size_t>(other));
     }
+  if (!model.joints.empty())
+  {
+    std::vector<std::size_t> voxel_of(model.nodes.size());
+    for (std::size_t e = 0; e < count; ++e)
+      for (const std::int32_t n : model.voxel_nodes[e])
+        voxel_of[n] = e;
+    for (const Model::Joint& joint : model.joints)
+      parts.union_set(voxel_of[joint.node], voxel_of[joint.master]);
+  }
   std::vector<std::int32_t> number(count, -1), component(count);
   for (std::size_t e = 0; e < count; ++e)
   {
@@ -96,6 +105,9 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
   renumber(model.rigid, number);
   renumber(model.sliding, number);
   renumber(model.prescribed, number);
+  renumber(model.joints, number);
+  for (Model::Joint& joint : model.joints)
+    joint.master = number[joint.master];
 }
 
 }  // namespace

@@ -1,17 +1,25 @@
 #pragma once
 
-#include "bake/voxels/voxelise.hpp"
+#include "bake/voxels/gaps.hpp"
 
 namespace frontalis
 {
 
 struct MuscleFibres;
 
+/// Number of the flap that a voxel of the model is in, from 1; 0: the body.
+inline int flap_of(const Model& model, std::size_t voxel)
+{
+  const auto above = [&](const Model::Flap& flap) { return flap.first > model.voxels[voxel][2]; };
+  return static_cast<int>(std::find_if(model.flaps.begin(), model.flaps.end(), above) - model.flaps.begin());
+}
+
 /// Scene to local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node of the grid.
 struct LocalFrame
 {
   int first = 0;
   Vector3d origin{ 0, 0, 0 };  ///< scene coordinates [m]
+  const Gaps* gaps = nullptr;  ///< null: there are none
 
   int scene_axis(int local) const { return (first + local) % 3; }
   /// Local components of a vector given by its scene components.
@@ -44,9 +52,11 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
+  /// The voxel whose tissue a point in local coordinates belongs to, if it is near a gap; -1 elsewhere.
+  std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
-    const auto& v = model.voxels[e];
+    const auto v = rest_place(model, model.voxels[e]);
     return grid_point(model, v[0] + 0.5, v[1] + 0.5, v[2] + 0.5);
   }
 };
@@ -54,7 +64,7 @@ struct LocalFrame
 // The stages of the bake that fill the model, in the order of the calls.
 
 /// Chooses as local x the axis along which rows of voxels are longest, sorts the voxels, and fills the model's grid,
-/// mixtures and muscle weights. add_fibres() fills the fibre directions.
+/// nodes, flaps with their joints, mixtures and muscle weights. add_fibres() fills the fibre directions.
 LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model);
 
 /// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.
@@ -88,6 +98,10 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 /// restricted, and the others become free. Sliding with friction stays as it is.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
+
+/// Makes joints of flaps agree with what restricts their nodes: nodes that are joined rest at one place and so are
+/// restricted alike, unless tissue on two sides of a gap is attached to a bone differently.
+void settle_joints(Model& model);
 
 /// Removes loose components. Only a common face connects voxels, not an edge or a corner. It keeps the largest
 /// component and all others with a restricted node and at least a hundredth of the largest one's voxels.

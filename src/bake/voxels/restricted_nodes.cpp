@@ -24,8 +24,15 @@ public:
   {
     edge_ = std::max({ model.spacing[0], model.spacing[1], model.spacing[2] });
     positions_.reserve(model.nodes.size());
-    for (const auto& node : model.nodes)
-      positions_.push_back(frame.grid_point(model, node[0], node[1], node[2]));
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      positions_.push_back(frame.to_scene(to_vector(rest_position(model, n))));
+    if (frame.gaps == nullptr)
+      return;
+    voxels_of_.resize(model.nodes.size());
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+      if (frame.gaps->near_gap(frame.voxel_centre(model, e)))
+        for (const std::int32_t n : model.voxel_nodes[e])
+          voxels_of_[n].push_back(e);
   }
 
   /// Distances of nodes from a surface of a constraint or a load. `within` below 0 stands for the default.
@@ -47,7 +54,8 @@ public:
                      return;
                    // on the far side, but not merely beside an open surface
                    const double height = (p - closest.point).dot(surface.pseudonormal(closest));
-                   if (closest.distance <= reach || side * height < -0.5 * closest.distance)
+                   if ((closest.distance <= reach || side * height < -0.5 * closest.distance) &&
+                       tissue_extends(n, closest.point))
                      distances[n] = surface.signed_distance(p, closest);
                  });
     return distances;
@@ -77,10 +85,21 @@ public:
   }
 
 private:
+  /// Whether the tissue around a node extends to a point of a surface, or there is a gap in between.
+  bool tissue_extends(std::size_t node, const Vector3d& point) const
+  {
+    if (voxels_of_.empty() || voxels_of_[node].empty())
+      return true;
+    return std::any_of(voxels_of_[node].begin(), voxels_of_[node].end(),
+                       [&](std::size_t e)
+                       { return frame_.gaps->extends_to(frame_.voxel_centre(model_, e), flap_of(model_, e), point); });
+  }
+
   const LocalFrame& frame_;
   const Model& model_;
   BakeMonitor& monitor_;
-  double edge_ = 0;  ///< longest of a voxel [m]
+  std::vector<std::vector<std::size_t>> voxels_of_;  ///< of each node those near gaps; empty without gaps
+  double edge_ = 0;                                  ///< longest of a voxel [m]
   std::vector<Vector3d> positions_;
   std::map<const PreparedSurface*, double> side_;
   std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;

@@ -47,7 +47,7 @@ void bind_self_contacts(const Scene& scene, const PreparedSurfaces& surfaces, co
                         BakeMonitor& monitor)
 {
   const double extrapolation = extrapolation_of(scene, model);
-  const VoxelIndex voxels(model.voxels, model.size);
+  const VoxelIndex voxels(model);
   for (const SceneConstraint& constraint : scene.constraints)
   {
     if (constraint.kind != SceneConstraint::Kind::self_contact)

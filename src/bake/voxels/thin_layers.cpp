@@ -2,6 +2,8 @@
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
+#include <numeric>
+
 namespace frontalis
 {
 namespace
@@ -44,7 +46,8 @@ class AreaInVoxels
 public:
   AreaInVoxels(const Model& model, const LocalFrame& frame, const Region& crop)
       : model_(model),
-        index_(model.voxels, model.size),
+        frame_(frame),
+        index_(model),
         area_(model.voxels.size(), 0),
         crop_(frame.to_local(to_vector(crop.lower)), frame.to_local(to_vector(crop.upper)))
   {
@@ -68,7 +71,17 @@ private:
     if (polygon.size() < 3)
       return;
     if (axis == 3)
-      return give(place, normal, frontalis::area(polygon));
+    {
+      const double amount = frontalis::area(polygon);
+      const Vector3d middle =
+          std::accumulate(polygon.begin(), polygon.end(), Vector3d(Vector3d::Zero())) / polygon.size();
+      const Vector3d inside = middle - 0.02 * model_.spacing[0] * normal.normalized();
+      if (const std::int32_t e = amount > 0 ? frame_.owner(model_, index_, inside) : -1; e >= 0)
+        area_[e] += amount;
+      else
+        give(place, normal, amount);
+      return;
+    }
     Box box;
     for (const Vector3d& p : polygon)
       box.extend(p);
@@ -104,6 +117,7 @@ private:
   }
 
   const Model& model_;
+  const LocalFrame& frame_;
   VoxelIndex index_;
   std::vector<double> area_;
   Box crop_;

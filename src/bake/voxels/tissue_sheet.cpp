@@ -273,7 +273,7 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std
   const TriangleMesh& mesh = surface.mesh();
   if (sphere_of(surface))
     return mesh;
-  const VoxelIndex tissue(model.voxels, model.size);
+  const VoxelIndex tissue(model);
   const Vector3d spacing = to_vector(model.spacing);
   // an almost empty voxel may be bone on the other side of a suture
   constexpr double least_fill = 0.2;

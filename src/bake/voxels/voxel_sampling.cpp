@@ -14,9 +14,11 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
 
   const double share = 1.0 / static_cast<double>(offsets_.size());
   std::vector<Answer> inside(state.inside_volume.size());
-  for (const Vector3d& offset : offsets_)
+  for (std::size_t s = 0; s < offsets_.size(); ++s)
   {
-    const Vector3d p = box.min() + offset.cwiseProduct(grid_.spacing);
+    if (chosen_ != nullptr && (*chosen_)[s] == 0)
+      continue;
+    const Vector3d p = box.min() + offsets_[s].cwiseProduct(grid_.spacing);
     std::fill(body_here_.begin(), body_here_.end(), std::int8_t{ -1 });
     std::fill(depth_here_.begin(), depth_here_.end(), std::numeric_limits<double>::quiet_NaN());
 
@@ -30,6 +32,8 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
     }
     if (!tissue)
       continue;
+    if (is_tissue_ != nullptr)
+      (*is_tissue_)[s] = 1;
     for (std::size_t v = 0; v < inside.size(); ++v)
     {
       const Volumes::Entry& entry = volumes_.entries()[v];

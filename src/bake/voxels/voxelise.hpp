@@ -42,6 +42,15 @@ struct Voxels
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
   Shares materials, muscles;
+  /// Empty, or the flap of each voxel (Model::flaps); 0: the body. Voxels of different flaps may have the same place.
+  std::vector<std::int8_t> flap;
+  /// Where voxels of different flaps are joined: both and a common point of the grid. The first is of the lower flap.
+  struct Joint
+  {
+    std::uint32_t a = 0, b = 0;
+    VoxelPlace at{};
+  };
+  std::vector<Joint> joints;
   /// For each volume of the scene its size in the tissue [m3], before voxels with too little tissue are left out.
   std::vector<double> volume_size;
   /// For each volume with layers the size of each band and, last, of the rest of the volume [m3].

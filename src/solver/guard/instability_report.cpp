@@ -115,9 +115,10 @@ InstabilityReport describe(const Model& model, Instability kind, double time, st
   report.time = time;
   report.voxel = voxel;
   report.jacobian = jacobian;
+  const auto place = rest_place(model, model.voxels[voxel]);
   std::array<double, 3> centre;
   for (int axis = 0; axis < 3; ++axis)
-    centre[axis] = (model.voxels[voxel][axis] + 0.5) * model.spacing[axis];
+    centre[axis] = (place[axis] + 0.5) * model.spacing[axis];
   report.scene = model.to_scene(centre);
   report.face = model.to_face(centre);
   const auto materials = by_weight(model.mixture_begin[voxel], model.mixture_begin[voxel + 1],

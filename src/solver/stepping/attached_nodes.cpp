@@ -128,6 +128,8 @@ AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>
   for (const ConstraintSurface& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
   std::vector<AttachedNode> nodes = model.attached;
+  for (const Model::Joint& joint : model.joints)
+    nodes.push_back({ joint.node, joint.master, 1, -1, -1, -1 });
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const AttachedNode& a, const AttachedNode& b) { return a.master < b.master; });
   for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end)

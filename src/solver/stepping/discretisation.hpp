@@ -93,7 +93,9 @@ private:
 /// The corner of the grid opposite to its origin [m].
 inline std::array<double, 3> far_corner(const Model& model)
 {
-  return { { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] } };
+  const auto place = rest_place(model, { { model.size[0], model.size[1], model.size[2] } });
+  const std::int32_t top = model.flaps.empty() ? place[2] : std::max(place[2], model.flaps.front().first - 1);
+  return { { place[0] * model.spacing[0], place[1] * model.spacing[1], top * model.spacing[2] } };
 }
 
 }  // namespace frontalis

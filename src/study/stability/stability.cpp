@@ -53,8 +53,8 @@ bool Trial::passed() const
 std::vector<StabilityCase> stability_cases(const std::string& folder)
 {
   std::vector<StabilityCase> all;
-  for (const auto& family :
-       { hard_materials(), hard_shapes(), hard_muscles(), hard_constraints(), hard_contacts(), hard_times() })
+  for (const auto& family : { hard_materials(), hard_shapes(), hard_muscles(), hard_constraints(), hard_contacts(),
+                              hard_slits(), hard_times() })
     for (const auto& [name, play] : family)
     {
       const CaseFile file((std::filesystem::path(folder) / (name + ".yaml")).string());

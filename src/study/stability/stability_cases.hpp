@@ -35,6 +35,7 @@ CaseFunctions hard_shapes();
 CaseFunctions hard_muscles();
 CaseFunctions hard_constraints();
 CaseFunctions hard_contacts();
+CaseFunctions hard_slits();
 CaseFunctions hard_times();
 
 /// A motion under the guard. Its energies, smallest J and hourglass energy are recorded in the case's trial.

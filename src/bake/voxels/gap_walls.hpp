@@ -1,0 +1,68 @@
+#pragma once
+
+#include "bake/voxels/voxelise.hpp"
+
+namespace frontalis
+{
+
+/// The surfaces that separate tissue: those that bound tissue volumes, and slits. Scene coordinates.
+class GapWalls
+{
+public:
+  /// A triangle of a wall.
+  struct Piece
+  {
+    std::int32_t wall = -1, triangle = -1;
+  };
+
+  /// Throws Error if more than 64 surfaces bound the tissue.
+  GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces);
+
+  /// For each cell of the grid, in the order of places, whether a slit passes through it or, with `thin_gaps`, a gap
+  /// that is less than 2.2 voxel edges wide across a wall.
+  std::vector<char> cells_with_gaps(const Volumes& volumes, const Grid& grid, bool thin_gaps,
+                                    BakeMonitor& monitor) const;
+
+  std::vector<Piece> pieces_in(const Box& box) const;
+  /// The bodies that enclose a point, one bit each.
+  std::uint64_t enclosing(const Vector3d& p) const;
+  /// The same for a point p of a box, from those that enclose its centre and the pieces in the box.
+  std::uint64_t enclosing(const Vector3d& p, const Vector3d& centre, std::uint64_t at_centre,
+                          const std::vector<Piece>& pieces) const;
+  /// Whether tissue between p and q is interrupted: by a slit, or by something else with tissue behind it. `enclosing`:
+  /// of p; `pieces`: at least those between the points.
+  bool part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
+  {
+    return way_out(p, enclosing, q, pieces) == Way::and_in;
+  }
+
+  /// Whether the way from a point p of the tissue to q leaves the tissue or is cut by a slit.
+  bool leaves(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
+  {
+    return way_out(p, enclosing, q, pieces) != Way::inside;
+  }
+
+private:
+  enum class Way
+  {
+    inside,
+    out,     ///< leaves the tissue
+    and_in,  ///< leaves it and comes back, or is cut by a slit
+  };
+  Way way_out(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const;
+  /// The conditions of a tissue volume; bits of bodies.
+  struct Tissue
+  {
+    std::uint64_t closed_by = 0, inside = 0, outside = 0;
+  };
+  bool is_tissue(std::uint64_t enclosing) const;
+  /// Width of the gap that begins at p, on a wall, along the unit vector `away` [m]; 0: there is none.
+  double gap_at(const Volumes& volumes, const Vector3d& p, const Vector3d& away, double widest) const;
+
+  std::vector<const PreparedSurface*> walls_;  ///< bodies, then slits
+  std::vector<double> sign_;                   ///< of the normals that point out of the tissue, for each body
+  std::size_t bodies_ = 0;
+  std::vector<Tissue> tissue_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,195 @@
+// Gaps and slits that are thinner than voxels.
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <numeric>
+#include <set>
+
+namespace
+{
+
+using namespace frontalis;
+
+SceneConstraint held(const std::string& surface)
+{
+  SceneConstraint out;
+  out.name = "hold_" + surface;
+  out.surfaces = { surface };
+  return out;
+}
+
+/// Two blocks of 12 x 12 mm, one `gap` [m] above the other, held at their far sides. The gap lies within voxels.
+Scene two_blocks(double gap, const std::string& gaps, double height = 7.3e-3)
+{
+  Scene scene = plain_scene(3e-3);
+  scene.accuracy.gaps = gaps;
+  scene.accuracy.fill_min = 0.02;
+  const double z = height + gap;
+  scene.surfaces = { box_surface("lower", { 6e-3, 6e-3, 0.5 * height }, { 12e-3, 12e-3, height }, 1e-3),
+                     box_surface("upper", { 6e-3, 6e-3, z + 5e-3 }, { 12e-3, 12e-3, 10e-3 }, 1e-3),
+                     box_surface("floor", { 6e-3, 6e-3, -1e-3 }, { 20e-3, 20e-3, 2e-3 }),
+                     box_surface("roof", { 6e-3, 6e-3, z + 11e-3 }, { 20e-3, 20e-3, 2e-3 }) };
+  scene.volumes = { volume_inside("below", { "lower" }, "fat", true),
+                    volume_inside("above", { "upper" }, "muscle", true) };
+  scene.constraints = { held("floor"), held("roof") };
+  return scene;
+}
+
+/// A block of 24 x 12 x 12 mm with a slit from its side x = 0 to x = 12 mm at the height `z` [m].
+Scene slit_block(double z, double voxel = 3e-3, bool slit = true)
+{
+  Scene scene = plain_scene(voxel);
+  const std::string file =
+      std::filesystem::temp_directory_path() / ("slit" + std::to_string(getpid()) + std::to_string(z) + ".obj");
+  TriangleMesh mesh;
+  for (const double x : { -1e-3, 12e-3 })
+    for (const double y : { -1e-3, 13e-3 })
+      mesh.vertices.push_back({ x, y, z });
+  mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
+  write_obj(mesh, file, [](const auto&) { return true; });
+  scene.surfaces = { box_surface("block", { 12e-3, 6e-3, 6e-3 }, { 24e-3, 12e-3, 12e-3 }, 1e-3),
+                     file_surface("slit", file) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  if (slit)
+    scene.volumes[0].slits = { "slit" };
+  scene.skin.surface = "block";
+  return scene;
+}
+
+/// Number of the body that each node belongs to; nodes of a voxel and joined nodes are of one body.
+std::vector<std::size_t> bodies_of(const Model& model)
+{
+  std::vector<std::size_t> body(model.nodes.size());
+  std::iota(body.begin(), body.end(), std::size_t{ 0 });
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    const auto unite = [&](std::int32_t a, std::int32_t b)
+    {
+      std::size_t &x = body[static_cast<std::size_t>(a)], &y = body[static_cast<std::size_t>(b)];
+      changed = changed || x != y;
+      x = y = std::min(x, y);
+    };
+    for (const auto& corners : model.voxel_nodes)
+      for (const std::int32_t n : corners)
+        unite(corners[0], n);
+    for (const Model::Joint& joint : model.joints)
+      unite(joint.node, joint.master);
+  }
+  return body;
+}
+
+TEST(Gaps, ThinGapKeepsBlocksApart)
+{
+  for (const double gap : { 0.05e-3, 0.5e-3, 0.8e-3, 2e-3, 4e-3 })
+  {
+    const Model glued = bake(two_blocks(gap, "glued")), parted = bake(two_blocks(gap, "parted"));
+    const auto bodies = bodies_of(parted);
+    EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u) << gap;
+    // the tissue is the same, and no voxel has tissue of both blocks
+    for (const char* const name : { "fat", "muscle" })
+      EXPECT_NEAR(tissue_volume(parted, name) / tissue_volume(glued, name), 1, 1e-5) << gap;
+    for (std::size_t e = 0; e < parted.voxels.size(); ++e)
+      EXPECT_EQ(parted.mixture_begin[e + 1] - parted.mixture_begin[e], 1) << gap;
+    EXPECT_EQ(parted.rigid.size(), glued.rigid.size()) << gap;
+  }
+}
+
+TEST(Gaps, BoneHoldsTheTissueThatItTouches)
+{
+  // a gum of 1.5 mm on bone, and a lip over it
+  const Model model = bake(two_blocks(0.5e-3, "parted", 1.5e-3));
+  std::vector<bool> gum(model.nodes.size(), false);
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (const std::int32_t n : model.voxel_nodes[e])
+      if (model
+              .materials[static_cast<std::size_t>(
+                  model.mixture_material[static_cast<std::size_t>(model.mixture_begin[e])])]
+              .name == "fat")
+        gum[static_cast<std::size_t>(n)] = true;
+  std::size_t held = 0;
+  for (const RigidNode& node : model.rigid)
+    if (model.constraints[static_cast<std::size_t>(node.constraint)] == "hold_floor")
+    {
+      EXPECT_TRUE(gum[static_cast<std::size_t>(node.node)]);
+      ++held;
+    }
+  EXPECT_EQ(held, 25u);
+}
+
+TEST(Gaps, SlitDoublesEachNodeOnItOnce)
+{
+  // through voxels, and along a plane of the grid; both end at a plane of the grid
+  for (const double z : { 7e-3, 6e-3 })
+  {
+    const Model whole = bake(slit_block(z, 3e-3, false)), cut = bake(slit_block(z));
+    const bool in_plane = z == 6e-3;
+    // 4 x 4 voxels are doubled if the slit passes through them
+    EXPECT_EQ(cut.voxels.size(), whole.voxels.size() + (in_plane ? 0u : 16u)) << z;
+    EXPECT_NEAR(tissue_volume(cut) / tissue_volume(whole), 1, 1e-6) << z;
+    // joints count as one node; 4 x 5 nodes per layer are not at the slit's end
+    EXPECT_EQ(cut.nodes.size() - cut.joints.size(), whole.nodes.size() + (in_plane ? 20u : 40u)) << z;
+    const auto bodies = bodies_of(cut);
+    EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 1u) << z;
+    for (const Model::Joint& joint : cut.joints)
+      EXPECT_EQ(rest_position(cut, static_cast<std::size_t>(joint.node)),
+                rest_position(cut, static_cast<std::size_t>(joint.master)));
+  }
+}
+
+TEST(Gaps, PointsFollowTheirOwnSide)
+{
+  const double z = 7.3e-3;
+  const Model cut = bake(slit_block(z));
+  // if what is above the slit moved up and the rest down, each vertex beside it would move with its side
+  std::vector<double> side(cut.voxels.size());
+  std::size_t beside = 0;
+  for (std::size_t v = 0; v < cut.skin.vertices.size(); ++v)
+  {
+    const Vector3 p = transformed(cut.to_scene, cut.skin.vertices[v]);
+    if (p[0] > 11e-3 || std::abs(p[2] - z) > 2.9e-3)
+      continue;
+    double& of_voxel = side[static_cast<std::size_t>(cut.skin_binding.voxel[v])];
+    const double of_point = p[2] > z ? 1 : -1;
+    EXPECT_TRUE(of_voxel == 0 || of_voxel == of_point) << p[0] << " " << p[1] << " " << p[2];
+    of_voxel = of_point;
+    ++beside;
+  }
+  EXPECT_GT(beside, 20u);
+}
+
+TEST(Gaps, WithoutAGapNothingChanges)
+{
+  Scene scene = slit_block(7e-3, 2e-3, false);
+  scene.surfaces.push_back(box_surface("floor", { 12e-3, 6e-3, -1e-3 }, { 60e-3, 60e-3, 2e-3 }));
+  scene.constraints = { held("floor") };
+  const Model glued = bake(scene);
+  scene.accuracy.gaps = "parted";
+  Model parted = bake(scene);
+  parted.scene_hash = glued.scene_hash;
+  const std::string file = std::filesystem::temp_directory_path() / ("gaps" + std::to_string(getpid()));
+  const auto bytes = [&](const Model& model)
+  {
+    write_model(model, file);
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  EXPECT_EQ(bytes(glued), bytes(parted));
+  // a model with flaps is read as it was written
+  const Model cut = bake(slit_block(7e-3));
+  write_model(cut, file);
+  const Model read = read_model(file);
+  ASSERT_EQ(read.flaps.size(), 1u);
+  EXPECT_EQ(read.flaps[0].first, cut.flaps[0].first);
+  EXPECT_EQ(read.joints.size(), cut.joints.size());
+  EXPECT_EQ(read.voxel_nodes, cut.voxel_nodes);
+}
+
+}  // namespace

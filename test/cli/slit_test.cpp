@@ -1,0 +1,118 @@
+// A slit of zero width in a block that is pulled: how it opens.
+
+#include "frontalis/solver/solver.hpp"
+
+#include "bake/scene_pieces.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace
+{
+
+using namespace frontalis;
+
+constexpr std::array<double, 4> places{ 1e-3, 5e-3, 10e-3, 14e-3 };  // along the slit, which is 18 mm long
+
+SceneConstraint held(const std::string& surface, const std::string& bone)
+{
+  SceneConstraint out;
+  out.name = surface;
+  out.surfaces = { surface };
+  out.bone = bone;
+  return out;
+}
+
+/// A block of 36 x 6 x 24 mm with a slit from its side x = 0, and landmarks on both sides of the slit.
+Scene slit_block(double voxel, double z)
+{
+  Scene scene = plain_scene(voxel);
+  scene.accuracy.assumed_strain = true;
+  const std::string file = std::filesystem::temp_directory_path() / ("opening" + std::to_string(getpid()) + ".obj");
+  TriangleMesh mesh;
+  for (const double x : { -1e-3, 18e-3 })
+    for (const double y : { -1e-3, 7e-3 })
+      mesh.vertices.push_back({ x, y, z });
+  mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
+  write_obj(mesh, file, [](const auto&) { return true; });
+  scene.surfaces = { box_surface("block", { 18e-3, 3e-3, 12e-3 }, { 36e-3, 6e-3, 24e-3 }),
+                     box_surface("floor", { 18e-3, 3e-3, -1e-3 }, { 60e-3, 60e-3, 2e-3 }),
+                     box_surface("roof", { 18e-3, 3e-3, 25e-3 }, { 60e-3, 60e-3, 2e-3 }), file_surface("slit", file) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  scene.volumes[0].slits = { "slit" };
+  scene.constraints = { held("floor", ""), held("roof", "lid") };
+  for (SceneConstraint& constraint : scene.constraints)
+    constraint.within = 0.2e-3;
+  scene.skin.surface = "block";
+  for (const double x : places)
+    for (const double height : { z - 0.01e-3, z + 0.01e-3 })
+      scene.landmarks.push_back({ std::to_string(x) + (height < z ? " below" : " above"), { x, 0, height } });
+  return scene;
+}
+
+/// Width of the slit at its places after its upper side was lifted by 2 mm [m].
+std::vector<double> opening(const Model& model, const std::string& backend)
+{
+  const auto solver = make_solver(std::make_shared<const Model>(model), { backend, 0, 0 });
+  Controls lifted;
+  lifted.bone.resize(1);
+  for (std::size_t a = 0; a < 3; ++a)
+    lifted.bone[0].translation[a] = 2e-3 * model.to_scene.rotation[6 + a];
+  solver->advance(0.02, lifted);
+  EXPECT_TRUE(solver->settle(lifted, 2e-3, 5).reached);
+  SkinState skin;
+  solver->skin(skin);
+  std::vector<double> width;
+  for (std::size_t p = 0; p < skin.landmarks.size(); p += 2)
+  {
+    const auto z = [&](std::size_t n)
+    {
+      Vector3 at;
+      for (std::size_t a = 0; a < 3; ++a)
+        at[a] = static_cast<double>(skin.landmarks[n][a]);
+      return transformed(model.to_scene, at)[2];
+    };
+    width.push_back(z(p + 1) - z(p));
+  }
+  return width;
+}
+
+TEST(Slit, OpensToOneShapeAtAnyVoxelSize)
+{
+  // along planes of all grids, and through voxels
+  for (const double height : { 12e-3, 11.3e-3 })
+  {
+    const std::vector<double> fine = opening(bake(slit_block(1e-3, height)), "cpu");
+    ASSERT_EQ(fine.size(), places.size());
+    EXPECT_GT(fine[0], 1e-3);
+    for (const double voxel : { 2e-3, 3e-3 })
+    {
+      const std::vector<double> coarse = opening(bake(slit_block(voxel, height)), "cpu");
+      for (std::size_t p = 0; p < places.size(); ++p)
+        EXPECT_NEAR(coarse[p], fine[p], 0.1 * fine[0]) << height << " " << voxel << " at " << places[p];
+    }
+  }
+}
+
+TEST(Slit, JointsAreOneNodeOnEachBackend)
+{
+  const Model model = bake(slit_block(3e-3, 11.3e-3));
+  ASSERT_FALSE(model.joints.empty());
+  const std::vector<double> cpu = opening(model, "cpu"), reference = opening(model, "reference");
+  for (std::size_t p = 0; p < places.size(); ++p)
+    EXPECT_NEAR(cpu[p], reference[p], 0.01 * reference[0]);
+  const auto solver = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
+  Controls lifted;
+  lifted.bone.resize(1);
+  lifted.bone[0].translation = { 1e-3, -1e-3, 2e-3 };
+  solver->advance(0.01, lifted);
+  std::vector<std::array<double, 3>> u;
+  solver->displacements(u);
+  for (const Model::Joint& joint : model.joints)
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_NEAR(u[static_cast<std::size_t>(joint.node)][a], u[static_cast<std::size_t>(joint.master)][a], 1e-12);
+}
+
+}  // namespace
