@@ -5,13 +5,13 @@ namespace frontalis
 {
 
 void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_t);
-void shell_kernel_avx512(const ShellArguments<float>&, std::int32_t, std::int32_t);
+ShellKernels<float> shell_kernels_avx512();
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
   return { CpuKernelBody<xsimd::avx512bw, float>::run,
            CpuKernelBody<xsimd::avx512bw, double>::run,
-           { slide_kernel_avx512, shell_kernel_avx512 },
+           { slide_kernel_avx512, shell_kernels_avx512() },
            CpuMonitor<xsimd::avx512bw>::run,
            name };
 }

@@ -5,13 +5,13 @@ namespace frontalis
 {
 
 void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
-void shell_kernel_baseline(const ShellArguments<float>&, std::int32_t, std::int32_t);
+ShellKernels<float> shell_kernels_baseline();
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
   return { CpuKernelBody<xsimd::default_arch, float>::run,
            CpuKernelBody<xsimd::default_arch, double>::run,
-           { slide_kernel_baseline, shell_kernel_baseline },
+           { slide_kernel_baseline, shell_kernels_baseline() },
            CpuMonitor<xsimd::default_arch>::run,
            name };
 }

@@ -11,7 +11,7 @@ template <class Real>
 struct PartKernels
 {
   SlideKernel<Real> slide = slide_plainly<Real>;
-  ShellKernel<Real> shell = shell_plainly<Real>;
+  ShellKernels<Real> shell = plain_shell_kernels<Real>();
 };
 
 }  // namespace frontalis

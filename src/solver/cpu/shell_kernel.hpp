@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace frontalis
 {
@@ -19,19 +22,47 @@ struct ShellBlock
   std::int32_t vertex[6][width];
 };
 
-/// The forces of blocks [first, last) at the displacements u of vertices. Plain pointers, as for CpuKernel.
+/// Weighted sums of vectors: the interpolation of bound points and its transpose. Sums are computed in blocks of
+/// `width`, one per lane; a block has as many rows as its longest sum, and shorter ones have rows of weight 0.
 template <class Real>
-struct ShellArguments
+struct WeightedSums
 {
-  const ShellBlock<Real>* blocks;
-  const Real* u[3];
-  Real* forces;  ///< [block][vertex of the triangle][axis][lane] [N]
-};
-template <class Real>
-using ShellKernel = void (*)(const ShellArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+  static constexpr int width = 16;
+  struct Row
+  {
+    std::int32_t index[width];
+    Real weight[width];
+  };
+  using Terms = std::vector<std::pair<std::int32_t, Real>>;
 
-/// The kernel without SIMD, in any precision.
+  WeightedSums() = default;
+  explicit WeightedSums(const std::vector<Terms>& sums);
+
+  std::int32_t blocks() const { return static_cast<std::int32_t>(begin.size()) - 1; }
+
+  std::vector<std::int32_t> begin{ 0 };  ///< first row of each block, and the number of rows
+  std::vector<Row> rows;
+};
+
+/// The components x, y, z of vectors.
 template <class Real>
-void shell_plainly(const ShellArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+using ConstComponents = std::array<const Real*, 3>;
+template <class Real>
+using Components = std::array<Real*, 3>;
+
+template <class Real>
+struct ShellKernels
+{
+  /// Forces of blocks [first, last) at the displacements u of vertices, as [block][vertex of the triangle][axis][lane].
+  void (*forces)(const ShellBlock<Real>* blocks, const ConstComponents<Real>& u, Real* forces, std::int32_t first,
+                 std::int32_t last);
+  /// Blocks [first, last) of the sums of `in`; writes whole blocks to `out`.
+  void (*sum)(const WeightedSums<Real>& sums, const ConstComponents<Real>& in, const Components<Real>& out,
+              std::int32_t first, std::int32_t last);
+};
+
+/// The kernels without SIMD, in any precision.
+template <class Real>
+ShellKernels<Real> plain_shell_kernels();
 
 }  // namespace frontalis

@@ -3,9 +3,10 @@
 namespace frontalis
 {
 
-void shell_kernel_avx2(const ShellArguments<float>& arguments, std::int32_t first, std::int32_t last)
+ShellKernels<float> shell_kernels_avx2()
 {
-  ShellKernelBody<ShellLanes<xsimd::fma3<xsimd::avx2>>>::run(arguments, first, last);
+  using Body = ShellKernelBody<ShellLanes<xsimd::fma3<xsimd::avx2>>>;
+  return { Body::forces, Body::sum };
 }
 
 }  // namespace frontalis

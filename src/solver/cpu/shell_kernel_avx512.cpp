@@ -3,9 +3,10 @@
 namespace frontalis
 {
 
-void shell_kernel_avx512(const ShellArguments<float>& arguments, std::int32_t first, std::int32_t last)
+ShellKernels<float> shell_kernels_avx512()
 {
-  ShellKernelBody<ShellLanes<xsimd::avx512bw>>::run(arguments, first, last);
+  using Body = ShellKernelBody<ShellLanes<xsimd::avx512bw>>;
+  return { Body::forces, Body::sum };
 }
 
 }  // namespace frontalis

@@ -3,9 +3,10 @@
 namespace frontalis
 {
 
-void shell_kernel_baseline(const ShellArguments<float>& arguments, std::int32_t first, std::int32_t last)
+ShellKernels<float> shell_kernels_baseline()
 {
-  ShellKernelBody<ShellLanes<xsimd::default_arch>>::run(arguments, first, last);
+  using Body = ShellKernelBody<ShellLanes<xsimd::default_arch>>;
+  return { Body::forces, Body::sum };
 }
 
 }  // namespace frontalis

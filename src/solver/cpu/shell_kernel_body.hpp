@@ -15,7 +15,8 @@ struct ShellKernelBody
   using Batch = typename Lanes::Batch;
   using Block = ShellBlock<Real>;
   using Vector = physics::Vec3<Batch>;
-  static_assert(Block::width % Lanes::count == 0, "a block is a whole number of batches");
+  static_assert(Block::width % Lanes::count == 0 && WeightedSums<Real>::width % Lanes::count == 0,
+                "a block is a whole number of batches");
 
   static FRONTALIS_LAW physics::ShellTriangle<Batch> load(const Block& b, int lane)
   {
@@ -39,27 +40,52 @@ struct ShellKernelBody
     return t;
   }
 
-  static void run(const ShellArguments<Real>& g, std::int32_t first, std::int32_t last)
+  static void forces(const Block* blocks, const ConstComponents<Real>& from, Real* out, std::int32_t first,
+                     std::int32_t last)
   {
     for (auto block = first; block < last; ++block)
       for (int lane = 0; lane < Block::width; lane += Lanes::count)
       {
-        const Block& b = g.blocks[block];
+        const Block& b = blocks[block];
         Vector u[6];
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-          u[i] = { Lanes::gather(g.u[0], b.vertex[i] + lane), Lanes::gather(g.u[1], b.vertex[i] + lane),
-                   Lanes::gather(g.u[2], b.vertex[i] + lane) };
-        const auto out = physics::shell_forces(load(b, lane), u);
-        Real* const force = g.forces + std::ptrdiff_t{ block } * 18 * Block::width + lane;
+          u[i] = gathered(from, b.vertex[i] + lane);
+        const auto reaction = physics::shell_forces(load(b, lane), u);
+        Real* const force = out + std::ptrdiff_t{ block } * 18 * Block::width + lane;
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-        {
-          Lanes::store(out.force[i].x, force + (3 * i) * Block::width);
-          Lanes::store(out.force[i].y, force + (3 * i + 1) * Block::width);
-          Lanes::store(out.force[i].z, force + (3 * i + 2) * Block::width);
-        }
+          store(reaction.force[i], { force + (3 * i) * Block::width, force + (3 * i + 1) * Block::width,
+                                     force + (3 * i + 2) * Block::width });
       }
+  }
+
+  static void sum(const WeightedSums<Real>& sums, const ConstComponents<Real>& in, const Components<Real>& out,
+                  std::int32_t first, std::int32_t last)
+  {
+    constexpr int width = WeightedSums<Real>::width;
+    for (auto block = first; block < last; ++block)
+      for (int lane = 0; lane < width; lane += Lanes::count)
+      {
+        const Batch none = physics::Number<Batch>::of(0);
+        Vector sum{ none, none, none };
+        for (auto r = sums.begin[block]; r < sums.begin[block + 1]; ++r)
+          sum = sum + Lanes::load(sums.rows[r].weight + lane) * gathered(in, sums.rows[r].index + lane);
+        const std::ptrdiff_t at = std::ptrdiff_t{ block } * width + lane;
+        store(sum, { out[0] + at, out[1] + at, out[2] + at });
+      }
+  }
+
+private:
+  static FRONTALIS_LAW Vector gathered(const ConstComponents<Real>& from, const std::int32_t* index)
+  {
+    return { Lanes::gather(from[0], index), Lanes::gather(from[1], index), Lanes::gather(from[2], index) };
+  }
+  static FRONTALIS_LAW void store(const Vector& v, const Components<Real>& out)
+  {
+    Lanes::store(v.x, out[0]);
+    Lanes::store(v.y, out[1]);
+    Lanes::store(v.z, out[2]);
   }
 };
 

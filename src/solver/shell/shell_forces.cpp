@@ -41,45 +41,67 @@ void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triang
   }
 }
 
+template <class Real>
+ConstComponents<Real> pointers(const std::array<std::vector<Real>, 3>& lists)
+{
+  return { lists[0].data(), lists[1].data(), lists[2].data() };
+}
+template <class Real>
+Components<Real> pointers(std::array<std::vector<Real>, 3>& lists)
+{
+  return { lists[0].data(), lists[1].data(), lists[2].data() };
+}
+
+// Blocks that contain the entries [begin, end).
+template <class Index>
+std::pair<std::int32_t, std::int32_t> blocks_of(Index begin, Index end)
+{
+  constexpr auto width = static_cast<Index>(WeightedSums<float>::width);
+  return { static_cast<std::int32_t>(begin / width), static_cast<std::int32_t>((end + width - 1) / width) };
+}
+
+// The thread's share of some blocks.
+std::pair<std::int32_t, std::int32_t> share_of(std::size_t blocks, const NodeShare& share)
+{
+  return { static_cast<std::int32_t>(blocks * share.thread / share.threads),
+           static_cast<std::int32_t>(blocks * (share.thread + 1) / share.threads) };
+}
+
 }  // namespace
 
 template <class Real>
-ShellForces<Real>::ShellForces(const Model& model, ShellKernel<Real> kernel) : mesh_(model), kernel_(kernel)
+ShellForces<Real>::ShellForces(const Model& model, const ShellKernels<Real>& kernels)
+    : model_(model), mesh_(model), kernels_(kernels)
 {
-  const std::size_t count = mesh_.binding.voxel.size();
-  if (count == 0)
+  const Binding& binding = mesh_.binding;
+  if (binding.voxel.empty())
     return;
   plane_vertices_.assign(static_cast<std::size_t>(model.size[2]) + 2, 0);
-  std::vector<std::vector<Part>> parts(model.nodes.size());
-  vertices_.reserve(count);
-  for (std::size_t v = 0; v < count; ++v)
+  std::vector<typename Sums::Terms> of_vertex(binding.voxel.size()), of_node(model.nodes.size());
+  for (std::size_t v = 0; v < of_vertex.size(); ++v)
   {
-    const auto& at = mesh_.binding.coordinates[v];
-    const auto voxel = mesh_.binding.voxel[v];
+    const auto& at = binding.coordinates[v];
     double weight[8];
     physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-    Vertex vertex{ model.voxel_nodes[voxel], {} };
     for (std::size_t b = 0; b < 8; ++b)
     {
-      vertex.weight[b] = static_cast<Real>(weight[b]);
-      parts[vertex.node[b]].push_back({ static_cast<std::int32_t>(v), vertex.weight[b] });
+      const auto node = model.voxel_nodes[binding.voxel[v]][b];
+      of_vertex[v].emplace_back(node, static_cast<Real>(weight[b]));
+      of_node[node].emplace_back(static_cast<std::int32_t>(v), static_cast<Real>(weight[b]));
     }
-    vertices_.push_back(vertex);
-    ++plane_vertices_[model.voxels[voxel][2] + 1];
+    ++plane_vertices_[model.voxels[binding.voxel[v]][2] + 1];
   }
   std::partial_sum(plane_vertices_.begin(), plane_vertices_.end(), plane_vertices_.begin());
-  for (std::size_t n = 0; n < parts.size(); ++n)
-  {
-    if (parts[n].empty())
-      continue;
-    nodes_.push_back(static_cast<std::int32_t>(n));
-    part_begin_.push_back(static_cast<std::int32_t>(parts_.size()));
-    parts_.insert(parts_.end(), parts[n].begin(), parts[n].end());
-  }
-  part_begin_.push_back(static_cast<std::int32_t>(parts_.size()));
+  for (std::size_t n = 0; n < of_node.size(); ++n)
+    if (!of_node[n].empty())
+      nodes_.push_back(static_cast<std::int32_t>(n));
+  of_node.erase(std::remove_if(of_node.begin(), of_node.end(), [](const auto& terms) { return terms.empty(); }),
+                of_node.end());
+  place_ = Sums(of_vertex);
+  on_node_ = Sums(of_node);
   add_blocks();
   for (auto& component : u_)
-    component.assign(count, 0);
+    component.assign(static_cast<std::size_t>(place_.blocks()) * Sums::width, 0);
 }
 
 template <class Real>
@@ -88,7 +110,7 @@ void ShellForces<Real>::add_blocks()
   constexpr std::size_t width = Block::width;
   blocks_.resize((mesh_.triangles.size() + width - 1) / width);
   forces_.assign(blocks_.size() * 18 * width, 0);
-  std::vector<std::vector<std::int32_t>> places(vertices_.size());
+  std::vector<typename Sums::Terms> of_vertex(mesh_.binding.voxel.size());
   for (std::size_t t = 0; t < blocks_.size() * width; ++t)
   {
     const bool empty = t >= mesh_.triangles.size();
@@ -96,14 +118,10 @@ void ShellForces<Real>::add_blocks()
     set_lane(blocks_[t / width], t % width, triangle, empty);
     for (std::size_t i = 0; i < 6 && !empty; ++i)
       if (i < 3 || triangle.has_beyond(i - 3))
-        places[triangle.vertex[i]].push_back(static_cast<std::int32_t>((t / width * 18 + 3 * i) * width + t % width));
+        of_vertex[triangle.vertex[i]].emplace_back(
+            static_cast<std::int32_t>((t / width * 18 + 3 * i) * width + t % width), Real(1));
   }
-  place_begin_.assign(1, 0);
-  for (const auto& of_vertex : places)
-  {
-    place_.insert(place_.end(), of_vertex.begin(), of_vertex.end());
-    place_begin_.push_back(static_cast<std::int32_t>(place_.size()));
-  }
+  on_vertex_ = Sums(of_vertex);
 }
 
 template <class Real>
@@ -114,13 +132,14 @@ void ShellForces<Real>::list_arrays(ArrayList& list)
   list.add(effect, "triangles", blocks_);
   list.add(effect, "vertices", mesh_.binding.voxel);
   list.add(effect, "vertices", mesh_.binding.coordinates);
-  list.add(effect, "vertices", vertices_);
   list.add(effect, "vertices", plane_vertices_);
-  list.add(effect, "vertices", place_begin_);
-  list.add(effect, "vertices", place_);
   list.add(effect, "nodes", nodes_);
-  list.add(effect, "nodes", part_begin_);
-  list.add(effect, "nodes", parts_);
+  for (const Sums* const sums : { &place_, &on_vertex_, &on_node_ })
+    if (!sums->rows.empty())
+    {
+      list.add(effect, "sums", sums->begin);
+      list.add(effect, "sums", sums->rows);
+    }
   for (const auto& component : u_)
     list.add(effect, "forces", component);
   list.add(effect, "forces", forces_);
@@ -130,73 +149,48 @@ template <class Real>
 void ShellForces<Real>::prepare_step(const NodeShare& share, const Real* const u[3])
 {
   if (share.thread == 0)
-    vertex_force_.resize(static_cast<std::size_t>(share.threads));
-  const std::size_t begin = vertices_.size() * share.thread / share.threads;
-  const std::size_t end = vertices_.size() * (share.thread + 1) / share.threads;
-  for (std::size_t v = begin; v < end; ++v)
-  {
-    const Vertex& vertex = vertices_[v];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      Real sum = 0;
-      for (std::size_t b = 0; b < 8; ++b)
-        sum += vertex.weight[b] * u[axis][vertex.node[b]];
-      u_[axis][v] = sum;
-    }
-  }
+    work_.resize(static_cast<std::size_t>(share.threads));
+  const auto [first, last] = share_of(static_cast<std::size_t>(place_.blocks()), share);
+  kernels_.sum(place_, { u[0], u[1], u[2] }, pointers(u_), first, last);
 }
 
 template <class Real>
 void ShellForces<Real>::before_step(const NodeShare& share, const Real* const /*u*/[3], const ConstraintStep& /*step*/)
 {
-  const std::size_t begin = blocks_.size() * share.thread / share.threads;
-  const std::size_t end = blocks_.size() * (share.thread + 1) / share.threads;
-  kernel_({ blocks_.data(), { u_[0].data(), u_[1].data(), u_[2].data() }, forces_.data() },
-          static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end));
+  const auto [first, last] = share_of(blocks_.size(), share);
+  kernels_.forces(blocks_.data(), pointers(std::as_const(u_)), forces_.data(), first, last);
 }
 
 template <class Real>
 void ShellForces<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
 {
-  constexpr std::size_t width = Block::width;
-  std::vector<Force>& vertex_force = vertex_force_[share.thread];
-  vertex_force.resize(vertices_.size());
-  const auto last = plane_vertices_[share.end_plane];
-  for (auto v = plane_vertices_[std::max(share.first_plane - 1, 0)]; v < last; ++v)
+  Work& work = work_[share.thread];
+  for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    Force sum{};
-    for (auto p = place_begin_[v]; p < place_begin_[v + 1]; ++p)
-    {
-      const Real* const force = forces_.data() + place_[p];
-      sum[0] += force[0];
-      sum[1] += force[width];
-      sum[2] += force[2 * width];
-    }
-    vertex_force[v] = sum;
+    work.on_vertex[axis].resize(u_[axis].size());
+    work.on_node[axis].resize(static_cast<std::size_t>(on_node_.blocks()) * Sums::width);
   }
-  const auto first = std::lower_bound(nodes_.begin(), nodes_.end(), share.first_node) - nodes_.begin();
-  for (auto n = static_cast<std::size_t>(first); n < nodes_.size() && nodes_[n] < share.end_node; ++n)
-  {
-    Force sum{};
-    for (auto p = part_begin_[n]; p < part_begin_[n + 1]; ++p)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        sum[axis] += parts_[p].weight * vertex_force[parts_[p].vertex][axis];
-    sink(nodes_[n], { { double(sum[0]), double(sum[1]), double(sum[2]) } });
-  }
+  const auto vertices =
+      blocks_of(plane_vertices_[std::max(share.first_plane - 1, 0)], plane_vertices_[share.end_plane]);
+  const Real* const x = forces_.data();
+  kernels_.sum(on_vertex_, { x, x + Block::width, x + 2 * Block::width }, pointers(work.on_vertex), vertices.first,
+               vertices.second);
+  const auto begin = std::lower_bound(nodes_.begin(), nodes_.end(), share.first_node) - nodes_.begin();
+  const auto end = std::lower_bound(nodes_.begin(), nodes_.end(), share.end_node) - nodes_.begin();
+  const auto blocks = blocks_of(begin, end);
+  kernels_.sum(on_node_, pointers(std::as_const(work.on_vertex)), pointers(work.on_node), blocks.first, blocks.second);
+  for (auto n = begin; n < end; ++n)
+    sink(nodes_[n], { { double(work.on_node[0][n]), double(work.on_node[1][n]), double(work.on_node[2][n]) } });
 }
 
 template <class Real>
 void ShellForces<Real>::add_energies(const Real* const u[3], const std::vector<RigidTransform>& /*bones*/,
                                      bool /*open*/, std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger)
 {
-  std::vector<Vector> moved(vertices_.size()), on_vertex(vertices_.size());
-  for (std::size_t v = 0; v < moved.size(); ++v)
-    for (std::size_t b = 0; b < 8; ++b)
-    {
-      const auto node = vertices_[v].node[b];
-      moved[v] = moved[v] +
-                 double(vertices_[v].weight[b]) * Vector{ double(u[0][node]), double(u[1][node]), double(u[2][node]) };
-    }
+  std::vector<Vector> moved, on_vertex(mesh_.binding.voxel.size());
+  moved.reserve(on_vertex.size());
+  for (std::size_t v = 0; v < on_vertex.size(); ++v)
+    moved.push_back(vector(bound_displacement(model_, mesh_.binding, v, u)));
   for (const ShellMesh::Triangle& triangle : mesh_.triangles)
   {
     Vector of_triangle[6];
@@ -207,9 +201,8 @@ void ShellForces<Real>::add_energies(const Real* const u[3], const std::vector<R
     for (std::size_t i = 0; i < 6; ++i)
       on_vertex[triangle.vertex[i]] = on_vertex[triangle.vertex[i]] + now.force[i];
   }
-  for (std::size_t v = 0; v < on_vertex.size() && !forces.empty(); ++v)
-    for (std::size_t b = 0; b < 8; ++b)
-      add_vector(forces[vertices_[v].node[b]], double(vertices_[v].weight[b]) * on_vertex[v]);
+  if (!forces.empty())
+    spread_forces(model_, mesh_.binding, on_vertex, forces);
 }
 
 template class ShellForces<float>;

@@ -18,7 +18,7 @@ template <class Real>
 class ShellForces : public NodePart<Real>
 {
 public:
-  ShellForces(const Model& model, ShellKernel<Real> kernel);
+  ShellForces(const Model& model, const ShellKernels<Real>& kernels);
 
   void run(EffectSet running) override { runs_ = running.has(Effect::shell); }
   void reset() override {}
@@ -34,34 +34,30 @@ public:
 
 private:
   using Block = ShellBlock<Real>;
-  using Force = std::array<Real, 3>;
-  struct Vertex
+  using Sums = WeightedSums<Real>;
+  using Lists = std::array<std::vector<Real>, 3>;
+  // of a thread: forces on vertices and on nodes [N]
+  struct Work
   {
-    std::array<std::int32_t, 8> node;
-    std::array<Real, 8> weight;
-  };
-  struct Part
-  {
-    std::int32_t vertex;
-    Real weight;
+    Lists on_vertex, on_node;
   };
 
   void add_blocks();
 
+  const Model& model_;
   ShellMesh mesh_;
-  ShellKernel<Real> kernel_;
+  ShellKernels<Real> kernels_;
   bool runs_ = true;
   std::vector<Block> blocks_;
-  std::vector<Vertex> vertices_;
-  std::vector<std::int32_t> plane_vertices_;       // first vertex in each plane of voxels, and their number
-  std::vector<std::int32_t> place_begin_, place_;  // where the forces of each vertex are in forces_
-  std::vector<std::int32_t> nodes_;                // that carry vertices, ascending
-  std::vector<std::int32_t> part_begin_;
-  std::vector<Part> parts_;  // of the force on each of these nodes
+  std::vector<std::int32_t> plane_vertices_;  // first vertex in each plane of voxels, and their number
+  std::vector<std::int32_t> nodes_;           // that carry vertices, ascending
+  Sums place_;                                // displacements of vertices, of those of nodes
+  Sums on_vertex_;                            // forces on vertices, of those of triangles
+  Sums on_node_;                              // forces on nodes_, of those on vertices
   // of the step under way
-  std::array<std::vector<Real>, 3> u_;            // of vertices [m]
-  std::vector<Real> forces_;                      // ShellArguments::forces
-  std::vector<std::vector<Force>> vertex_force_;  // one list per thread [N]
+  Lists u_;                   // of vertices [m]
+  std::vector<Real> forces_;  // see ShellKernels [N]
+  std::vector<Work> work_;    // one per thread
 };
 
 }  // namespace frontalis

@@ -1,6 +1,7 @@
 #include "solver/shell/shell_mesh.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/stepping/discretisation.hpp"
 
@@ -186,6 +187,19 @@ void ShellMesh::add(const Model& model, const Shell& shell)
     }
     triangles.push_back(shell_triangle(x, beyond, shell.thickness, young, poisson));
     triangles.back().vertex = vertex;
+  }
+}
+
+void spread_forces(const Model& model, const Binding& binding, const std::vector<Vector>& on_points,
+                   std::vector<std::array<double, 3>>& on_nodes)
+{
+  for (std::size_t p = 0; p < on_points.size(); ++p)
+  {
+    const auto& at = binding.coordinates[p];
+    double weight[8];
+    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+    for (std::size_t b = 0; b < 8; ++b)
+      add_vector(on_nodes[model.voxel_nodes[binding.voxel[p]][b]], weight[b] * on_points[p]);
   }
 }
 

@@ -44,4 +44,8 @@ private:
 ShellMesh::Triangle shell_triangle(const std::array<physics::Vec3<double>, 6>& x, const std::array<bool, 3>& beyond,
                                    double thickness, double young, double poisson);
 
+/// Adds forces on bound points [N] to those on nodes, through the transposed binding.
+void spread_forces(const Model& model, const Binding& binding, const std::vector<physics::Vec3<double>>& on_points,
+                   std::vector<std::array<double, 3>>& on_nodes);
+
 }  // namespace frontalis

@@ -1,6 +1,5 @@
 #include "solver/shell/shell_stiffness.hpp"
 
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/skin/bound_points.hpp"
 #include "solver/stepping/bound_stiffness.hpp"
@@ -60,14 +59,7 @@ void ShellStiffness::add_forces(const Model& model, const std::vector<std::array
     for (const auto v : t.vertex)
       on_vertex[v] = on_vertex[v] + t.bending * moved[v];
   }
-  for (std::size_t v = 0; v < on_vertex.size(); ++v)
-  {
-    const auto& at = mesh_.binding.coordinates[v];
-    double weight[8];
-    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-    for (std::size_t b = 0; b < 8; ++b)
-      add_vector(forces[model.voxel_nodes[mesh_.binding.voxel[v]][b]], weight[b] * on_vertex[v]);
-  }
+  spread_forces(model, mesh_.binding, on_vertex, forces);
 }
 
 }  // namespace frontalis

@@ -98,7 +98,115 @@ double strip_deflection(const Backend& backend, int length, double height)
   return -mean_displacement(rest.displacements, at_tip)[2] / wanted;
 }
 
+// Wrinkles of a film on a deep soft base that is slowly compressed, in plane strain.
+struct Film
+{
+  double contrast;   // Young's modulus of the film over the base's
+  double thickness;  // in voxels
+};
+struct FilmWrinkles
+{
+  double wavelength = 0, compression = 0;  // [mm], [%]
+};
+
+FilmWrinkles expected_wrinkles(const Film& film)
+{
+  // both plane-strain moduli: Poisson's ratios 0.3 of the film and 0.49 of the base
+  const double ratio = film.contrast * (1 - 0.49 * 0.49) / (1 - poisson * poisson);
+  return { 2e3 * std::acos(-1.0) * film.thickness * edge * std::cbrt(ratio / 3), 25 * std::pow(3 / ratio, 2.0 / 3) };
+}
+
+// Squared amplitude of the deflection along a row of nodes, and the number of its zeros, without its mean.
+std::pair<double, int> waves(const Vectors& u, const std::vector<std::int32_t>& row)
+{
+  double mean = 0, squared = 0;
+  for (const auto n : row)
+    mean += u[n][2] / static_cast<double>(row.size());
+  int zeros = 0;
+  double before = 0;
+  for (const auto n : row)
+  {
+    const double w = u[n][2] - mean;
+    squared += 2 * w * w / static_cast<double>(row.size());
+    zeros += w * before < 0 ? 1 : 0;
+    before = w;
+  }
+  return { squared, zeros };
+}
+
+// Compressed from 0 to 2.5 times the expected compression. The squared amplitude grows in proportion to the excess of
+// compression; a line through it from 1.6 times on shows where it begins.
+FilmWrinkles film_wrinkles(const Film& film, Plot::Curve& curve)
+{
+  constexpr int length = 160, width = 8, depth = 20;
+  constexpr double time = 0.5;
+  const FilmWrinkles expected = expected_wrinkles(film);
+  Model model = voxel_model({ { length, width, depth } }, edge, neo_hookean(young / film.contrast, 0.49));
+  model.hourglass = HourglassControl::assumed_strain;
+  add_shell(model, depth * edge, film.thickness * edge, 1.2);
+  const double shortening = 2.5 * 0.01 * expected.compression * length * edge;
+  const double last = length * edge;
+  prescribe(model, nodes_where(model, [](const Point&) { return true; }), { { false, true, false } });
+  prescribe(model, nodes_where(model, [](const Point& p) { return p[2] == 0; }), { { false, false, true } });
+  prescribe(model, nodes_where(model, [](const Point& p) { return p[0] == 0; }), { { true, false, false } });
+  prescribe(model, nodes_where(model, [&](const Point& p) { return p[0] > last - 0.1 * edge; }),
+            { { true, false, false } }, { { -shortening, 0, 0 } }, time);
+  model.damping = 100;
+  const auto row = nodes_where(
+      model, [&](const Point& p) { return p[2] > (depth - 0.1) * edge && std::abs(p[1] - 0.5 * width * edge) < 1e-9; });
+  const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", 0, 0 });
+  Vectors v(model.nodes.size());
+  for (std::size_t n = 0; n < v.size(); ++n)
+    if (rest_position(model, n)[2] > (depth - 0.1) * edge)
+      v[n][2] = 1e-5 * std::sin(12.9898 * static_cast<double>(model.nodes[n][0] * model.nodes[n][0]));
+  solver->set_velocities(v);
+  Vectors u;
+  double sums[4] = {};
+  FilmWrinkles found;
+  constexpr int looks = 50;
+  for (int look = 1; look <= looks; ++look)
+  {
+    solver->advance(time / looks, solver->controls());
+    solver->displacements(u);
+    const double compression = 2.5 * expected.compression * look / looks;
+    const auto [squared, zeros] = waves(u, row);
+    curve.add(compression, 1e3 * std::sqrt(squared));
+    found.wavelength = 2e3 * last * (1 - 0.01 * compression) / std::max(zeros, 1);
+    if (compression < 1.6 * expected.compression)
+      continue;
+    const double terms[4] = { 1, compression, squared, compression * squared };
+    sums[0] += terms[0];
+    sums[1] += terms[1];
+    sums[2] += terms[2];
+    sums[3] += terms[3];
+    found.compression += compression * compression;
+  }
+  const double slope = (sums[0] * sums[3] - sums[1] * sums[2]) / (sums[0] * found.compression - sums[1] * sums[1]);
+  found.compression = (sums[1] - sums[2] / slope) / sums[0];
+  return found;
+}
+
 }  // namespace
+
+void verify_film(const Backend& backend, Finding& finding)
+{
+  if (backend == "cuda")
+  {
+    finding.skipped = "the cuda backend does not compute shells";
+    return;
+  }
+  Plot plot{ "Wrinkles of a film that is a shell, on a soft base", "compression [%]", "amplitude [mm]" };
+  for (const Film& film : { Film{ 1000, 0.3 }, Film{ 3000, 0.2 } })
+  {
+    const std::string name = "film " + readable(film.contrast) + " times as stiff: ";
+    Plot::Curve curve{ name, {}, {}, Plot::Style::line };
+    const FilmWrinkles expected = expected_wrinkles(film), found = film_wrinkles(film, curve);
+    finding.checks.relative(name + "wavelength", "mm", expected.wavelength, found.wavelength, 0.1);
+    finding.checks.relative(name + "critical compression", "%", expected.compression, found.compression, 0.15);
+    plot.curves.push_back(curve);
+  }
+  finding.plots.emplace_back("shell_film", plot);
+}
 
 void verify_shell(const Backend& backend, Finding& finding)
 {
