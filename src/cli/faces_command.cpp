@@ -24,7 +24,7 @@ struct FacesOptions
   std::vector<std::string> only;
   bool all_landmarks = false;
   bool measured_only = false;
-  std::string json, pictures;
+  std::string json, table, pictures;
   int columns = 6;
   FaceSettings settings;
 };
@@ -92,6 +92,8 @@ void measure_faces(FacesOptions& options)
   fmt::print("{}", faces_table(rows, options.all_landmarks).text());
   if (!options.json.empty())
     write_text(options.json, faces_table(rows, true).json());
+  if (!options.table.empty())
+    write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty())
     write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
   const auto compared =
@@ -120,6 +122,7 @@ void add_faces_command(CLI::App& app)
   command->add_flag("--all-landmarks", options->all_landmarks, "list landmarks of which nothing is published, too");
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
   command->add_option("--json", options->json, "write the figures of all landmarks to this file");
+  command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--pictures", options->pictures,
                       "write a contact sheet to faces.png in this folder (needs gnuplot)");
   add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");

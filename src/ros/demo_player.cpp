@@ -8,19 +8,15 @@ namespace frontalis
 
 DemoPlayer::DemoPlayer(std::shared_ptr<const Model> model) : model_(std::move(model))
 {
-  const Controls rest{ std::vector<float>(model_->muscles.size(), 0),
-                       std::vector<RigidTransform>(model_->bones.size()) };
-  first_round_ = demo_curve(*model_, rest);
+  first_round_ = demo_curve(*model_, rest_controls(*model_));
   later_rounds_ = demo_curve(*model_, first_round_.controls.back());
   period_ = first_round_.time.back();
+  const RigidTransform rest;
+  const auto away = [&](const RigidTransform& pose)
+  { return pose.rotation != rest.rotation || pose.translation != rest.translation; };
   for (std::size_t bone = 0; bone < model_->bones.size(); ++bone)
-    if (std::any_of(model_->demo.begin(), model_->demo.end(),
-                    [&](const Model::DemoPhase& phase)
-                    {
-                      return std::any_of(phase.bones.begin(), phase.bones.end(),
-                                         [&](const Model::BonePose& pose)
-                                         { return pose.bone == static_cast<std::int32_t>(bone); });
-                    }))
+    if (std::any_of(first_round_.controls.begin(), first_round_.controls.end(),
+                    [&](const Controls& knot) { return away(knot.bone[bone]); }))
       moved_.push_back(bone);
 }
 
