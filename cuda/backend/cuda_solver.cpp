@@ -267,7 +267,7 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (!model->self_contacts.empty())
     throw BackendUnavailable(
         "backend cuda: the model has contact of tissue with itself, which is computed on the CPU alone so far");
-  if (!model->attached.empty())
+  if (!model->attached.empty() || !model->tissue_centre.empty())
     throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
   return std::make_unique<TimeStepper>(std::move(model), settings,
                                        [&](const BackendInput& input)

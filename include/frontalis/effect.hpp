@@ -25,6 +25,7 @@ enum class Effect : std::uint8_t
   contact,
   self_contact,
   attachment,
+  cut_voxels,
   output_fields
 };
 
@@ -37,7 +38,7 @@ struct EffectTraits
 };
 
 /// One entry per effect, in the order of the enumeration Effect.
-inline constexpr std::array<EffectTraits, 14> effect_traits{ {
+inline constexpr std::array<EffectTraits, 15> effect_traits{ {
     { "elasticity", "materials, and what stabilises their elements", "nothing else holds a voxel together",
       "nothing else holds a voxel together" },
     { "fibre_stiffness", "passive stress along muscle fibres", "", "" },
@@ -54,6 +55,8 @@ inline constexpr std::array<EffectTraits, 14> effect_traits{ {
     { "self_contact", "surfaces of the tissue that touch each other, with friction", "", "" },
     { "attachment", "nodes near bones that follow others, so that tissue is attached at the surface of the bone", "",
       "the tissue would come off its bones" },
+    { "cut_voxels", "voxels that tissue fills in part, with the stress at the centroid of the tissue", "",
+      "their stress would leap" },
     { "output_fields", "strain and stress of the skin", "", "it is computed only where somebody asks for it" },
 } };
 

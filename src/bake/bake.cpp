@@ -103,7 +103,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   Model model;
   LocalFrame frame;
   {
-    const Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
+    Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
                                    attaching_surfaces(scene, surfaces), monitor);
     check_volumes(scene, volumes, voxels, monitor);
     check_layers(scene, volumes, voxels);
@@ -111,6 +111,8 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
                   "voxels or a smaller fill_min");
+    if (scene.accuracy.boundary != "true" || scene.accuracy.integration != "one_point")
+      voxels.centre.clear();
     frame = assemble_voxels(grid, voxels, model);
   }
   copy_settings(scene, frame, model);

@@ -34,6 +34,7 @@ struct EffectDescription
 EffectDescription contact_description();
 EffectDescription self_contact_description();
 EffectDescription attachment_description();
+EffectDescription cut_voxels_description();
 
 /// Removes the attached nodes that slide, or those that are held.
 void remove_attached(Model& model, bool sliding);

@@ -41,6 +41,7 @@ struct Voxels
 {
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
+  std::vector<std::array<float, 3>> centre;  ///< centroid of the tissue, from -1 to 1 along each axis
   Shares materials, muscles;
   /// For each volume of the scene its size in the tissue [m3], before voxels with too little tissue are left out.
   std::vector<double> volume_size;

@@ -5,11 +5,12 @@ namespace frontalis
 {
 
 void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
+void attach_kernel_baseline(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
   return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run,
-           slide_kernel_baseline, CpuMonitor<xsimd::default_arch>::run, name };
+           { slide_kernel_baseline, attach_kernel_baseline }, CpuMonitor<xsimd::default_arch>::run, name };
 }
 
 }  // namespace frontalis

@@ -20,7 +20,7 @@ struct CpuMonitor
   static void look(const Voxels& at, PlaneMonitor& plane, double* stiffness)
   {
     Batch mode[3][8];
-    Element::load_modes(at, at.g.u, mode);
+    Element::load_centred_modes(at, at.g.u, mode);
     const physics::VoxelLook<Batch> look = physics::look_at(at, mode);
     alignas(64) double internal[lanes], hourglass[lanes], jacobian[lanes], own[lanes];
     look.internal.store_aligned(internal);

@@ -18,14 +18,14 @@ namespace
 
 CpuKernel<float> pick(const CpuKernelChoice& choice, float) { return choice.single; }
 CpuKernel<double> pick(const CpuKernelChoice& choice, double) { return choice.wide; }
-SlideKernel<float> slide(const CpuKernelChoice& choice, float) { return choice.slide; }
-SlideKernel<double> slide(const CpuKernelChoice&, double) { return slide_plainly<double>; }
+NodeKernels<float> of_nodes(const CpuKernelChoice& choice, float) { return choice.nodes; }
+NodeKernels<double> of_nodes(const CpuKernelChoice&, double) { return {}; }
 
 }  // namespace
 
 template <class Real>
 CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
-    : Base(input, 2 * Tile::width, slide(choose_cpu_kernel(), Real(0))),
+    : Base(input, 2 * Tile::width, of_nodes(choose_cpu_kernel(), Real(0))),
       rows_(*model_, discretisation_),
       mobility_(mobility(discretisation_)),
       choice_(choose_cpu_kernel()),

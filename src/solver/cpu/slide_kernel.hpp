@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include "solver/cpu/attach_kernel.hpp"
 
 namespace frontalis
 {
@@ -36,5 +36,13 @@ using SlideKernel = void (*)(const SlideArguments<Real>& arguments, std::int32_t
 /// The kernel without SIMD, in any precision.
 template <class Real>
 void slide_plainly(const SlideArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+
+/// The kernels that move restricted nodes.
+template <class Real>
+struct NodeKernels
+{
+  SlideKernel<Real> slide = slide_plainly<Real>;
+  AttachKernel<Real> attach = attach_plainly<Real>;
+};
 
 }  // namespace frontalis

@@ -13,12 +13,11 @@
 namespace frontalis
 {
 
-ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input, 0, slide_plainly<double>)
+ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input, 0, {})
 {
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());
   mix_voxels();
-  shape_derivatives({ 0, 0, 0 }, centre_);
   for (int point = 0; point < 8; ++point)
   {
     const double x = 1 / std::sqrt(3.0);

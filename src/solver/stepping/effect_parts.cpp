@@ -12,11 +12,11 @@ namespace frontalis
 
 template <class Real>
 std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, const Discretisation& discretisation,
-                                                        SlideKernel<Real> slide)
+                                                        const NodeKernels<Real>& kernels)
 {
   std::vector<std::unique_ptr<NodePart<Real>>> parts;
-  parts.push_back(std::make_unique<RestrictedNodes<Real>>(model, slide));
-  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass));
+  parts.push_back(std::make_unique<RestrictedNodes<Real>>(model, kernels.slide));
+  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass, kernels.attach));
   parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
   parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));
   parts.push_back(std::make_unique<TissueContact<Real>>(model, discretisation));
@@ -24,9 +24,9 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
 }
 
 template std::vector<std::unique_ptr<NodePart<float>>> node_parts(const Model&, const Discretisation&,
-                                                                  SlideKernel<float>);
+                                                                  const NodeKernels<float>&);
 template std::vector<std::unique_ptr<NodePart<double>>> node_parts(const Model&, const Discretisation&,
-                                                                   SlideKernel<double>);
+                                                                   const NodeKernels<double>&);
 
 std::vector<EnergyTerm> energy_terms_of_effects()
 {

@@ -12,7 +12,7 @@ namespace frontalis
 /// The parts of all effects on nodes, in the order in which their forces are added.
 template <class Real>
 std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, const Discretisation& discretisation,
-                                                        SlideKernel<Real> slide);
+                                                        const NodeKernels<Real>& kernels);
 
 /// Terms of the energy ledger that exist because of an effect.
 std::vector<EnergyTerm> energy_terms_of_effects();

@@ -26,8 +26,9 @@ struct HostState : BackendState
 }  // namespace
 
 template <class Real, class Relaxed>
-HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide)
-    : StepBackend(input), parts_(node_parts<Real>(*model_, discretisation_, slide))
+HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding,
+                                         const NodeKernels<Real>& kernels)
+    : StepBackend(input), parts_(node_parts<Real>(*model_, discretisation_, kernels))
 {
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)

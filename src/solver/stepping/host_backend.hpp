@@ -51,7 +51,7 @@ protected:
   using Components = std::array<std::vector<Real>, 3>;
 
   /// `padding`: entries of the motion beyond the last node.
-  HostBackend(const BackendInput& input, std::size_t padding, SlideKernel<Real> slide);
+  HostBackend(const BackendInput& input, std::size_t padding, const NodeKernels<Real>& kernels);
 
   virtual void rest();
   static std::array<const Real*, 3> pointers(const Components& c)
