@@ -43,17 +43,17 @@ FRONTALIS_LAW void from_tissue_centre(const TissueCentre<T>& c, T (&force)[8])
   force[7] = force[7] + (c.y * c.z) * force[1] + (c.x * c.z) * force[2] + (c.x * c.y) * force[4];
 }
 
-/// Factors r_b of the bound of the time step at the corners of a cut voxel: r_b k takes the place of the stiffness bound
-/// k of a whole voxel with the same tissue (physics/time_step.hpp). `hourglass`: largest eigenvalue of hourglass control
-/// over that of the stress, both at rest.
+/// Factors r_b of the bound of the time step at the corners of a cut voxel: r_b k takes the place of the stiffness
+/// bound k of a whole voxel with the same tissue (physics/time_step.hpp). `hourglass`: largest eigenvalue of hourglass
+/// control over that of the stress, both at rest.
 ///
 /// With G the 8 x 3 matrix of shape function gradients in units of 1/h, a whole voxel has G^T G = 1/2, so that k bounds
-/// the quadratic form Q of its stress by Q(Z) <= 2 k |Z|^2 for every gradient Z, deformed or not. For diagonal weights w
-/// for which the largest eigenvalue of G^T w^-1 G is at most 1, displacements x have |x^T G|^2 <= sum of w_b |x_b|^2,
-/// and 2 w_b k + `hourglass` k serves corner b. Weights in proportion to |G_b| are small at corners far from the tissue,
-/// which have little mass. None is below 1/2, that of a whole voxel, because k may hold stiffness of other kinds, which
-/// acts at all corners alike. Where this lower limit applies, the other weights are reduced: a factor of the largest
-/// eigenvalue keeps it at most 1.
+/// the quadratic form Q of its stress by Q(Z) <= 2 k |Z|^2 for every gradient Z, deformed or not. For diagonal weights
+/// w for which the largest eigenvalue of G^T w^-1 G is at most 1, displacements x have |x^T G|^2 <= sum of w_b |x_b|^2,
+/// and 2 w_b k + `hourglass` k serves corner b. Weights in proportion to |G_b| are small at corners far from the
+/// tissue, which have little mass. None is below 1/2, that of a whole voxel, because k may hold stiffness of other
+/// kinds, which acts at all corners alike. Where this lower limit applies, the other weights are reduced: a factor of
+/// the largest eigenvalue keeps it at most 1.
 inline std::array<float, 8> corner_stiffness(const TissueCentre<double>& centre, double hourglass)
 {
   double gradient[8][3], length[8];
@@ -63,8 +63,8 @@ inline std::array<float, 8> corner_stiffness(const TissueCentre<double>& centre,
     const double at[3] = { 1 + sign[0] * centre.x, 1 + sign[1] * centre.y, 1 + sign[2] * centre.z };
     for (int i = 0; i < 3; ++i)
       gradient[b][i] = 0.25 * sign[i] * at[(i + 1) % 3] * at[(i + 2) % 3];
-    length[b] = std::sqrt(gradient[b][0] * gradient[b][0] + gradient[b][1] * gradient[b][1] +
-                          gradient[b][2] * gradient[b][2]);
+    length[b] =
+        std::sqrt(gradient[b][0] * gradient[b][0] + gradient[b][1] * gradient[b][1] + gradient[b][2] * gradient[b][2]);
   }
   constexpr double least = 0.5;
   double per_length = 16;

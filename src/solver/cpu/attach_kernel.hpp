@@ -20,7 +20,8 @@ struct LevelPlanes
   std::int32_t surface[attach_width];  ///< index into Model::constraint_surfaces; -1: none
 };
 
-/// A node per lane that is held and follows the master of the lane, or a copy of another one of its master, of weight 0.
+/// A node per lane that is held and follows the master of the lane, or a copy of another one of its master, of weight
+/// 0.
 template <class Real>
 struct HeldRow
 {

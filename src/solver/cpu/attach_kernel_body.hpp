@@ -144,8 +144,8 @@ struct AttachKernelBody
       along(planes, planes.gradient, steepness);
       for (int l = 0; l < width; ++l)
       {
-        speed[l] += (push[l] + (momentum[l] - inertia[l] * speed[l]) * steepness[l]) /
-                    (b.mass[l] + inertia[l] * steepness[l]);
+        speed[l] +=
+            (push[l] + (momentum[l] - inertia[l] * speed[l]) * steepness[l]) / (b.mass[l] + inertia[l] * steepness[l]);
         momentum[l] -= inertia[l] * speed[l];
       }
       for (int axis = 0; axis < 3; ++axis)

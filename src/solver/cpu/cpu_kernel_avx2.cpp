@@ -9,8 +9,11 @@ void attach_kernel_avx2(const AttachArguments<float>&, std::int32_t, std::int32_
 
 CpuKernelChoice cpu_kernel_avx2(const char* name)
 {
-  return { CpuKernelBody<xsimd::fma3<xsimd::avx2>, float>::run, CpuKernelBody<xsimd::fma3<xsimd::avx2>, double>::run,
-           { slide_kernel_avx2, attach_kernel_avx2 }, CpuMonitor<xsimd::fma3<xsimd::avx2>>::run, name };
+  return { CpuKernelBody<xsimd::fma3<xsimd::avx2>, float>::run,
+           CpuKernelBody<xsimd::fma3<xsimd::avx2>, double>::run,
+           { slide_kernel_avx2, attach_kernel_avx2 },
+           CpuMonitor<xsimd::fma3<xsimd::avx2>>::run,
+           name };
 }
 
 }  // namespace frontalis

@@ -9,8 +9,11 @@ void attach_kernel_avx512(const AttachArguments<float>&, std::int32_t, std::int3
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
-  return { CpuKernelBody<xsimd::avx512bw, float>::run, CpuKernelBody<xsimd::avx512bw, double>::run, { slide_kernel_avx512, attach_kernel_avx512 },
-           CpuMonitor<xsimd::avx512bw>::run, name };
+  return { CpuKernelBody<xsimd::avx512bw, float>::run,
+           CpuKernelBody<xsimd::avx512bw, double>::run,
+           { slide_kernel_avx512, attach_kernel_avx512 },
+           CpuMonitor<xsimd::avx512bw>::run,
+           name };
 }
 
 }  // namespace frontalis

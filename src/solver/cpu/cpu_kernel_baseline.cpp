@@ -9,8 +9,11 @@ void attach_kernel_baseline(const AttachArguments<float>&, std::int32_t, std::in
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
-  return { CpuKernelBody<xsimd::default_arch, float>::run, CpuKernelBody<xsimd::default_arch, double>::run,
-           { slide_kernel_baseline, attach_kernel_baseline }, CpuMonitor<xsimd::default_arch>::run, name };
+  return { CpuKernelBody<xsimd::default_arch, float>::run,
+           CpuKernelBody<xsimd::default_arch, double>::run,
+           { slide_kernel_baseline, attach_kernel_baseline },
+           CpuMonitor<xsimd::default_arch>::run,
+           name };
 }
 
 }  // namespace frontalis

@@ -91,8 +91,7 @@ void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivativ
         f_[i][model_->voxel_nodes[e][b]] += share * P.a[i][j] * derivative[b][j];
 }
 
-void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k,
-                                    const Derivatives& centre)
+void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k, const Derivatives& centre)
 {
   // Transformed displacements of the hourglass modes, and the forces conjugate to them.
   static constexpr int mode_of_shape[4] = { 3, 5, 6, 7 };

@@ -53,9 +53,10 @@ template <class Real>
 void AttachedBlocks<Real>::finish()
 {
   // groups of a plane by kind and in the order of their sizes, so that few lanes of rows stay empty
-  const auto key = [&](const Group& group) {
-    return std::make_tuple(model_.nodes[group.master][2], group.levels.empty(), group.held.empty(),
-                           group.levels.size(), group.held.size(), group.master);
+  const auto key = [&](const Group& group)
+  {
+    return std::make_tuple(model_.nodes[group.master][2], group.levels.empty(), group.held.empty(), group.levels.size(),
+                           group.held.size(), group.master);
   };
   std::sort(groups_.begin(), groups_.end(), [&](const Group& a, const Group& b) { return key(a) < key(b); });
   plane_blocks_.assign(static_cast<std::size_t>(model_.size[2]) + 2, 0);

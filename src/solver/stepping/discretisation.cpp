@@ -212,10 +212,10 @@ Discretisation::Discretisation(const Model& model)
   bound_at_rest();
 }
 
-// A node that slides into a voxel of which little is tissue, such as a sliver of tendon below a bone's surface, may have
-// a higher frequency than all nodes that are not attached. It gets inertia against that, at most a fifth of the mass of
-// a whole voxel. A node that is held follows its master, so that only the sums of stiffness and mass over the group
-// count; the masses for the bound are in proportion to stiffness within the group.
+// A node that slides into a voxel of which little is tissue, such as a sliver of tendon below a bone's surface, may
+// have a higher frequency than all nodes that are not attached. It gets inertia against that, at most a fifth of the
+// mass of a whole voxel. A node that is held follows its master, so that only the sums of stiffness and mass over the
+// group count; the masses for the bound are in proportion to stiffness within the group.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);
@@ -264,8 +264,8 @@ void Discretisation::share_masses()
     {
       const double mass_per_stiffness = group_mass[node.master] / group_stiffness[node.master];
       bound_mass[node.master] = mass_per_stiffness * stiffness[node.master];
-      bound_mass[node.node] = node.ratio == 0 ? std::numeric_limits<double>::infinity()
-                                              : mass_per_stiffness * stiffness[node.node];
+      bound_mass[node.node] =
+          node.ratio == 0 ? std::numeric_limits<double>::infinity() : mass_per_stiffness * stiffness[node.node];
     }
 }
 

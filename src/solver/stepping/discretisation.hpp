@@ -70,16 +70,16 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                                   ///< of a whole voxel [m3]
-  bool assumed_strain = false;                         ///< hourglass control by assumed strain
-  bool selective_reduced = false;                      ///< no hourglass control
-  bool laws = false;                                   ///< whether a voxel has a law other than neo-Hookean
-  int viscous_terms = 0;                               ///< 0..2
-  double viscous_time_min = 0;                         ///< [s]
-  std::array<double, 3> hourglass_weight{};            ///< 1 / (4 sqrt(3) h) [1/m]
-  std::array<double, 3> stretch_weight{};              ///< 1/h^2 over the sum of the three
-  double stretch_half_sum = 0;                         ///< half of that sum [1/m2]
-  std::vector<double> node_mass;                       ///< lumped [kg]
+  double volume = 0;                         ///< of a whole voxel [m3]
+  bool assumed_strain = false;               ///< hourglass control by assumed strain
+  bool selective_reduced = false;            ///< no hourglass control
+  bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
+  int viscous_terms = 0;                     ///< 0..2
+  double viscous_time_min = 0;               ///< [s]
+  std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
+  std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
+  double stretch_half_sum = 0;               ///< half of that sum [1/m2]
+  std::vector<double> node_mass;             ///< lumped [kg]
   /// Masses for the bound of the highest frequency, whose sums over groups of attached nodes are those of node_mass;
   /// infinite for a node that does not move with its master. Empty: node_mass.
   std::vector<double> bound_mass;

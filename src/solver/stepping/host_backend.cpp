@@ -27,7 +27,7 @@ struct HostState : BackendState
 
 template <class Real, class Relaxed>
 HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding,
-                                         const NodeKernels<Real>& kernels)
+                                        const NodeKernels<Real>& kernels)
     : StepBackend(input), parts_(node_parts<Real>(*model_, discretisation_, kernels))
 {
   for (auto* field : { &u_, &v_ })
