@@ -143,6 +143,14 @@ std::vector<std::string> HeadTemplate::parts() const
 {
   std::vector<std::string> names{ "skin",        "face",        "visible",  "skull",    "mandible",
                                   "teeth_upper", "teeth_lower", "eye_left", "eye_right" };
+  const std::vector<std::string> others = muscle_parts();
+  names.insert(names.end(), others.begin(), others.end());
+  return names;
+}
+
+std::vector<std::string> HeadTemplate::muscle_parts() const
+{
+  std::vector<std::string> names;
   for (const Muscle& muscle : muscles)
     if (muscle.sided)
     {

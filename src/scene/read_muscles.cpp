@@ -1,5 +1,7 @@
 #include "scene/sections.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 namespace
@@ -81,26 +83,111 @@ void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
   }
 }
 
+/// Keys that the muscles of a set may share. Those that are not given keep their values.
+void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle, std::string& material)
+{
+  if (const Node node = mapping.optional("material"); node.given())
+    material = node.reference(names.materials);
+  muscle.stress_reference =
+      mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
+  muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, muscle.rise_time);
+  muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, muscle.fall_time);
+  muscle.passive = mapping.optional("passive").boolean(muscle.passive);
+  muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
+}
+
+/// Finds the volume of the muscle's own name; if there is none, makes one of the inside of the surface of that name.
+void find_volume(const Node& key, const std::string& material, SceneMuscle& muscle, Scene& scene, SceneNames& names)
+{
+  muscle.volume = muscle.name;
+  const bool there = names.volumes.has(muscle.name);
+  if (there && !material.empty())
+    key.fault("'material' stands beside a volume called '{}'; the material belongs there", muscle.name);
+  if (there || !names.volumes.complete || !names.surfaces.complete)
+    return;
+  if (!names.surfaces.has(muscle.name))
+  {
+    key.fault("missing, and no volume is called '{}'; the volumes are {}", muscle.name,
+              list_with_suggestion(muscle.name, names.volumes.names));
+    return;
+  }
+  Volume volume;
+  volume.name = muscle.name;
+  volume.inside = { muscle.name };
+  volume.material = material;
+  volume.priority = 1;
+  volume.line = muscle.line;
+  scene.volumes.push_back(volume);
+  names.volumes.names.push_back(volume.name);
+}
+
+/// Names of the surfaces that `each` lists: its own, and the muscles of the sets that it names.
+std::vector<std::string> read_members(const Node& each, const Node& without, const SceneNames& names)
+{
+  Names known = names.surfaces, members{ "muscle of the set", {}, true };
+  for (const auto& [set, muscles] : names.muscle_sets)
+    known.names.push_back(set);
+  for (const std::string& name : each.references(known))
+    if (const auto set = names.muscle_sets.find(name); set != names.muscle_sets.end())
+      members.names.insert(members.names.end(), set->second.begin(), set->second.end());
+    else if (names.surfaces.has(name))
+      members.names.push_back(name);
+  if (without.given())
+    for (const std::string& name : without.references(members))
+      members.names.erase(std::remove(members.names.begin(), members.names.end(), name), members.names.end());
+  return members.names;
+}
+
 }  // namespace
 
 void read_muscles(const Node& node, Scene& scene, SceneNames& names)
 {
-  const auto read = [&](const Node& entry, Mapping& mapping, SceneMuscle& muscle)
+  const auto entries = node.named_pairs();
+  const auto place = [&](const std::string& name)
+  { return std::find_if(scene.muscles.begin(), scene.muscles.end(), [&](const auto& m) { return m.name == name; }); };
+  std::map<std::string, std::string> materials;
+  // sets first, so that an entry of a muscle's own name replaces what its set says
+  for (const auto& [name, entry] : entries)
+    if (entry.has("each"))
+    {
+      Mapping mapping(entry);
+      SceneMuscle muscle;
+      muscle.line = entry.line();
+      std::string material;
+      const Node each = mapping.optional("each");
+      const std::vector<std::string> members = read_members(each, mapping.optional("without"), names);
+      read_shared(mapping, names, muscle, material);
+      for (const std::string& member : members)
+      {
+        if (place(member) != scene.muscles.end())
+          each.fault("'{}' is in two sets; once is enough", member);
+        muscle.name = member;
+        muscle.volume.clear();
+        if (!node.has(member))
+          find_volume(each, material, muscle, scene, names);
+        materials[member] = material;
+        scene.muscles.push_back(muscle);
+      }
+    }
+  for (const auto& [name, entry] : entries)
   {
+    if (entry.has("each"))
+      continue;
+    if (place(name) == scene.muscles.end())
+      scene.muscles.emplace_back().name = name;
+    SceneMuscle& muscle = *place(name);
+    muscle.line = entry.line();
+    Mapping mapping(entry);
     const Node volume = mapping.optional("volume");
-    muscle.volume = volume.given() ? volume.reference(names.volumes) : muscle.name;
-    if (!volume.given() && entry.is_mapping() && names.volumes.complete && !names.volumes.has(muscle.name))
-      volume.fault("missing, and no volume is called '{}'; the volumes are {}", muscle.name,
-                   list_with_suggestion(muscle.name, names.volumes.names));
+    if (volume.given())
+      muscle.volume = volume.reference(names.volumes);
     read_fibres(mapping, names, muscle);
-    muscle.stress_reference =
-        mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
-    muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, 0);
-    muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, 0);
-    muscle.passive = mapping.optional("passive").boolean(muscle.passive);
-    muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
-  };
-  read_named(node, scene.muscles, names.muscles, read);
+    read_shared(mapping, names, muscle, materials[name]);
+    if (!volume.given() && entry.is_mapping())
+      find_volume(volume, materials[name], muscle, scene, names);
+  }
+  for (const SceneMuscle& muscle : scene.muscles)
+    names.muscles.names.push_back(muscle.name);
   names.muscles.complete = !node.given() || node.is_mapping();
 }
 
@@ -115,14 +202,15 @@ void read_expressions(const Node& node, Scene& scene, SceneNames& names)
     }
     names.expressions.names.push_back(name);
     std::map<std::string, double>& activation = scene.expressions[name];
-    for (const auto& [muscle, value] : entry.pairs())
-    {
-      value.check_known(muscle, names.muscles);
-      if (value.is_null())
-        value.fault("found nothing; must be an activation from 0 to 1");
-      else
-        activation[muscle] = value.number(Dimension::number, proportion, 0);
-    }
+    for (const auto& [key, value] : entry.pairs())
+      for (const std::string& muscle : names.muscles.both_sides(key))
+      {
+        value.check_known(muscle, names.muscles);
+        if (value.is_null())
+          value.fault("found nothing; must be an activation from 0 to 1");
+        else if (!activation.emplace(muscle, value.number(Dimension::number, proportion, 0)).second)
+          value.fault("'{}' has an activation already; a muscle may stand once", muscle);
+      }
   }
   names.expressions.complete = !node.given() || node.is_mapping();
 }

@@ -79,27 +79,62 @@ private:
   bool reported_ = false;
 };
 
-void read_forehead(Mapping& mapping, Shape& shape)
+/// The parts of a shape that an entry stands for.
+struct Parts
 {
-  shape.part = mapping.required("part", "a part of the forehead").choice(forehead_parts());
+  bool many = false;                 ///< whether the entry is a set of surfaces
+  std::vector<std::string> names;    ///< those of the set
+  std::vector<std::string> muscles;  ///< the muscles among them
+};
+
+/// Reads `parts` (`all` or names) or `part`. `known` is empty if the parts cannot be told.
+void read_parts(const Node& many, const Node& one, const std::string& whole, const std::vector<std::string>& known,
+                const std::vector<std::string>& muscles, Shape& shape, Parts& parts)
+{
+  parts.many = many.given();
+  if (many.given() && one.given())
+    one.fault("stands beside 'parts'; a surface is one part, or a set of several");
+  else if (!many.given() && !one.given())
+    one.fault("missing; must be a part of the {}, or there must be 'parts'", whole);
+  else if (known.empty())
+    return;
+  else if (one.given())
+    shape.part = one.choice(known);
+  else
+    parts.names = many.is_text() && many.text() == "all" ? known : many.references({ "part", known, true });
+  std::copy_if(parts.names.begin(), parts.names.end(), std::back_inserter(parts.muscles),
+               [&](const std::string& name)
+               { return std::find(muscles.begin(), muscles.end(), name) != muscles.end(); });
+}
+
+void read_dimensions(Mapping& mapping, Shape& shape)
+{
   for (const auto& [name, node] : mapping.optional("dimensions").named_pairs())
     shape.dimensions[name] = read_length(node);
 }
 
-void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape)
+void read_forehead(Mapping& mapping, Shape& shape, Parts& parts)
+{
+  static const std::vector<std::string> muscles{ "frontalis_left", "frontalis_right", "corrugator_left",
+                                                 "corrugator_right", "procerus" };
+  const Node many = mapping.optional("parts");
+  read_parts(many, mapping.optional("part"), "forehead", forehead_parts(), muscles, shape, parts);
+  read_dimensions(mapping, shape);
+}
+
+void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
 {
   const Node file = mapping.required("template", "the YAML file of a head");
-  const Node part = mapping.required("part", "a part of the head");
-  for (const auto& [name, node] : mapping.optional("dimensions").named_pairs())
-    shape.dimensions[name] = read_length(node);
+  const Node many = mapping.optional("parts"), one = mapping.optional("part");
+  read_dimensions(mapping, shape);
   shape.head = folder.head(file);
   if (shape.head)
-    shape.part = part.choice(shape.head->parts());
-  else if (!file.faulty())
-    part.text();
+    read_parts(many, one, "head", shape.head->parts(), shape.head->muscle_parts(), shape, parts);
+  else
+    read_parts(many, one, "head", {}, {}, shape, parts);
 }
 
-Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder)
+Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Parts& parts)
 {
   // in the order of Shape::Kind
   static const std::vector<std::string> kinds{ "box", "sphere", "ellipsoid", "cylinder", "torus", "forehead", "head" };
@@ -113,9 +148,9 @@ Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder)
   shape.kind = static_cast<Shape::Kind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
   const std::string length = "a length greater than 0";
   if (shape.kind == Shape::Kind::forehead)
-    read_forehead(mapping, shape);
+    read_forehead(mapping, shape, parts);
   else if (shape.kind == Shape::Kind::head)
-    read_head(mapping, folder, shape);
+    read_head(mapping, folder, shape, parts);
   else
     shape.centre = mapping.optional("centre").vector(Dimension::length, any_number, shape.centre);
   switch (shape.kind)
@@ -172,9 +207,11 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
                    SceneNames& names)
 {
   MeshFolder folder(mesh_directory, options, scene.file);
+  Parts parts;
   const auto read = [&](const Node& entry, Mapping& mapping, Surface& surface)
   {
     surface.unit = node.context().length_unit;
+    parts = {};
     // ask only for the key that is present: messages about unknown keys list all keys that were asked for
     const bool shape = mapping.has("shape");
     if (shape == mapping.has("file"))
@@ -185,7 +222,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
       mapping.ignore_rest();
     }
     else if (shape)
-      surface.shape = read_shape(mapping.optional("shape"), mapping, folder);
+      surface.shape = read_shape(mapping.optional("shape"), mapping, folder, parts);
     else
     {
       surface.file = folder.resolve(mapping.optional("file"));
@@ -196,7 +233,35 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
         surface.mirror = static_cast<int>(axis[0] - 'x');
     }
   };
-  read_named(node, scene.surfaces, names.surfaces, read);
+  const auto entries = node.named_pairs();
+  names.surfaces.complete = node.is_mapping();
+  for (const auto& [name, entry] : entries)
+  {
+    Surface surface;
+    surface.name = name;
+    surface.line = entry.line();
+    {
+      Mapping mapping(entry);
+      read(entry, mapping, surface);
+    }
+    if (!parts.many)
+    {
+      scene.surfaces.push_back(surface);
+      names.surfaces.names.push_back(name);
+      continue;
+    }
+    names.surfaces.complete = names.surfaces.complete && !parts.names.empty();
+    names.muscle_sets[name] = parts.muscles;
+    for (const std::string& part : parts.names)
+    {
+      // an entry of the part's own name replaces it
+      if (std::any_of(entries.begin(), entries.end(), [&](const auto& other) { return other.first == part; }))
+        continue;
+      surface.name = surface.shape->part = part;
+      scene.surfaces.push_back(surface);
+      names.surfaces.names.push_back(part);
+    }
+  }
   folder.report(node);
 }
 

@@ -5,6 +5,7 @@
 #include "frontalis/scene/read_scene.hpp"
 #include "frontalis/scene/scene.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct SceneNames
   Names muscles{ "muscle", {}, true };
   Names expressions{ "expression", { "relax" }, true };
   Names bones{ "bone", {}, true };
+  std::map<std::string, std::vector<std::string>> muscle_sets;  ///< the muscles among the parts of a set of surfaces
 };
 
 // One function per section, in the order in which the file is read. The section may be absent.

@@ -94,6 +94,13 @@ std::string Faults::text() const
 
 bool Names::has(const std::string& name) const { return contains(names, name); }
 
+std::vector<std::string> Names::both_sides(const std::string& name) const
+{
+  if (!has(name) && has(name + "_left") && has(name + "_right"))
+    return { name + "_left", name + "_right" };
+  return { name };
+}
+
 std::string Node::found() const
 {
   if (!given_ || yaml_.IsNull())
@@ -257,19 +264,27 @@ std::vector<std::string> Node::references(const Names& names) const
   std::vector<std::string> result;
   if (!is_list())
   {
-    if (scalar("a name (" + names.kind + ") or a list of such names"))
-      result.push_back(reference(names));
+    if (const auto text = scalar("a name (" + names.kind + ") or a list of such names"))
+      result = names.both_sides(*text);
+    if (result.size() == 1)
+      check_known(result[0], names);
     return result;
   }
   if (yaml_.size() == 0)
     fault("found an empty list; must name at least one " + names.kind);
   for (const Node& entry : entries())
   {
-    const std::string name = entry.reference(names);
-    if (contains(result, name))
-      entry.fault("'" + name + "' is named twice; once is enough");
-    else if (!name.empty())
-      result.push_back(name);
+    const std::optional<std::string> text = entry.scalar("a name (" + names.kind + ")");
+    if (!text)
+      continue;
+    for (const std::string& name : names.both_sides(*text))
+    {
+      entry.check_known(name, names);
+      if (contains(result, name))
+        entry.fault("'" + name + "' is named twice; once is enough");
+      else
+        result.push_back(name);
+    }
   }
   return result;
 }
@@ -337,11 +352,6 @@ Mapping::~Mapping()
   for (const auto& [key, node] : pairs_)
     if (!contains(asked_, key))
       node.fault("unknown key; allowed are " + list_with_suggestion(key, asked_));
-}
-
-bool Mapping::has(const std::string& key) const
-{
-  return std::any_of(pairs_.begin(), pairs_.end(), [&](const auto& pair) { return pair.first == key; });
 }
 
 Node Mapping::optional(const std::string& key)

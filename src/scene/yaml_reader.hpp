@@ -55,6 +55,8 @@ struct Names
   bool complete = true;  ///< false: the section has faults, so that unknown names may result from them
 
   bool has(const std::string& name) const;
+  /// `name`; or NAME_left and NAME_right, if `name` is unknown and these two are known.
+  std::vector<std::string> both_sides(const std::string& name) const;
 };
 
 /// A value of the file, or an absent one, with its dotted path and line. If the value is absent or wrong, each reading
@@ -81,6 +83,8 @@ public:
   bool is_text() const { return given_ && yaml_.IsScalar(); }
   bool is_list() const { return given_ && yaml_.IsSequence(); }
   bool is_mapping() const { return given_ && yaml_.IsMap(); }
+  /// Whether it is a mapping with that key.
+  bool has(const std::string& key) const { return is_mapping() && yaml_[key].IsDefined(); }
   int line() const { return line_; }
   const std::string& path() const { return path_; }
   ReadingContext& context() const { return *context_; }
@@ -110,7 +114,7 @@ public:
   std::string reference(const Names& names) const;
   /// Records a fault if `name` is not among `names`, unless these are incomplete.
   void check_known(const std::string& name, const Names& names) const;
-  /// One of `names` or a list of several different ones.
+  /// One of `names` or a list of several different ones. A name without its side stands for both: Names::both_sides().
   std::vector<std::string> references(const Names& names) const;
 
   /// Entries of a list; a value that is not a list is a fault.
@@ -145,7 +149,7 @@ public:
   Mapping(const Mapping&) = delete;
   Mapping& operator=(const Mapping&) = delete;
 
-  bool has(const std::string& key) const;
+  bool has(const std::string& key) const { return node_.has(key); }
   Node optional(const std::string& key);
   Node required(const std::string& key, const std::string& expected);
   /// Accepts all other keys: for values whose allowed keys cannot be determined because of a fault.

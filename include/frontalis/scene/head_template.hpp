@@ -55,6 +55,7 @@ struct HeadTemplate
 
   /// Names of the surfaces that can be made: skin, bones, eyeballs and muscles.
   std::vector<std::string> parts() const;
+  std::vector<std::string> muscle_parts() const;  ///< those that are muscles
 };
 
 /// Reads a template and the files that it names. Throws Error with one line per fault.

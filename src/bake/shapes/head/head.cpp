@@ -11,8 +11,8 @@ namespace frontalis
 namespace
 {
 
-constexpr double default_edge = 1.75e-3;  // [m]
-constexpr int default_levels = 2;         // of the skin that depths are measured from
+constexpr double default_edge = 1.75e-3, skull_edge = 2.5e-3;  // [m]
+constexpr int default_levels = 2;                              // of the skin that depths are measured from
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
 int levels_for(const PolygonMesh& cage, double edge)
@@ -113,7 +113,7 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
 
 TriangleMesh Head::part(const std::string& name, double wanted_edge) const
 {
-  const double edge = wanted_edge > 0 ? wanted_edge : default_edge;
+  const double edge = wanted_edge > 0 ? wanted_edge : name == "skull" ? skull_edge : default_edge;
   if (name == "skin" || name == "face" || name == "visible")
     return skin(name, edge);
   if (name == "eye_left" || name == "eye_right")

@@ -63,7 +63,7 @@ class Head
 public:
   Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions);
 
-  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm). Throws Error on an unknown part.
+  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2.5). Throws Error on an unknown part.
   TriangleMesh part(const std::string& name, double edge) const;
   /// Control net of a muscle; nothing if the part is not one.
   std::optional<ControlNet> net(const std::string& part) const;

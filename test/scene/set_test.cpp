@@ -1,0 +1,111 @@
+// Entries that stand for several things: sets of parts, muscles of a set, names without their side.
+
+#include "frontalis/error.hpp"
+#include "frontalis/scene/read_scene.hpp"
+#include "files.hpp"
+
+#include <gtest/gtest.h>
+
+namespace frontalis
+{
+namespace
+{
+
+Scene read_with(const std::string& surfaces, const std::string& muscles, const std::string& more = "")
+{
+  const TemporaryFolder folder;
+  return read_scene(folder.write("scene.yaml", "unit: mm\nsurfaces:\n" + surfaces +
+                                                   "volumes:\n"
+                                                   "  body: {inside: tissue, material: flesh, tissue: true}\n"
+                                                   "materials:\n"
+                                                   "  flesh: {young: 30 kPa, poisson: 0.45, density: 1000}\n"
+                                                   "  fibre: {young: 20 kPa, poisson: 0.45, density: 1000}\n"
+                                                   "muscles:\n" +
+                                                   muscles + "skin: {surface: skin}\n" + more));
+}
+
+std::string error_of(const std::string& surfaces, const std::string& muscles, const std::string& more = "")
+{
+  try
+  {
+    read_with(surfaces, muscles, more);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
+const std::string all = "  brow: {shape: forehead, parts: all, dimensions: {height: 80}}\n";
+
+template <class Item>
+const Item& named(const std::vector<Item>& items, const std::string& name)
+{
+  for (const Item& item : items)
+    if (item.name == name)
+      return item;
+  throw Error("nothing is called " + name);
+}
+
+TEST(Set, holds_each_part_as_a_surface_of_its_name)
+{
+  const Scene scene = read_with(all + "  skull: {shape: forehead, part: skull, edge: 5}\n", "  m: {each: brow}\n");
+  ASSERT_EQ(scene.surfaces.size(), forehead_parts().size());
+  for (const std::string& part : forehead_parts())
+  {
+    const Surface& surface = named(scene.surfaces, part);
+    EXPECT_EQ(surface.shape->part, part);
+    EXPECT_EQ(surface.shape->edge, part == "skull" ? 5e-3 : 0) << "its own entry replaces a part";
+    EXPECT_EQ(surface.shape->dimensions.count("height"), part == "skull" ? 0U : 1U);
+  }
+}
+
+TEST(Set, has_its_muscles_with_volumes_of_their_own)
+{
+  const Scene scene = read_with(all,
+                                "  m: {each: brow, without: corrugator, material: fibre, stress_reference: 1 MPa}\n"
+                                "  procerus: {stress_reference: 2 MPa, material: flesh}\n",
+                                "expressions: {up: {frontalis: 0.5, procerus: 0.25}}\n");
+  ASSERT_EQ(scene.muscles.size(), 3U) << "both frontales and procerus; the galea is no muscle";
+  EXPECT_EQ(named(scene.muscles, "frontalis_left").stress_reference, 1e6);
+  EXPECT_EQ(named(scene.muscles, "procerus").stress_reference, 2e6);
+  const Volume& volume = named(scene.volumes, named(scene.muscles, "frontalis_right").volume);
+  EXPECT_EQ(volume.inside, std::vector<std::string>{ "frontalis_right" });
+  EXPECT_EQ(volume.material, "fibre");
+  EXPECT_EQ(volume.priority, 1);
+  EXPECT_EQ(named(scene.volumes, "procerus").material, "flesh");
+  const std::map<std::string, double> up{ { "frontalis_left", 0.5 }, { "frontalis_right", 0.5 }, { "procerus", 0.25 } };
+  EXPECT_EQ(scene.expressions.at("up"), up);
+}
+
+TEST(Set, is_the_same_as_its_entries_written_out)
+{
+  const std::string parts = "  brow: {shape: forehead, parts: [skin, tissue, procerus]}\n";
+  const std::string written =
+      "  skin: {shape: forehead, part: skin}\n  tissue: {shape: forehead, part: tissue}\n"
+      "  procerus: {shape: forehead, part: procerus}\n";
+  EXPECT_EQ(read_with(parts, "  m: {each: [brow], material: fibre, rise_time: 5 ms}\n").content,
+            read_with(written, "  procerus: {material: fibre, rise_time: 5 ms}\n").content);
+}
+
+TEST(Set, faults_name_their_place)
+{
+  const auto expect = [](const std::string& message, const std::string& text)
+  {
+    EXPECT_NE(message.find(text), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "one fault";
+  };
+  expect(error_of("  brow: {shape: forehead, part: skin, parts: all}\n", "  body: {}\n"),
+         "surfaces.brow.part: stands beside");
+  expect(error_of(all, "  m: {each: brwo}\n"), "muscles.m.each: no surface is called 'brwo'");
+  expect(error_of(all, "  m: {each: brow, without: galea}\n"), "muscles.m.without: no muscle of the set is called");
+  expect(error_of(all, "  m: {each: brow, fibre: [1, 0, 0]}\n"), "muscles.m.fibre: unknown key");
+  expect(error_of(all, "  m: {each: [brow, procerus]}\n"), "muscles.m.each: 'procerus' is in two sets");
+  expect(error_of(all, "  body: {material: fibre}\n"), "'material' stands beside a volume called 'body'");
+  expect(error_of(all, "  m: {each: brow}\n", "expressions: {up: {frontalis: 0.5, frontalis_left: 1}}\n"),
+         "expressions.up.frontalis_left: 'frontalis_left' has an activation already");
+}
+
+}  // namespace
+}  // namespace frontalis
