@@ -259,7 +259,7 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
         "backend cuda: the model has contact of tissue with itself, which is computed on the CPU alone so far");
   if (!model->shells.empty())
     throw BackendUnavailable("backend cuda: the model has layers that are shells, which the CPU alone computes so far");
-  if (!model->attached.empty())
+  if (!model->attached.empty() || !model->tissue_centre.empty())
     throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
   if (!model->joints.empty())
     throw BackendUnavailable("backend cuda: the model has parted gaps, which are computed on the CPU alone so far");

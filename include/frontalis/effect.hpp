@@ -26,6 +26,7 @@ enum class Effect : std::uint8_t
   self_contact,
   attachment,
   shell,
+  cut_voxels,
   output_fields
 };
 
@@ -38,7 +39,7 @@ struct EffectTraits
 };
 
 /// One entry per effect, in the order of the enumeration Effect.
-inline constexpr std::array<EffectTraits, 15> effect_traits{ {
+inline constexpr std::array<EffectTraits, 16> effect_traits{ {
     { "elasticity", "materials, and what stabilises their elements", "nothing else holds a voxel together",
       "nothing else holds a voxel together" },
     { "fibre_stiffness", "passive stress along muscle fibres", "", "" },
@@ -56,6 +57,8 @@ inline constexpr std::array<EffectTraits, 15> effect_traits{ {
     { "attachment", "nodes near bones that follow others, so that tissue is attached at the surface of the bone", "",
       "the tissue would come off its bones" },
     { "shell", "layers thinner than a voxel, with stiffness in their surface and in bending", "", "" },
+    { "cut_voxels", "voxels that tissue fills in part, with the stress at the centroid of the tissue", "",
+      "their stress would leap" },
     { "output_fields", "strain and stress of the skin", "", "it is computed only where somebody asks for it" },
 } };
 

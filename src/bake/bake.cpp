@@ -107,15 +107,19 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   Gaps gaps(scene, volumes, surfaces, grid);
   {
     Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
-                                   attaching_surfaces(scene, surfaces), monitor);
+                             attaching_surfaces(scene, surfaces), monitor);
     check_volumes(scene, volumes, voxels, monitor);
     check_layers(scene, volumes, voxels);
     if (voxels.place.empty())
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
                   "voxels or a smaller fill_min");
+    if (scene.accuracy.boundary != "true" || scene.accuracy.integration != "one_point")
+      voxels.centre.clear();
     gaps.part(voxels, monitor);
     frame = assemble_voxels(grid, voxels, model);
+    if (!model.flaps.empty() && scene.accuracy.boundary == "true")
+      throw Error(scene.file + ": boundary: true and gaps: parted are not possible together yet; choose one of them");
     frame.gaps = model.flaps.empty() ? nullptr : &gaps;
   }
   copy_settings(scene, frame, model);

@@ -35,6 +35,7 @@ EffectDescription contact_description();
 EffectDescription self_contact_description();
 EffectDescription attachment_description();
 EffectDescription shell_description();
+EffectDescription cut_voxels_description();
 
 /// Removes the attached nodes that slide, or those that are held.
 void remove_attached(Model& model, bool sliding);

@@ -276,7 +276,7 @@ EffectDescription output_fields()
 const std::array<EffectDescription, effect_traits.size()> descriptions{
   { elasticity(), fibre_stiffness(), contraction(), viscosity(), gravity(), surface_loads(), prescribed_displacement(),
     rigid_nodes(), sliding(), friction(), contact_description(), self_contact_description(), attachment_description(),
-    shell_description(), output_fields() }
+    shell_description(), cut_voxels_description(), output_fields() }
 };
 
 const EffectDescription& description_of(Effect effect) { return descriptions[static_cast<std::size_t>(effect)]; }

@@ -75,6 +75,43 @@ TEST(AttachedNodes, FollowFreeNodesAboveTheSurface)
   }
 }
 
+// The centroids of all voxels, weighted by their tissue, have the centroid of the body: of an eighth of a shell between
+// two radii it is 3/8 of (b^4 - a^4) / (b^3 - a^3) along each axis.
+TEST(CutVoxels, KnowTheCentroidsOfTheirTissue)
+{
+  const Model model = bake(layer_scene(8e-3, SceneConstraint::Kind::rigid));
+  ASSERT_EQ(model.tissue_centre.size(), model.voxels.size());
+  Vector3 sum{};
+  double tissue = 0, from_centres = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    Vector3 p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double centre = double(model.tissue_centre[e][axis]);
+      p[axis] = (model.voxels[e][axis] + 0.5 + 0.5 * centre) * model.spacing[axis];
+      from_centres += std::abs(centre);
+      if (model.fill[e] == 1)
+        EXPECT_EQ(centre, 0);
+    }
+    const Vector3 at = transformed(model.to_scene, p);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sum[axis] += model.fill[e] * at[axis];
+    tissue += model.fill[e];
+    const double height_of_centre = std::hypot(at[0], at[1], at[2]) - radius;
+    EXPECT_GT(height_of_centre, -0.3e-3);
+    EXPECT_LT(height_of_centre, 8.3e-3);
+  }
+  EXPECT_GT(from_centres, 100);
+  const double a = radius, b = radius + 8e-3;
+  const double exact = 0.375 * (std::pow(b, 4) - std::pow(a, 4)) / (std::pow(b, 3) - std::pow(a, 3));
+  for (const double x : sum)
+    EXPECT_NEAR(x / tissue, exact, 0.05e-3);
+  Scene staircase = layer_scene(8e-3, SceneConstraint::Kind::rigid);
+  staircase.accuracy.boundary = "staircase";
+  EXPECT_TRUE(bake(staircase).tissue_centre.empty());
+}
+
 TEST(AttachedNodes, AreHeldWhereTissueIsTooThin)
 {
   BakeReport report;

@@ -37,7 +37,8 @@ TEST(ModelEffects, are_those_that_something_has_cause_for)
                                    .with(Effect::contact, false)
                                    .with(Effect::self_contact, false)
                                    .with(Effect::attachment, false)
-                                   .with(Effect::shell, false));
+                                   .with(Effect::shell, false)
+                                   .with(Effect::cut_voxels, false));
   EXPECT_EQ(presence_of(whole, Effect::contraction).voxels, whole.voxels.size());
   EXPECT_EQ(presence_of(whole, Effect::friction).nodes, whole.sliding.size());
   EXPECT_LT(presence_of(whole, Effect::viscosity).voxels, whole.voxels.size() / 2);
@@ -101,7 +102,7 @@ TEST(ModelEffects, what_others_need_stays_and_unknown_names_are_told_what_there_
     EXPECT_STREQ(error.what(),
                  "there is no effect 'magic'; the effects are elasticity, fibre_stiffness, contraction, viscosity, "
                  "gravity, surface_loads, prescribed_displacement, rigid_nodes, sliding, friction, contact, "
-                 "self_contact, attachment, shell, output_fields");
+                 "self_contact, attachment, shell, cut_voxels, output_fields");
   }
 }
 

@@ -108,6 +108,8 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.attached[0].bone, 1);
   EXPECT_EQ(b.attached[1].ratio, 0.5);
   EXPECT_EQ(b.attached[1].surface, 0);
+  EXPECT_EQ(a.tissue_centre, b.tissue_centre);
+  EXPECT_FALSE(b.tissue_centre.empty());
   EXPECT_EQ(a.gravity, b.gravity);
   ASSERT_EQ(b.loads.size(), 2u);
   EXPECT_EQ(b.loads[0].kind, Load::Kind::pressure);

@@ -100,6 +100,8 @@ TEST(CheckModel, AcceptsAFullModelAndNamesTheArrayAtFault)
   EXPECT_NE(fault([](Model& m) { m.attached[0].ratio = 1.5; }).find("attached (ratio)"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.attached[1].node = 2; }).find("attached (node)"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.attached[1].master = 4; }).find("attached (master)"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.tissue_centre.pop_back(); }).find("tissue_centre"), std::string::npos);
+  EXPECT_NE(fault([](Model& m) { m.tissue_centre[2][1] = 1.5F; }).find("tissue_centre: entry 2"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.prescribed[0].load = -1; }).find("prescribed"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.skin.triangles[0][1] = 3; }).find("skin"), std::string::npos);
   EXPECT_NE(fault([](Model& m) { m.skin_binding.voxel[0] = 8; }).find("skin_binding"), std::string::npos);

@@ -261,6 +261,35 @@ TEST(AttachedOnCpu, ThreadsDoNotChangeABit)
   EXPECT_EQ(found[0], found[2]);
 }
 
+// Nodes at surfaces that are still are processed in blocks, those of bones one by one.
+TEST(AttachedOnCpu, ABoneThatRestsIsAsGoodAsNone)
+{
+  for (const bool sampled : { false, true })
+  {
+    std::vector<Vectors> found;
+    for (const std::int32_t bone : { -1, 0 })
+    {
+      Model model = sliding_block(sampled, bone);
+      model.precision = Precision::double_precision;
+      model.bones = { "jaw" };
+      model.gravity = { { 2, 1, -9.81 } };
+      for (AttachedNode& node : model.attached)
+        node.bone = node.surface < 0 ? bone : -1;
+      const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", 2, 2e-5 });
+      solver->advance(0.01, solver->controls());
+      solver->displacements(found.emplace_back());
+    }
+    double size = 0;
+    for (std::size_t n = 0; n < found[0].size(); ++n)
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        EXPECT_NEAR(found[0][n][axis], found[1][n][axis], 1e-8);
+        size = std::max(size, std::abs(found[0][n][axis]));
+      }
+    EXPECT_GT(size, 1e-5);
+  }
+}
+
 TEST(AttachedOnCpu, MovesAsTheReferenceDoes)
 {
   for (const bool slides : { false, true })

@@ -28,6 +28,8 @@ struct Model
   // voxels, ordered by k, then j, then i; lower corner at node (i,j,k)
   std::vector<std::array<std::int32_t, 3>> voxels;
   std::vector<float> fill;  ///< proportion of the voxel that is tissue, 0..1: scales stiffness and mass
+  /// Empty, or per voxel the centroid of its tissue, from -1 to 1 along each axis: where its stress is found.
+  std::vector<std::array<float, 3>> tissue_centre;
 
   // mixture of voxel e: entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1
   std::vector<Material> materials;

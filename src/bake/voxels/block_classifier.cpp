@@ -20,7 +20,10 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
 {
   // the first sample is the middle of the voxel
   for (int s = 0; s < samples * samples * samples; ++s)
+  {
     offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
+    mean_offset_ += offsets_.back() / (samples * samples * samples);
+  }
   voxels_.volume_size.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
   for (const Volumes::Entry& entry : volumes.entries())
@@ -96,7 +99,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     for (std::int32_t k = begin[2]; k < end[2]; ++k)
       for (std::int32_t j = begin[1]; j < end[1]; ++j)
         for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
-          add_voxel({ i, j, k }, 1);
+          add_voxel({ i, j, k }, 1, Vector3d::Zero());
     for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
       share_.volume[v] = state.inside_volume[v] == Answer::yes ? 1 : 0;
     add_sizes(voxels);
@@ -109,7 +112,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     add_sizes(1);
     const auto passes = [&box](const PreparedSurface* surface) { return surface->tree().overlaps(box); };
     if (fill > 0 && (fill >= fill_min_ || std::any_of(kept_at_.begin(), kept_at_.end(), passes)))
-      add_voxel(begin, fill);
+      add_voxel(begin, fill, 2 * (tissue_offset_ / fill - mean_offset_));
     return;
   }
 

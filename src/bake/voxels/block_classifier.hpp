@@ -67,7 +67,7 @@ private:
 
   void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
-  void add_voxel(const VoxelPlace& place, double fill);
+  void add_voxel(const VoxelPlace& place, double fill, const Vector3d& centre);
 
   const Volumes& volumes_;
   const Grid& grid_;
@@ -78,6 +78,7 @@ private:
   std::vector<Vector3d> offsets_;              ///< from the voxel's lower corner to the samples, in voxel edges
   const std::vector<char>* chosen_ = nullptr;  ///< samples that are looked at; null: all
   std::vector<char>* is_tissue_ = nullptr;     ///< receives whether each sample is tissue; null: it is not asked for
+  Vector3d mean_offset_{ 0, 0, 0 };
   Voxels voxels_;
 
   /// Proportions of a voxel, or of each voxel of a uniform block, by index.
@@ -87,6 +88,7 @@ private:
     std::vector<std::vector<double>> band;
   };
   Proportions nothing_, share_;
+  Vector3d tissue_offset_{ 0, 0, 0 };  ///< sum of the offsets of the samples with a material, times their shares
 
   // Data computed once per sampled voxel, near its middle, and used for all its samples.
   struct NearbyBody

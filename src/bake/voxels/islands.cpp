@@ -89,10 +89,13 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
     if (!keep[e])
       continue;
     model.voxels[kept] = model.voxels[e];
+    if (!model.tissue_centre.empty())
+      model.tissue_centre[kept] = model.tissue_centre[e];
     model.fill[kept++] = model.fill[e];
   }
   model.voxels.resize(kept);
   model.fill.resize(kept);
+  model.tissue_centre.resize(model.tissue_centre.empty() ? 0 : kept);
 
   // the nodes that stay keep their order
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);

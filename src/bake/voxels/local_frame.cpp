@@ -144,6 +144,8 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
   {
     model.voxels.push_back(places[e]);
     model.fill.push_back(voxels.fill[e]);
+    if (!voxels.centre.empty())
+      model.tissue_centre.push_back(frame.turn(voxels.centre[e]));
     copy(voxels.materials, e, model.mixture_begin, model.mixture_material, model.mixture_proportion);
     copy(voxels.muscles, e, model.fibre_begin, model.fibre_muscle, model.fibre_weight);
   }

@@ -6,6 +6,7 @@ namespace frontalis
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
   share_ = nothing_;
+  tissue_offset_.setZero();
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
@@ -49,6 +50,10 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       for (const Volumes::Band& band : entry.bands)
         sample_depth(band.depth_field, p, state);
     }
+    const auto has_material = [&](const Volumes::Entry& entry)
+    { return entry.material >= 0 && inside[&entry - volumes_.entries().data()] == Answer::yes; };
+    if (std::any_of(volumes_.entries().begin(), volumes_.entries().end(), has_material))
+      tissue_offset_ += share * offset;
     add_share(inside, depth_here_, share);
   }
 }
@@ -164,10 +169,13 @@ void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::ve
   }
 }
 
-void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
+void BlockClassifier::add_voxel(const VoxelPlace& place, double fill, const Vector3d& centre)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
+  const bool cut = fill < 1 - 1e-9;
+  const auto inside = [cut](double x) { return cut ? static_cast<float>(std::clamp(x, -1.0, 1.0)) : 0.0F; };
+  voxels_.centre.push_back({ inside(centre[0]), inside(centre[1]), inside(centre[2]) });
   voxels_.materials.add(share_.material, fill);
   voxels_.muscles.add(share_.muscle, fill);
 }

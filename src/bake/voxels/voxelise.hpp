@@ -41,6 +41,7 @@ struct Voxels
 {
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
+  std::vector<std::array<float, 3>> centre;  ///< centroid of the tissue, from -1 to 1 along each axis
   Shares materials, muscles;
   /// Empty, or the flap of each voxel (Model::flaps); 0: the body. Voxels of different flaps may have the same place.
   std::vector<std::int8_t> flap;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/cut_voxels.hpp"
 #include "frontalis/physics/element/relaxation.hpp"
 #include "frontalis/physics/element/voxel_forces.hpp"
 #include "solver/cpu/cpu_kernel.hpp"
@@ -64,6 +65,12 @@ struct CpuElement
     {
       const TileStabilisation& s = g.stabilisation[index];
       return { load(s.bending), load(s.coupling), load(s.torsion), load(s.warping) };
+    }
+
+    FRONTALIS_LAW physics::TissueCentre<Batch> centre() const
+    {
+      const CutSlot& slot = g.cut[tile->cut];
+      return { load(slot.x), load(slot.y), load(slot.z) };
     }
 
     FRONTALIS_LAW bool has_laws() const { return tile->law_begin < tile->law_end; }
@@ -213,11 +220,19 @@ struct CpuElement
       physics::walsh_hadamard(mode[c]);
     }
   }
+  /// load_modes(), with the gradients at the centroids of the tissue.
+  template <class Number>
+  static FRONTALIS_LAW void load_centred_modes(const Voxels& at, Number* const (&u)[3], Batch (&mode)[3][8])
+  {
+    load_modes(at, u, mode);
+    for (int c = 0; c < 3 && at.tile->cut >= 0; ++c)
+      physics::to_tissue_centre(at.centre(), mode[c]);
+  }
   template <class Number>
   static FRONTALIS_LAW Kinematics kinematics(const Voxels& at, Number* const (&u)[3])
   {
     Batch mode[3][8];
-    load_modes(at, u, mode);
+    load_centred_modes(at, u, mode);
     return physics::kinematics(mode[0], mode[1], mode[2], at.g.scale);
   }
 
@@ -249,12 +264,14 @@ struct CpuElement
   }
 
   /// Adds the forces of the voxels, and their stiffness bounds if requested, to the plane buffers below and above.
-  template <Stabilisation Form>
+  template <Stabilisation Form, bool Cut>
   static FRONTALIS_LAW void add_forces(const VoxelsOf<Form>& at, Real* below, Real* above, const std::int32_t* base)
   {
     const Arguments& g = at.g;
     Batch mode[3][8], stiffness(Real(0));
     load_modes(at, g.u, mode);
+    for (int c = 0; c < 3 && Cut; ++c)
+      physics::to_tissue_centre(at.centre(), mode[c]);
     const Stress P = physics::element_stress(at, mode, at.with_bound, stiffness);
     const Batch hourglass = at.hourglass();
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
@@ -264,7 +281,13 @@ struct CpuElement
       for (int r = 0; r < 4; ++r)
       {
         Real* const to = row_of(3, r);
-        Lane::add(to + at.tile->node[strip][r] + within, to + at.tile->node[Tile::strips - 1][r], stiffness, stiffness);
+        Batch low = stiffness, high = stiffness;
+        if (Cut)
+        {
+          low = low * at.load(g.cut[at.tile->cut].corner[2 * r]);
+          high = high * at.load(g.cut[at.tile->cut].corner[2 * r + 1]);
+        }
+        Lane::add(to + at.tile->node[strip][r] + within, to + at.tile->node[Tile::strips - 1][r], low, high);
       }
     for (int c = 0; c < 3; ++c)
     {
@@ -272,6 +295,8 @@ struct CpuElement
       if (Form == Stabilisation::scalar)
         physics::scalar_hourglass(hourglass, mode[c]);
       physics::stress_forces(at, P, c, mode[c]);
+      if (Cut)
+        physics::from_tissue_centre(at.centre(), mode[c]);
       physics::walsh_hadamard_transposed(mode[c]);
       for (int r = 0; r < 4; ++r)
       {
@@ -280,6 +305,13 @@ struct CpuElement
                   mode[c][2 * r + 1]);
       }
     }
+  }
+  // not inlined, so that the code of whole voxels stays as it is
+  template <Stabilisation Form>
+  static __attribute__((noinline)) void add_cut_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
+                                                       const std::int32_t* base)
+  {
+    add_forces<Form, true>(at, below, above, base);
   }
 };
 

@@ -25,7 +25,7 @@ struct CpuKernelArguments : physics::Kick<Real>
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< rounding errors of the displacements [m]; null without compensated precision
   const float* inverse_mass;  ///< [1/kg]
-  const float* mobility;      ///< inverse mass, 0 for held nodes [1/kg]
+  const float* mobility;      ///< inverse mass for the bound, 0 for held nodes [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;
@@ -36,6 +36,7 @@ struct CpuKernelArguments : physics::Kick<Real>
   const FibreSlot* fibres;                 ///< null: effect switched off
   const LawSlot* laws;
   const ViscousSlot* viscous;
+  const CutSlot* cut;
   float* relaxed;  ///< relaxed stress times volume [N m], relaxed_tensors() * 6 * Tile::width per ViscousSlot
   std::int32_t viscous_terms;  ///< 0: no viscosity, or switched off
   Real viscous_elapsed;        ///< time since the latest relaxation [s]

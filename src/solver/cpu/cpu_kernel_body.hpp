@@ -24,7 +24,13 @@ struct CpuKernelBody
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     using Batches = typename Element::template VoxelsOf<Form>;
     Element::template each_batch<Batches>(g, plane, owned, with_bound, &work,
-                                          [&](const Batches& at) { Element::add_forces(at, below, above, base); });
+                                          [&](const Batches& at)
+                                          {
+                                            if (at.tile->cut >= 0)
+                                              Element::template add_cut_forces<Form>(at, below, above, base);
+                                            else
+                                              Element::template add_forces<Form, false>(at, below, above, base);
+                                          });
     if (g.muscle_work != nullptr && owned)
       g.muscle_work[plane] += work;
   }

@@ -31,6 +31,7 @@ Monitor CpuSolver<Real>::monitor()
   g.stabilisation = from.stabilisation;
   g.selective_reduced = from.selective_reduced;
   g.laws = from.laws;
+  g.cut = from.cut;
   std::vector<PlaneMonitor> planes(static_cast<std::size_t>(rows_.planes));
   std::vector<StepBound> bounds(slab_.size() - 1);
   std::vector<double> stiffness(model_->voxels.size());

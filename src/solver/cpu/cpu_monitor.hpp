@@ -20,7 +20,7 @@ struct CpuMonitor
   static void read(const Voxels& at, PlaneMonitor& plane, double* stiffness)
   {
     Batch mode[3][8];
-    Element::load_modes(at, at.g.u, mode);
+    Element::load_centred_modes(at, at.g.u, mode);
     const physics::VoxelReadings<Batch> readings = physics::voxel_readings(at, mode);
     alignas(64) double internal[lanes], hourglass[lanes], jacobian[lanes], own[lanes];
     readings.internal.store_aligned(internal);

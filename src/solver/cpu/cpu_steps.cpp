@@ -42,6 +42,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.fibres = runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? rows_.fibres.data() : nullptr;
   g.laws = rows_.laws.data();
   g.viscous = rows_.viscous.data();
+  g.cut = rows_.cut.data();
   g.relaxed = relaxed_.values.data();
   g.viscous_terms = runs(Effect::viscosity) ? discretisation_.viscous_terms : 0;
   g.activation = activation;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/cpu/attach_kernel.hpp"
 #include "solver/cpu/shell_kernel.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 
@@ -11,6 +12,7 @@ template <class Real>
 struct PartKernels
 {
   SlideKernel<Real> slide = slide_plainly<Real>;
+  AttachKernel<Real> attach = attach_plainly<Real>;
   ShellKernels<Real> shell = plain_shell_kernels<Real>();
 };
 

@@ -1,6 +1,7 @@
 #include "solver/cpu/slide_kernel.hpp"
 
 #include "frontalis/physics/sliding.hpp"
+#include "solver/cpu/attach_kernel_body.hpp"
 
 namespace frontalis
 {
@@ -37,5 +38,14 @@ void slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32
 
 template void slide_plainly(const SlideArguments<float>&, std::int32_t, std::int32_t);
 template void slide_plainly(const SlideArguments<double>&, std::int32_t, std::int32_t);
+
+template <class Real>
+void attach_plainly(const AttachArguments<Real>& g, std::int32_t first, std::int32_t last)
+{
+  AttachKernelBody<void, Real>::run(g, first, last);
+}
+
+template void attach_plainly(const AttachArguments<float>&, std::int32_t, std::int32_t);
+template void attach_plainly(const AttachArguments<double>&, std::int32_t, std::int32_t);
 
 }  // namespace frontalis

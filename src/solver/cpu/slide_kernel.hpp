@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include "solver/cpu/attach_kernel.hpp"
 
 namespace frontalis
 {

@@ -85,6 +85,27 @@ void add_viscosity(const TileVoxels& voxels, Tile& tile, std::vector<ViscousSlot
   slots.push_back(slot);
 }
 
+void add_cut(const Discretisation& discretisation, const TileVoxels& voxels, Tile& tile, std::vector<CutSlot>& slots)
+{
+  tile.cut = -1;
+  CutSlot slot{};
+  bool any = false;
+  for (int lane = 0; lane < Tile::width; ++lane)
+  {
+    const auto& c = voxels[lane].centre;
+    slot.x[lane] = static_cast<float>(c.x);
+    slot.y[lane] = static_cast<float>(c.y);
+    slot.z[lane] = static_cast<float>(c.z);
+    any = any || c.x != 0 || c.y != 0 || c.z != 0;
+    for (std::size_t corner = 0; corner < 8 && tile.voxel(lane) >= 0; ++corner)
+      slot.corner[corner][lane] = static_cast<float>(discretisation.factor_at(tile.voxel(lane), corner));
+  }
+  if (!any)
+    return;
+  tile.cut = static_cast<std::int32_t>(slots.size());
+  slots.push_back(slot);
+}
+
 TileStiffness stiffness_of(const TileVoxels& voxels)
 {
   TileStiffness s{};
@@ -164,6 +185,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
     add_fibres(model, voxels, tile, fibres);
     add_laws(voxels, tile, laws);
     add_viscosity(voxels, tile, viscous);
+    add_cut(discretisation, voxels, tile, cut);
     stiffness.push_back(stiffness_of(voxels));
     if (discretisation.assumed_strain)
       stabilisation.push_back(stabilisation_of(voxels));
@@ -178,6 +200,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
   fibres.shrink_to_fit();
   laws.shrink_to_fit();
   viscous.shrink_to_fit();
+  cut.shrink_to_fit();
 }
 
 void VoxelRows::renew_bounds(const Discretisation& discretisation)
@@ -202,6 +225,7 @@ void VoxelRows::list_arrays(Effect of_fibres, ArrayList& list) const
   list.add("laws", laws);
   list.add(of_fibres, "fibres", fibres);
   list.add(Effect::viscosity, "Prony terms", viscous);
+  list.add(Effect::cut_voxels, "centroids of tissue", cut);
 }
 
 }  // namespace frontalis

@@ -23,6 +23,7 @@ struct Tile
   std::int32_t law_begin;  ///< range of LawSlots
   std::int32_t law_end;
   std::int32_t viscous;  ///< index of the ViscousSlot; -1: none
+  std::int32_t cut;      ///< index of the CutSlot; -1: all voxels are whole
 
   /// Voxel of a lane, or -1.
   std::int32_t voxel(int lane) const
@@ -72,6 +73,13 @@ struct ViscousSlot
   float rate[2][Tile::width];  ///< [1/s]
 };
 
+/// Centroids of the tissue in a tile's voxels.
+struct CutSlot
+{
+  float x[Tile::width], y[Tile::width], z[Tile::width];
+  float corner[8][Tile::width];  ///< Discretisation::corner_stiffness
+};
+
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tiles have the same width for every
 /// instruction set; a narrower one processes a tile in several parts.
 struct VoxelRows
@@ -91,6 +99,7 @@ struct VoxelRows
   std::vector<FibreSlot> fibres;
   std::vector<LawSlot> laws;
   std::vector<ViscousSlot> viscous;
+  std::vector<CutSlot> cut;
 };
 
 }  // namespace frontalis

@@ -44,6 +44,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
       for (int b = 0; b < 8; ++b)
         mode[axis][b] = u[model.voxel_nodes[e][b]][axis];
       physics::walsh_hadamard(mode[axis]);
+      physics::to_tissue_centre(voxel.centre, mode[axis]);
     }
     const auto readings = physics::voxel_readings(ModelVoxel{ model, d, voxel, e, nullptr, {}, scale }, mode);
     stiffness[e] = readings.stiffness;

@@ -91,7 +91,7 @@ void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivativ
         f_[i][model_->voxel_nodes[e][b]] += share * P.a[i][j] * derivative[b][j];
 }
 
-void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k)
+void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k, const Derivatives& centre)
 {
   // Transformed displacements of the hourglass modes, and the forces conjugate to them.
   static constexpr int mode_of_shape[4] = { 3, 5, 6, 7 };
@@ -109,7 +109,7 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
     for (auto& component : mode)
       for (const int m : mode_of_shape)
         component[m] *= voxels_[e].hourglass;
-  add_stress(e, Q, centre_, 1);
+  add_stress(e, Q, centre, 1);
   for (int i = 0; i < 3; ++i)
     for (int b = 0; b < 8; ++b)
       for (int m = 0; m < 4; ++m)
@@ -119,7 +119,9 @@ void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Ki
 void ReferenceSolver::add_element(std::size_t e, const Components& u, const std::vector<float>& activation)
 {
   const ModelVoxel voxel{ *model_, discretisation_, voxels_[e], e, &activation, effects() };
-  const Kinematics k = kinematics(e, centre_, u);
+  Derivatives centre;
+  shape_derivatives({ voxels_[e].centre.x, voxels_[e].centre.y, voxels_[e].centre.z }, centre);
+  const Kinematics k = kinematics(e, centre, u);
   Stress P;
   if (discretisation_.selective_reduced)
   {
@@ -134,7 +136,7 @@ void ReferenceSolver::add_element(std::size_t e, const Components& u, const std:
   else
   {
     P = physics::elastic_stress(voxel, voxel.material(), k);
-    add_hourglass(e, u, k);
+    add_hourglass(e, u, k, centre);
     stiffness_[e] = voxel.stiffness_now(k);
   }
   physics::add_fibres(voxel, k, P);
@@ -143,7 +145,7 @@ void ReferenceSolver::add_element(std::size_t e, const Components& u, const std:
   if (relaxed_.relax())
     for (const auto& H : relaxed_.values[e])
       take_relaxed(k, H, P);
-  add_stress(e, P, centre_, 1);
+  add_stress(e, P, centre, 1);
 }
 
 void ReferenceSolver::forces(const Components& u, const std::vector<float>& activation)
@@ -159,7 +161,9 @@ void ReferenceSolver::relax(double elapsed, const Components& u_before)
 {
   for (std::size_t e = 0; e < relaxed_.values.size(); ++e)
   {
-    const Kinematics k = kinematics(e, centre_, u_), k_before = kinematics(e, centre_, u_before);
+    Derivatives centre;
+    shape_derivatives({ voxels_[e].centre.x, voxels_[e].centre.y, voxels_[e].centre.z }, centre);
+    const Kinematics k = kinematics(e, centre, u_), k_before = kinematics(e, centre, u_before);
     double change = 0, now = 0;
     const ViscousVoxel voxel{ { *model_, discretisation_, voxels_[e], e }, relaxed_.values[e] };
     physics::relax_voxel(voxel, elapsed, k,

@@ -18,7 +18,6 @@ ReferenceSolver::ReferenceSolver(const BackendInput& input) : HostBackend(input,
   voxels_.resize(model_->voxels.size());
   stiffness_.resize(voxels_.size());
   mix_voxels();
-  shape_derivatives({ 0, 0, 0 }, centre_);
   for (int point = 0; point < 8; ++point)
   {
     const double x = 1 / std::sqrt(3.0);

@@ -33,7 +33,7 @@ private:
   Kinematics kinematics(std::size_t e, const Derivatives& derivative, const Components& u) const;
   void note_fibres(const ModelVoxel& voxel, const Kinematics& k);
   void add_stress(std::size_t e, const Stress& P, const Derivatives& derivative, double share);
-  void add_hourglass(std::size_t e, const Components& u, const Kinematics& k);
+  void add_hourglass(std::size_t e, const Components& u, const Kinematics& k, const Derivatives& centre);
   void add_element(std::size_t e, const Components& u, const std::vector<float>& activation);
   void forces(const Components& u, const std::vector<float>& activation);
   void mix_voxels();
@@ -41,8 +41,7 @@ private:
 
   std::vector<VoxelProperties> voxels_;
   Components f_;
-  Derivatives centre_;                               // dN_b/dX_j at the centre [1/m]
-  Derivatives gauss_[8];                             // the same at the Gauss points
+  Derivatives gauss_[8];                             // dN_b/dX_j at the Gauss points [1/m]
   double hourglass_shape_[4][8];                     // +-1 patterns xy, xz, yz, xyz
   bool accounting_ = false;                          // whether fibres record their work
   std::vector<std::array<double, 2>> fibre_memory_;  // latest squared stretch, and stress times volume

@@ -93,12 +93,14 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
   for (std::size_t v = 0; v < voxels_.size(); ++v)
   {
     const auto e = static_cast<std::size_t>(voxels_[v]);
+    discretisation_.voxel(e, voxel);
     double mode[3][8];
     for (int axis = 0; axis < 3; ++axis)
     {
       for (int b = 0; b < 8; ++b)
         mode[axis][b] = u[model_.voxel_nodes[e][b]][axis];
       physics::walsh_hadamard(mode[axis]);
+      physics::to_tissue_centre(voxel.centre, mode[axis]);
     }
     const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
     double value = 0;
@@ -106,7 +108,6 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
       value = principal_strain(k);
     else
     {
-      discretisation_.voxel(e, voxel);
       const ModelVoxel at{ model_, discretisation_, voxel, e, &activation, running };
       Matrix3<double> P = physics::elastic_stress(at, at.material(), k);
       physics::add_fibres(at, k, P);

@@ -14,12 +14,6 @@ namespace
 
 using Point = physics::Vec3<double>;
 
-Point rest_point(const Model& model, std::int32_t node)
-{
-  const auto p = rest_position(model, static_cast<std::size_t>(node));
-  return { p[0], p[1], p[2] };
-}
-
 template <class Real>
 Point point_of(Real* const a[3], std::int32_t n)
 {
@@ -123,10 +117,15 @@ struct AttachedNodes<Real>::Bones
 };
 
 template <class Real>
-AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>& mass) : model_(model), mass_(mass)
+AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel)
+    : model_(model), mass_(mass), blocks_(model, mass, kernel)
 {
   for (const ConstraintSurface& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
+  std::vector<std::array<bool, 3>> fixed(model.nodes.size(), { { false, false, false } });
+  for (const PrescribedNode& node : model.prescribed)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      fixed[node.node][axis] = fixed[node.node][axis] || model.loads[node.load].fixed[axis];
   std::vector<AttachedNode> nodes = model.attached;
   for (const Model::Joint& joint : model.joints)
     nodes.push_back({ joint.node, joint.master, 1, -1, -1, -1 });
@@ -136,55 +135,31 @@ AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>
   {
     while (end < nodes.size() && nodes[end].master == nodes[begin].master)
       ++end;
-    add_group(nodes.data() + begin, nodes.data() + end);
+    const auto& path = fixed[nodes[begin].master];
+    if (path[0] || path[1] || path[2] || !blocks_.add_group(nodes.data() + begin, nodes.data() + end))
+      add_group(nodes.data() + begin, nodes.data() + end, path);
   }
-  std::vector<bool> prescribed(model.nodes.size(), false);
-  for (const PrescribedNode& node : model.prescribed)
-    prescribed[node.node] = true;
-  for (Group& group : groups_)
-    for (std::size_t n = 0; n < model.prescribed.size() && prescribed[group.master]; ++n)
-      for (int axis = 0; axis < 3 && model.prescribed[n].node == group.master; ++axis)
-        group.fixed[axis] = group.fixed[axis] || model.loads[model.prescribed[n].load].fixed[axis];
-  for (Group& group : groups_)
-    group.slides = group.slides && !group.fixed[0] && !group.fixed[1] && !group.fixed[2];
+  blocks_.finish();
   reset();
 }
 
 template <class Real>
-void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNode* end)
+void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNode* end,
+                                    const std::array<bool, 3>& fixed)
 {
   const std::int32_t master = begin->master;
-  const bool still =
-      std::all_of(begin, end, [](const AttachedNode& node) { return node.bone < 0 && node.surface < 0; });
-  const auto position = [&] { return static_cast<std::int32_t>(still ? held_.size() : ties_.size()); };
-  const bool slides = std::all_of(begin, end,
-                                  [&](const AttachedNode& node) {
-                                    return node.surface >= 0 && node.surface == begin->surface &&
-                                           model_.constraint_surfaces[node.surface].bone < 0;
-                                  });
-  Group group{ master, position(), 0, still, { false, false, false }, slides, 1 };
-  double common = mass_[master];
-  for (const AttachedNode* node = begin; node != end; ++node)
-    common += node->ratio * node->ratio * mass_[node->node];
-  group.own = static_cast<Real>(mass_[master] / common);
+  const auto position = [&] { return static_cast<std::int32_t>(ties_.size()); };
+  Group group{ master, position(), 0, { fixed[0], fixed[1], fixed[2] } };
   const auto master_planes = static_cast<std::int32_t>(planes_.size());
   std::vector<std::int32_t> surfaces;  // of those planes
-  const auto rest_level = [&](std::int32_t surface, std::int32_t node)
-  { return frontalis::level_at(model_.constraint_surfaces[surface].field, rest_position(model_, node)); };
   for (const AttachedNode* node = begin; node != end; ++node)
-    if (!still && node->surface >= 0 && std::find(surfaces.begin(), surfaces.end(), node->surface) == surfaces.end())
+    if (node->surface >= 0 && std::find(surfaces.begin(), surfaces.end(), node->surface) == surfaces.end())
     {
       surfaces.push_back(node->surface);
       planes_.emplace_back();
     }
   for (const AttachedNode* node = begin; node != end; ++node)
   {
-    if (still)
-    {
-      held_.push_back(
-          { node->node, static_cast<Real>(node->ratio), static_cast<Real>(node->ratio * mass_[node->node] / common) });
-      continue;
-    }
     Tie tie{ node->node, node->bone,  node->surface,     -1,
              -1,         node->ratio, mass_[node->node], rest_point(model_, node->node),
              0 };
@@ -195,8 +170,7 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
       tie.master_plane = master_planes + static_cast<std::int32_t>(known);
       tie.plane = static_cast<std::int32_t>(planes_.size());
       planes_.emplace_back();
-      const double offset = rest_level(node->surface, node->node) - node->ratio * rest_level(node->surface, master);
-      tie.offset = std::isfinite(offset) ? offset : 0;
+      tie.offset = level_offset(model_, *node);
     }
     ties_.push_back(tie);
   }
@@ -207,14 +181,15 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
 template <class Real>
 void AttachedNodes<Real>::reset()
 {
+  blocks_.reset();
   std::fill(planes_.begin(), planes_.end(), Plane());
 }
 
 template <class Real>
 void AttachedNodes<Real>::list_arrays(ArrayList& list)
 {
+  blocks_.list_arrays(list);
   list.add(Effect::attachment, "masters of attached nodes", groups_);
-  list.add(Effect::attachment, "attached nodes", held_);
   list.add(Effect::attachment, "attached nodes", ties_);
   list.add_state(Effect::attachment, "tangent planes", planes_);
 }
@@ -223,41 +198,15 @@ template <class Real>
 void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
                                            const ConstraintStep& step)
 {
+  blocks_.constrain(share, u, v, step.dt);
+  if (groups_.empty())
+    return;
   const auto before = [](const Group& group, std::int32_t node) { return group.master < node; };
   const auto begin = std::lower_bound(groups_.begin(), groups_.end(), share.first_node, before),
              end = std::lower_bound(begin, groups_.end(), share.end_node, before);
   const Bones bones(step);
   for (auto group = begin; group != end; ++group)
-    if (group->still)
-      follow(*group, static_cast<Real>(step.dt), u, v);
-    else if (group->slides)
-      slide(*group, step.dt, u, v);
-    else
-      follow_on_bones(*group, u, v, bones);
-}
-
-template <class Real>
-void AttachedNodes<Real>::follow(const Group& group, Real dt, Real* const u[3], Real* const v[3]) const
-{
-  const std::int32_t m = group.master;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    Real common = v[axis][m];
-    if (!group.fixed[axis])
-    {
-      common *= group.own;
-      for (auto s = group.begin; s < group.end; ++s)
-        common += held_[s].share * v[axis][held_[s].node];
-      u[axis][m] += dt * (common - v[axis][m]);
-      v[axis][m] = common;
-    }
-    const Real moved = u[axis][m];
-    for (auto s = group.begin; s < group.end; ++s)
-    {
-      u[axis][held_[s].node] = held_[s].ratio * moved;
-      v[axis][held_[s].node] = held_[s].ratio * common;
-    }
-  }
+    follow_on_bones(*group, u, v, bones);
 }
 
 // Finds the plane anew where the old one no longer holds. Where the field ends or has no direction, it stays.
@@ -273,47 +222,6 @@ void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point&
   if (!sample(field, field_point(field, place), value) || !level_plane(value, 0.0, level))
     return;
   plane = { value.gradient, place, value.value, level.slip * level.slip };
-}
-
-// follow_on_bones() where only the velocity along the gradient of the master's level changes
-template <class Real>
-void AttachedNodes<Real>::slide(const Group& group, double dt, Real* const u[3], Real* const v[3])
-{
-  const std::int32_t m = group.master;
-  const Point u_m = point_of(u, m), v_m = point_of(v, m), place = rest_point(model_, m) + u_m;
-  const Tie* const begin = ties_.data() + group.begin;
-  const Tie* const end = ties_.data() + group.end;
-  Plane& above = planes_[begin->master_plane];
-  renew(above, begin->surface, place);
-  const double steepness_m = dot(above.gradient, above.gradient);
-  double speed_m = dot(above.gradient, v_m), momentum = 0, mass = mass_[m];
-  for (const Tie* tie = begin; tie != end; ++tie)
-  {
-    Plane& plane = planes_[tie->plane];
-    renew(plane, tie->surface, tie->rest + point_of(u, tie->node));
-    const double steepness = dot(plane.gradient, plane.gradient);
-    const double weight = steepness > 0 ? tie->mass * tie->ratio / steepness : 0;
-    momentum += weight * (dot(plane.gradient, point_of(v, tie->node)) - tie->ratio * speed_m);
-    mass += weight * tie->ratio * steepness_m;
-  }
-  const double change = momentum / mass;
-  put(v_m + change * above.gradient, v, m);
-  put(u_m + (dt * change) * above.gradient, u, m);
-  speed_m += change * steepness_m;
-  const double level_m = above.level_at(place) + dt * change * steepness_m;
-  for (const Tie* tie = begin; tie != end; ++tie)
-  {
-    const Plane& plane = planes_[tie->plane];
-    const Point u_s = point_of(u, tie->node), v_s = point_of(v, tie->node);
-    const double steepness = dot(plane.gradient, plane.gradient);
-    if (!(steepness > 0))
-      continue;
-    const double speed = tie->ratio * speed_m - dot(plane.gradient, v_s);
-    const double apart = plane.level_at(tie->rest + u_s) + dt * speed - tie->ratio * level_m - tie->offset;
-    const double left = std::clamp(0.5 * apart, -physics::error_left, physics::error_left);
-    put(v_s + (speed / steepness) * plane.gradient, v, tie->node);
-    put(u_s + ((dt * speed - (apart - left)) / steepness) * plane.gradient, u, tie->node);
-  }
 }
 
 // The velocity of the master is the one at which |v - v*|^2, weighted by mass and summed over the group, is least, with

@@ -2,8 +2,11 @@
 
 #include "frontalis/model/model.hpp"
 #include "frontalis/physics/distance_field.hpp"
+#include "solver/cpu/slide_kernel.hpp"
+#include "solver/stepping/attached_blocks.hpp"
 #include "solver/stepping/node_part.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,15 +18,15 @@ namespace frontalis
 /// (Gauss's principle). So forces and masses of the nodes act on the master, whatever the forces are; constraints at
 /// surfaces that are still do no work; and no frequency of the model rises, because constraints lower Rayleigh
 /// quotients: the bounds of the time step hold as they are. Each group of a master and its nodes is computed by itself,
-/// in a fixed order.
+/// in a fixed order. Groups at surfaces that are still are those of AttachedBlocks.
 template <class Real>
 class AttachedNodes : public NodePart<Real>
 {
 public:
   /// `mass`: of every node [kg]; it and the model must outlive this object.
-  AttachedNodes(const Model& model, const std::vector<double>& mass);
+  AttachedNodes(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel = attach_plainly<Real>);
 
-  bool idle() const override { return groups_.empty(); }
+  bool idle() const override { return groups_.empty() && blocks_.empty(); }
   bool groups() const override { return true; }
   /// Applies the constraints of the groups whose masters are in the share. Their other nodes are in no other group.
   void constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
@@ -38,20 +41,9 @@ private:
   struct Group
   {
     std::int32_t master;
-    std::int32_t begin, end;  // in held_ if it is still, in ties_ otherwise
-    bool still;               // all its nodes are held at bones that do not move
+    std::int32_t begin, end;  // in ties_
     bool fixed[3];            // axes along which the master has a prescribed path
-    bool slides;              // all its nodes slide on one surface that does not move, and no axis is fixed
-    Real own;                 // share of the master's velocity in the common one
   };
-  // of a group that is still
-  struct Held
-  {
-    std::int32_t node;
-    Real ratio;
-    Real share;  // of this node's velocity in the common one
-  };
-  // of any other group
   struct Tie
   {
     std::int32_t node, bone, surface;
@@ -70,17 +62,15 @@ private:
   };
   struct Bones;
 
-  void add_group(const AttachedNode* begin, const AttachedNode* end);
-  void follow(const Group& group, Real dt, Real* const u[3], Real* const v[3]) const;
-  void slide(const Group& group, double dt, Real* const u[3], Real* const v[3]);
+  void add_group(const AttachedNode* begin, const AttachedNode* end, const std::array<bool, 3>& fixed);
   void follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones);
   void renew(Plane& plane, std::int32_t surface, const Point& place) const;
 
   const Model& model_;
   const std::vector<double>& mass_;
   std::vector<physics::DistanceField> fields_;  // of the model's surfaces
-  std::vector<Group> groups_;                   // ascending by master
-  std::vector<Held> held_;
+  AttachedBlocks<Real> blocks_;
+  std::vector<Group> groups_;  // the others, ascending by master
   std::vector<Tie> ties_;
   std::vector<Plane> planes_;
 };

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace frontalis
 {
@@ -164,8 +165,17 @@ Discretisation::Discretisation(const Model& model)
         viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
       }
   added = added_stiffness(model, *this);
-  const MassScalingSettings& scaling = model.mass_scaling;
   VoxelProperties v;
+  const EffectSet running = std::exchange(running_, EffectSet());  // the share of hourglass control without fibres
+  for (std::size_t e = 0; e < model.tissue_centre.size(); ++e)
+  {
+    mix(e, v);
+    // of assumed strain at most twice that of scalar control, which is eight times the stiffness on each mode
+    const double hourglass = assumed_strain ? 16 * v.hourglass / physics::assumed_strain_floor : 8 * v.hourglass;
+    corner_stiffness.push_back(physics::corner_stiffness(v.centre, hourglass / v.stiffness));
+  }
+  running_ = running;
+  const MassScalingSettings& scaling = model.mass_scaling;
   if (scaling.kind == MassScalingSettings::Kind::uniform && scaling.factor != 1)
     mass_factor_.assign(model.voxels.size(), static_cast<float>(scaling.factor));
   if (scaling.kind == MassScalingSettings::Kind::selective)
@@ -177,7 +187,7 @@ Discretisation::Discretisation(const Model& model)
       voxels.push_back({ v.stiffness, v.density * v.tissue_volume,
                          scaling.materials.empty() || contains_any(model, e, scaling.materials) });
     }
-    mass_factor_ = selective_mass_factors(model, voxels, held);
+    mass_factor_ = selective_mass_factors(model, voxels, corner_stiffness, held);
   }
 
   node_mass.assign(model.nodes.size(), 0);
@@ -196,12 +206,71 @@ Discretisation::Discretisation(const Model& model)
   }
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
+  if (!model.attached.empty())
+    share_masses();
   bound_at_rest();
   if (added.empty())
     return;
   for (const auto& stiffness : added)
     stiffness->stiffen(model, *this);
   bound_at_rest();
+}
+
+// A node that slides into a voxel of which little is tissue, such as a sliver of tendon below a bone's surface, may
+// have a higher frequency than all nodes that are not attached. It gets inertia against that, at most a fifth of the
+// mass of a whole voxel. A node that is held follows its master, so that only the sums of stiffness and mass over the
+// group count; the masses for the bound are in proportion to stiffness within the group.
+void Discretisation::share_masses()
+{
+  std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);
+  VoxelProperties v;
+  for (std::size_t e = 0; e < model_->voxels.size(); ++e)
+  {
+    mix(e, v);
+    for (std::size_t corner = 0; corner < 8; ++corner)
+    {
+      const std::int32_t node = model_->voxel_nodes[e][corner];
+      stiffness[node] += v.stiffness * factor_at(static_cast<std::int32_t>(e), corner);
+      tissue[node] += double(model_->fill[e]) / 8;
+    }
+  }
+  std::vector<bool> free(node_mass.size(), true);
+  for (const AttachedNode& node : model_->attached)
+    free[node.node] = false;
+  for (const std::int32_t node : held)
+    free[node] = false;
+  double highest = 0;
+  for (std::size_t n = 0; n < free.size(); ++n)
+    highest = free[n] ? std::max(highest, stiffness[n] / node_mass[n]) : highest;
+  for (const AttachedNode& node : model_->attached)
+  {
+    double& mass = node_mass[node.node];
+    const double wanted = std::min(stiffness[node.node] / highest, 0.2 * mass / tissue[node.node]);
+    if (node.surface < 0 || !(wanted > mass))
+      continue;
+    weight_share.resize(node_mass.size(), 1);
+    weight_share[node.node] *= static_cast<float>(mass / wanted);
+    mass = wanted;
+  }
+
+  bound_mass = node_mass;
+  std::vector<double> group_stiffness = stiffness;
+  std::vector<double>& group_mass = tissue;
+  group_mass = node_mass;
+  for (const AttachedNode& node : model_->attached)
+    if (node.surface < 0)
+    {
+      group_stiffness[node.master] += node.ratio * node.ratio * stiffness[node.node];
+      group_mass[node.master] += node.ratio * node.ratio * node_mass[node.node];
+    }
+  for (const AttachedNode& node : model_->attached)
+    if (node.surface < 0)
+    {
+      const double mass_per_stiffness = group_mass[node.master] / group_stiffness[node.master];
+      bound_mass[node.master] = mass_per_stiffness * stiffness[node.master];
+      bound_mass[node.node] =
+          node.ratio == 0 ? std::numeric_limits<double>::infinity() : mass_per_stiffness * stiffness[node.node];
+    }
 }
 
 void Discretisation::mix(std::size_t e, VoxelProperties& out) const
@@ -247,6 +316,9 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
                                            h[0], h[1], h[2]);
   for (const auto& stiffness : added)
     out.stiffness += stiffness->in_voxel(e);
+  out.centre = {};
+  if (!model.tissue_centre.empty())
+    out.centre = { model.tissue_centre[e][0], model.tissue_centre[e][1], model.tissue_centre[e][2] };
   if (viscous_terms > 0)
     mix_viscosity(model, e, out);
 }
@@ -272,6 +344,7 @@ void Discretisation::bound_at_rest()
 void Discretisation::list_arrays(ArrayList& list) const
 {
   list.add("masses of nodes", node_mass);
+  list.add(Effect::attachment, "masses of nodes", bound_mass);
   list.add("held nodes", held);
   list.add("shares of weight", weight_share);
   list.add("mass scaling", mass_factor_);

@@ -2,6 +2,7 @@
 
 #include "frontalis/model/effects.hpp"
 #include "frontalis/physics/assumed_strain.hpp"
+#include "frontalis/physics/cut_voxels.hpp"
 #include "solver/stepping/added_stiffness.hpp"
 #include "solver/stepping/array_list.hpp"
 
@@ -35,6 +36,7 @@ struct VoxelProperties
   physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
   /// Bound of the largest eigenvalue of its stiffness at rest, with every muscle at full activation [N/m].
   double stiffness = 0;
+  physics::TissueCentre<double> centre{};  ///< where its stress is found
   std::vector<LawPart> laws;
   /// Prony terms: fractions are averaged by stiffness, rates [1/s] by relaxing stiffness.
   std::array<double, 2> viscous_share{};
@@ -56,6 +58,11 @@ public:
   /// Includes the running fibre effects in the stiffness bounds. Masses do not change.
   void bound(EffectSet running);
   void list_arrays(ArrayList& list) const;
+  /// Factor on the stiffness bound of a voxel at one of its corners.
+  double factor_at(std::int32_t voxel, std::size_t corner) const
+  {
+    return corner_stiffness.empty() ? 1 : double(corner_stiffness[voxel][corner]);
+  }
   /// The added stiffness of type `Stiffness`; null if the model has none.
   template <class Stiffness>
   const Stiffness* find_added() const
@@ -66,16 +73,20 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                                   ///< of a whole voxel [m3]
-  bool assumed_strain = false;                         ///< hourglass control by assumed strain
-  bool selective_reduced = false;                      ///< no hourglass control
-  bool laws = false;                                   ///< whether a voxel has a law other than neo-Hookean
-  int viscous_terms = 0;                               ///< 0..2
-  double viscous_time_min = 0;                         ///< [s]
-  std::array<double, 3> hourglass_weight{};            ///< 1 / (4 sqrt(3) h) [1/m]
-  std::array<double, 3> stretch_weight{};              ///< 1/h^2 over the sum of the three
-  double stretch_half_sum = 0;                         ///< half of that sum [1/m2]
-  std::vector<double> node_mass;                       ///< lumped [kg]
+  double volume = 0;                         ///< of a whole voxel [m3]
+  bool assumed_strain = false;               ///< hourglass control by assumed strain
+  bool selective_reduced = false;            ///< no hourglass control
+  bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
+  int viscous_terms = 0;                     ///< 0..2
+  double viscous_time_min = 0;               ///< [s]
+  std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
+  std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
+  double stretch_half_sum = 0;               ///< half of that sum [1/m2]
+  std::vector<double> node_mass;             ///< lumped [kg]
+  /// Masses for the bound of the highest frequency, whose sums over groups of attached nodes are those of node_mass;
+  /// infinite for a node that does not move with its master. Empty: node_mass.
+  std::vector<double> bound_mass;
+  std::vector<std::array<float, 8>> corner_stiffness;  ///< factors on the bounds of voxels at their corners; empty: 1
   std::vector<float> weight_share;                     ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;                      ///< nodes whose motion is prescribed along all axes, ascending
   std::vector<std::shared_ptr<AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
@@ -84,6 +95,7 @@ public:
 private:
   void mix(std::size_t index, VoxelProperties& out) const;
   void bound_at_rest();
+  void share_masses();
 
   const Model* model_;
   EffectSet running_;

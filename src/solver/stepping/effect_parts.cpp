@@ -18,7 +18,7 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
 {
   std::vector<std::unique_ptr<NodePart<Real>>> parts;
   parts.push_back(std::make_unique<RestrictedNodes<Real>>(model, kernels.slide));
-  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass));
+  parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass, kernels.attach));
   parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
   parts.push_back(std::make_unique<ShellForces<Real>>(model, kernels.shell));
   parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));

@@ -37,7 +37,8 @@ double mode_amplitude(const Model& model);
 
 /// Squared highest frequency [1/s2] of the assembled model at displacements u: power iteration on M^-1/2 K M^-1/2 from
 /// `mode`, the result of the latest search; empty at first. Products with K are differences of internal forces, so that
-/// they include every law and fibre. Held nodes stay; other constraints could only lower the frequency and are omitted.
+/// they include every law and fibre. Held nodes stay, and attached ones that are held follow their masters; other
+/// constraints could only lower the frequency and are omitted.
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
                                  int most_iterations, NodalVectors& mode);

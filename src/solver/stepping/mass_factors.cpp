@@ -10,16 +10,17 @@ namespace
 // Squared frequency bound of a model of only the voxels that are not chosen [1/s2]. Held nodes count only if all of
 // these voxels' nodes are held.
 double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
+                         const std::vector<std::array<float, 8>>& corner_stiffness,
                          const std::vector<std::int32_t>& held)
 {
   std::vector<double> stiffness(model.nodes.size(), 0), mass(model.nodes.size(), 0);
   for (std::size_t e = 0; e < voxels.size(); ++e)
-    for (const auto n : model.voxel_nodes[e])
-      if (!voxels[e].chosen)
-      {
-        stiffness[n] += voxels[e].stiffness;
-        mass[n] += voxels[e].mass / 8;
-      }
+    for (std::size_t corner = 0; corner < 8 && !voxels[e].chosen; ++corner)
+    {
+      const std::int32_t n = model.voxel_nodes[e][corner];
+      stiffness[n] += voxels[e].stiffness * (corner_stiffness.empty() ? 1.0 : double(corner_stiffness[e][corner]));
+      mass[n] += voxels[e].mass / 8;
+    }
   const auto largest = [&]
   {
     double squared = 0;
@@ -38,19 +39,23 @@ double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& vox
 }  // namespace
 
 std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
+                                          const std::vector<std::array<float, 8>>& corner_stiffness,
                                           const std::vector<std::int32_t>& held)
 {
   const MassScalingSettings& settings = model.mass_scaling;
   const double allowed = settings.time_step > 0 ? 4 * model.time_step_share * model.time_step_share /
                                                       (settings.time_step * settings.time_step)
-                                                : allowed_by_others(model, voxels, held);
+                                                : allowed_by_others(model, voxels, corner_stiffness, held);
   if (allowed == 0)
     return {};
   std::vector<float> factors;
   bool any = false;
-  for (const ScaledVoxel& voxel : voxels)
+  for (std::size_t e = 0; e < voxels.size(); ++e)
   {
-    const double factor = voxel.chosen ? std::max(8 * voxel.stiffness / (allowed * voxel.mass), 1.0) : 1;
+    const ScaledVoxel& voxel = voxels[e];
+    const double corner =
+        corner_stiffness.empty() ? 1 : *std::max_element(corner_stiffness[e].begin(), corner_stiffness[e].end());
+    const double factor = voxel.chosen ? std::max(8 * corner * voxel.stiffness / (allowed * voxel.mass), 1.0) : 1;
     factors.push_back(static_cast<float>(factor));
     any = any || factor > 1;
   }

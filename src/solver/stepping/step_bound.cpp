@@ -6,21 +6,32 @@
 namespace frontalis
 {
 
+namespace
+{
+
+const std::vector<double>& masses_for_bound(const Discretisation& discretisation)
+{
+  return discretisation.bound_mass.empty() ? discretisation.node_mass : discretisation.bound_mass;
+}
+
+}  // namespace
+
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
                          IndexRange voxels, IndexRange nodes, double* sum)
 {
   std::fill(sum + nodes.first, sum + nodes.last, 0.0);
   for (auto e = voxels.first; e < voxels.last; ++e)
-    for (const auto node : model.voxel_nodes[e])
-      if (node >= nodes.first && node < nodes.last)
-        sum[node] += stiffness[e];
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      if (const auto node = model.voxel_nodes[e][corner]; node >= nodes.first && node < nodes.last)
+        sum[node] += stiffness[e] * discretisation.factor_at(e, corner);
   StepBound bound;
+  const std::vector<double>& mass = masses_for_bound(discretisation);
   auto held = std::lower_bound(discretisation.held.begin(), discretisation.held.end(), nodes.first);
   for (auto n = nodes.first; n < nodes.last; ++n)
     if (held != discretisation.held.end() && *held == n)
       ++held;
     else
-      bound.add({ sum[n] / discretisation.node_mass[n], n });
+      bound.add({ sum[n] / mass[n], n });
   return bound;
 }
 
@@ -56,9 +67,9 @@ std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const doub
 std::vector<float> mobility(const Discretisation& discretisation)
 {
   std::vector<float> result;
-  if (discretisation.held.empty())
+  if (discretisation.held.empty() && discretisation.bound_mass.empty())
     return result;
-  for (const double mass : discretisation.node_mass)
+  for (const double mass : masses_for_bound(discretisation))
     result.push_back(static_cast<float>(1 / mass));
   for (const auto n : discretisation.held)
     result[n] = 0;

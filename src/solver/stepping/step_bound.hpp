@@ -36,7 +36,7 @@ StepBound step_bound(const Discretisation& discretisation, const Model& model, c
 /// The stiffest of the voxels at a node; -1 for node -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
 
-/// 1 / mass of every node [1/kg], 0 for held nodes; empty if none is held.
+/// 1 / mass of every node for the bound [1/kg], 0 for held nodes; empty if these are the masses of all nodes.
 std::vector<float> mobility(const Discretisation& discretisation);
 
 }  // namespace frontalis

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+
+namespace frontalis
+{
+
+/// Number of masters of attached nodes that are processed together, one per lane. Where fewer are left, the other lanes
+/// are copies of the first one.
+constexpr int attach_width = 16;
+
+/// Tangent planes of the levels of nodes: at displacement u the level is gradient . u + level.
+template <class Real>
+struct LevelPlanes
+{
+  Real gradient[3][attach_width], level[attach_width];
+  Real flat[attach_width];             ///< 1 / |gradient|^2; 0: no plane
+  Real reference[3][attach_width];     ///< displacement at which the plane was found
+  Real slip_squared[attach_width];     ///< squared distance over which it is valid; negative: no plane yet
+  std::int32_t surface[attach_width];  ///< index into Model::constraint_surfaces; -1: none
+};
+
+/// A node per lane that is held and follows the master of the lane, or a copy of another one of its master, of weight
+/// 0.
+template <class Real>
+struct HeldRow
+{
+  std::int32_t node[attach_width];
+  Real ratio[attach_width];
+  Real weight[attach_width];  ///< mass times ratio
+};
+
+/// A node per lane that slides, likewise.
+template <class Real>
+struct LevelRow
+{
+  std::int32_t node[attach_width];
+  Real ratio[attach_width], weight[attach_width];
+  Real offset[attach_width];  ///< of the levels from their ratio at rest [m]
+  LevelPlanes<Real> planes;
+  Real u[3][attach_width], v[3][attach_width];  ///< before the constraints
+};
+
+template <class Real>
+struct MasterBlock
+{
+  std::int32_t node[attach_width];
+  std::int32_t held_begin, held_end;    ///< range of AttachArguments::held
+  std::int32_t level_begin, level_end;  ///< range of AttachArguments::levels
+  Real held_mass[attach_width];         ///< sum of mass times squared ratio of the nodes that are held [kg]
+  Real mass[attach_width];              ///< the same and the master's own [kg]
+  LevelPlanes<Real> planes;
+};
+
+/// Plain pointers, as for CpuKernel.
+template <class Real>
+struct AttachArguments
+{
+  MasterBlock<Real>* masters;
+  const HeldRow<Real>* held;
+  LevelRow<Real>* levels;
+  Real* u[3];
+  Real* v[3];
+  Real dt;
+  Real error_left;  ///< physics/sliding.hpp
+  /// Finds the plane of a lane anew at displacement u.
+  void (*renew)(void* context, LevelPlanes<Real>& planes, int lane, std::int32_t node, const Real u[3]);
+  void* context;
+};
+
+/// Applies the constraints of blocks [first, last) of masters.
+template <class Real>
+using AttachKernel = void (*)(const AttachArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+
+/// The kernel for any machine, in any precision.
+template <class Real>
+void attach_plainly(const AttachArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+
+}  // namespace frontalis

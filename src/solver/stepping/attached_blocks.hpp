@@ -1,0 +1,60 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "frontalis/physics/distance_field.hpp"
+#include "solver/cpu/attach_kernel.hpp"
+#include "solver/stepping/node_part.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+
+/// Position of a node at rest.
+physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
+
+/// Level of an attached node at rest less its ratio times its master's [m]; 0 where the field ends.
+double level_offset(const Model& model, const AttachedNode& node);
+
+/// Groups of attached nodes that are held by what is still, or slide on one surface that is still. Sixteen masters of a
+/// plane of nodes form a block; the nodes that follow them are in rows of sixteen.
+template <class Real>
+class AttachedBlocks
+{
+public:
+  AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
+
+  /// Adds a master without a prescribed path and its nodes, if they are of this kind. Returns whether they are.
+  bool add_group(const AttachedNode* begin, const AttachedNode* end);
+  /// Forms the blocks.
+  void finish();
+
+  bool empty() const { return masters_.empty(); }
+  void reset();
+  void list_arrays(ArrayList& list);
+  /// Applies the constraints of the groups whose masters are in the share.
+  void constrain(const NodeShare& share, Real* const u[3], Real* const v[3], double dt);
+
+private:
+  using Planes = LevelPlanes<Real>;
+  struct Group
+  {
+    std::int32_t master, surface;
+    std::vector<AttachedNode> held, levels;
+  };
+
+  void add_block(const Group* begin, const Group* end);
+  static void renew(void* self, Planes& planes, int lane, std::int32_t node, const Real u[3]);
+
+  const Model& model_;
+  const std::vector<double>& mass_;
+  AttachKernel<Real> kernel_;
+  std::vector<physics::DistanceField> fields_;
+  std::vector<Group> groups_;  // until finish()
+  std::vector<MasterBlock<Real>> masters_;
+  std::vector<HeldRow<Real>> held_;
+  std::vector<LevelRow<Real>> levels_;
+  std::vector<std::int32_t> plane_blocks_;  // blocks of plane k of nodes: plane_blocks_[k] .. plane_blocks_[k + 1]
+};
+
+}  // namespace frontalis
