@@ -3,10 +3,11 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/guard.hpp"
 #include "frontalis/study/faces.hpp"
 #include "frontalis/study/portrait.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
@@ -79,6 +80,7 @@ void measure_faces(FacesOptions& options)
         pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(skin, controls));
     };
   std::vector<FaceRow> rows;
+  std::vector<std::string> faults;
   for (const std::string& name : names)
   {
     running = name;
@@ -101,6 +103,8 @@ void measure_faces(FacesOptions& options)
   const auto failed = std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return !row.passed(); });
   const std::string summary =
       fmt::format("{} of {} figures of {} expressions are not as people's", failed, compared, names.size());
+  if (!faults.empty())
+    throw Error(fmt::format("{}; {} could not be played:\n{}", summary, faults.size(), fmt::join(faults, "\n")));
   if (failed > 0 && !options.measured_only)
     throw Error(summary);
   fmt::print("{}\n", summary);

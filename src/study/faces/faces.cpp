@@ -100,6 +100,7 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
   std::vector<Places> frames;
   SkinState skin;
   const int count = static_cast<int>(std::lround(settings.seconds / frame_seconds));
+  frames.reserve(static_cast<std::size_t>(count) + 1);
   for (int frame = 0; frame <= count; ++frame)
   {
     if (frame > 0)
@@ -157,20 +158,20 @@ Table faces_table(const std::vector<FaceRow>& rows, bool all)
   constexpr double millimetres = 1e3, degrees = 180 / 3.14159265358979323846;
   Table table({ "expression", "landmark", "forward [mm]", "outward [mm]", "up [mm]", "size [mm]", "people [mm]",
                 "sd [mm]", "angle [deg]", "settled [s]", "verdict", "mark", "source" });
-  const auto rounded = [](double value, double step) { return std::round(value / step) * step; };
+  const auto hundredths = [](double value) { return std::round(100 * value) / 100; };
   for (const FaceRow& row : rows)
   {
     const bool compared = !std::isnan(row.most);
     if (!compared && !all)
       continue;
-    const auto mm = [&](double value) { return rounded(millimetres * value, 0.01); };
+    const auto mm = [&](double value) { return hundredths(millimetres * value); };
     const bool published = row.people != nullptr;
     table.add({ row.expression, row.landmark, mm(row.moved[0]), mm(row.moved[1]), mm(row.moved[2]), mm(row.size),
                 published  ? mm(row.people->mean)
                 : compared ? 0
                            : NAN,
                 published && row.people->deviation > 0 ? mm(row.people->deviation) : NAN,
-                std::round(degrees * row.angle), rounded(row.settled, 0.01),
+                std::round(degrees * row.angle), hundredths(row.settled),
                 std::string(!compared      ? ""
                             : row.passed() ? "pass"
                                            : "FAIL"),

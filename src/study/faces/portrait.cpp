@@ -81,7 +81,7 @@ double distance_from_line(const std::array<float, 3>& p, const std::vector<const
 
 struct Portrait::Canvas
 {
-  std::vector<Vector> colour = std::vector<Vector>(std::size_t{ finer * width } * finer * height, { 1, 1, 1 });
+  std::vector<Vector> colour = std::vector<Vector>(std::size_t{ finer } * width * finer * height, { 1, 1, 1 });
   std::vector<double> depth = std::vector<double>(colour.size(), -std::numeric_limits<double>::infinity());
 
   void put(int column, int row, double at, const Vector& what)
