@@ -17,7 +17,11 @@ struct ShellLanes
   static FRONTALIS_LAW Batch load(const float* p) { return Batch::load_unaligned(p); }
   static FRONTALIS_LAW Batch gather(const float* p, const std::int32_t* index)
   {
-    return Batch::gather(p, xsimd::batch<std::int32_t, Architecture>::load_unaligned(index));
+    // faster than the gather instructions of AVX2 and AVX-512, measured on an AMD EPYC
+    float lane[count];
+    for (int l = 0; l < count; ++l)
+      lane[l] = p[index[l]];
+    return Batch::load_unaligned(lane);
   }
   static FRONTALIS_LAW void store(const Batch& x, float* p) { x.store_unaligned(p); }
 };
