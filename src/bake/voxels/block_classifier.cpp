@@ -75,7 +75,8 @@ void BlockClassifier::add_part(const VoxelPlace& place, const std::vector<char>&
   chosen_ = &chosen;
   sample_alone(place);
   chosen_ = nullptr;
-  add_voxel(place, std::accumulate(share_.material.begin(), share_.material.end(), 0.0));
+  const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
+  add_voxel(place, fill, 2 * (tissue_offset_ / fill - mean_offset_));
 }
 
 void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state)

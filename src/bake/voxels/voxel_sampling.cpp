@@ -53,7 +53,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
     const auto has_material = [&](const Volumes::Entry& entry)
     { return entry.material >= 0 && inside[&entry - volumes_.entries().data()] == Answer::yes; };
     if (std::any_of(volumes_.entries().begin(), volumes_.entries().end(), has_material))
-      tissue_offset_ += share * offset;
+      tissue_offset_ += share * offsets_[s];
     add_share(inside, depth_here_, share);
   }
 }
