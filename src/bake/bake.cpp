@@ -106,7 +106,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   Gaps gaps(scene, volumes, surfaces, grid);
   {
     Voxels voxels = voxelise(volumes, grid, scene.accuracy.samples, scene.accuracy.fill_min,
-                                   attaching_surfaces(scene, surfaces), monitor);
+                             attaching_surfaces(scene, surfaces), monitor);
     check_volumes(scene, volumes, voxels, monitor);
     check_layers(scene, volumes, voxels);
     if (voxels.place.empty())

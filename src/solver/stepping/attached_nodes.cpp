@@ -147,7 +147,6 @@ AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>
         group.fixed[axis] = group.fixed[axis] || model.loads[model.prescribed[n].load].fixed[axis];
   for (Group& group : groups_)
     group.slides = group.slides && !group.fixed[0] && !group.fixed[1] && !group.fixed[2];
-  reset();
 }
 
 template <class Real>
