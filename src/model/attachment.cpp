@@ -18,6 +18,35 @@ EffectPresence found(const Model& model)
   return { nodes > 0, nodes > 0 ? "boundary: true" : "boundary: staircase", 0, nodes };
 }
 
+void check_joints(const Model& model)
+{
+  using namespace checks;
+  const auto node = index_below(model.nodes.size());
+  check_each("joints (node)", node, model.joints, &Model::Joint::node);
+  check_each("joints (master)", node, model.joints, &Model::Joint::master);
+  if (model.joints.empty())
+    return;
+  std::vector<bool> free(model.nodes.size(), true);
+  for (const RigidNode& rigid : model.rigid)
+    free[rigid.node] = false;
+  for (const AttachedNode& attached : model.attached)
+    free[attached.node] = false;
+  for (std::size_t n = 0; n < model.joints.size(); ++n)
+  {
+    if (!free[model.joints[n].node])
+      fail("joints", "entry {} is node {}, which another entry restricts", n, model.joints[n].node);
+    free[model.joints[n].node] = false;
+  }
+  for (std::size_t n = 0; n < model.joints.size(); ++n)
+  {
+    const auto [joined, master] = model.joints[n];
+    if (!free[master])
+      fail("joints", "the master of entry {} is node {}, which is restricted itself", n, master);
+    if (rest_place(model, model.nodes[joined]) != rest_place(model, model.nodes[master]))
+      fail("joints", "the nodes {} and {} of entry {} rest at different places", joined, master, n);
+  }
+}
+
 void check(const Model& model)
 {
   using namespace checks;
@@ -46,6 +75,7 @@ void check(const Model& model)
   for (std::size_t n = 0; n < model.attached.size(); ++n)
     if (restricted[model.attached[n].master])
       fail("attached (master)", "entry {} is node {}, which is restricted itself", n, model.attached[n].master);
+  check_joints(model);
 }
 
 // A model without attached nodes stores nothing.

@@ -182,34 +182,6 @@ void check_constraints(const Model& model)
   check_each("prescribed (load)", index_below(model.loads.size()), model.prescribed, &PrescribedNode::load);
 }
 
-void check_joints(const Model& model)
-{
-  const auto node = index_below(model.nodes.size());
-  check_each("joints (node)", node, model.joints, &Model::Joint::node);
-  check_each("joints (master)", node, model.joints, &Model::Joint::master);
-  if (model.joints.empty())
-    return;
-  std::vector<bool> free(model.nodes.size(), true);
-  for (const RigidNode& rigid : model.rigid)
-    free[rigid.node] = false;
-  for (const AttachedNode& attached : model.attached)
-    free[attached.node] = false;
-  for (std::size_t n = 0; n < model.joints.size(); ++n)
-  {
-    if (!free[model.joints[n].node])
-      fail("joints", "entry {} is node {}, which another entry restricts", n, model.joints[n].node);
-    free[model.joints[n].node] = false;
-  }
-  for (std::size_t n = 0; n < model.joints.size(); ++n)
-  {
-    const auto [joined, master] = model.joints[n];
-    if (!free[master])
-      fail("joints", "the master of entry {} is node {}, which is restricted itself", n, master);
-    if (rest_place(model, model.nodes[joined]) != rest_place(model, model.nodes[master]))
-      fail("joints", "the nodes {} and {} of entry {} rest at different places", joined, master, n);
-  }
-}
-
 void check_loads(const Model& model)
 {
   check_entry("gravity", 0, check_finite, model.gravity);
@@ -294,7 +266,6 @@ void check_model(const Model& model)
   check_material_directions(model);
   check_fibres(model);
   check_constraints(model);
-  check_joints(model);
   check_effects(model);
   check_loads(model);
   check_mesh("skin", model.skin);

@@ -13,12 +13,13 @@
 namespace frontalis
 {
 
-/// Nodes whose motion follows that of another node (AttachedNode), and joints of flaps, which are one node. After the free update of a step, a master and the
-/// nodes that follow it get the velocities nearest to theirs, in the norm of their masses, that the constraints allow
-/// (Gauss's principle). So forces and masses of the nodes act on the master, whatever the forces are; constraints at
-/// surfaces that are still do no work; and no frequency of the model rises, because constraints lower Rayleigh
-/// quotients: the bounds of the time step hold as they are. Each group of a master and its nodes is computed by itself,
-/// in a fixed order. Groups at surfaces that are still are those of AttachedBlocks.
+/// Nodes whose motion follows that of another node (AttachedNode), and joints of flaps, which are one node. After the
+/// free update of a step, a master and the nodes that follow it get the velocities nearest to theirs, in the norm of
+/// their masses, that the constraints allow (Gauss's principle). So forces and masses of the nodes act on the master,
+/// whatever the forces are; constraints at surfaces that are still do no work; and no frequency of the model rises,
+/// because constraints lower Rayleigh quotients: the bounds of the time step hold as they are. Each group of a master
+/// and its nodes is computed by itself, in a fixed order. Groups at surfaces that are still are those of
+/// AttachedBlocks.
 template <class Real>
 class AttachedNodes : public NodePart<Real>
 {

@@ -81,7 +81,7 @@ void opened_slit(CaseRun& run)
 {
   Model model = damped_block(run);
   const double top = model.size[2] * model.spacing[2];
-  const auto length = static_cast<std::int32_t>(run.count("length"));
+  const auto length = static_cast<std::int32_t>(run.number("length"));
   cut(model, length);
   hold(model, [](const Point& p) { return p[2] == 0; });
   hold(
