@@ -15,7 +15,4 @@ SampledField flat_body(double z, int side);
 /// point at its centre, so that a uniform pressure gives each of its nodes a quarter of its force.
 Contact touching_side(const Model& model, bool upper, SampledField body);
 
-/// Contact of surfaces with each other, bound to the nearest voxels.
-SelfContact touching_surfaces(const Model& model, const std::vector<TriangleMesh>& surfaces, double friction);
-
 }  // namespace frontalis

@@ -44,21 +44,4 @@ Contact touching_side(const Model& model, bool upper, SampledField body)
   return contact;
 }
 
-SelfContact touching_surfaces(const Model& model, const std::vector<TriangleMesh>& surfaces, double friction)
-{
-  SelfContact contact;
-  contact.name = "tissue";
-  contact.friction = friction;
-  TriangleMesh& all = contact.surface;
-  for (const TriangleMesh& mesh : surfaces)
-  {
-    const auto first = static_cast<std::int32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    for (const auto& t : mesh.triangles)
-      all.triangles.push_back({ { first + t[0], first + t[1], first + t[2] } });
-  }
-  contact.binding = bind_points(model, all.vertices);
-  return contact;
-}
-
 }  // namespace frontalis

@@ -3,6 +3,7 @@
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/contact_model.hpp"
+#include "frontalis/study/self_contact_model.hpp"
 #include "study/stability/stability_cases.hpp"
 
 #include <algorithm>
@@ -271,8 +272,7 @@ void lips(CaseRun& run)
                        return { { 1e-3 * x, 1e-3 * t * size[1], 1e-3 * k } };
                      });
   };
-  model.self_contacts.push_back(
-      touching_surfaces(model, { side(slit, true), side(slit + 1, false) }, run.number("friction")));
+  let_touch(model, { side(slit, true), side(slit + 1, false) }, run.number("friction"));
   GuardedTrial motion(run, model);
   const auto opened = [&](float activation, double millimetres)
   {

@@ -2,7 +2,7 @@
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/contact.hpp"
-#include "frontalis/study/contact_model.hpp"
+#include "frontalis/study/self_contact_model.hpp"
 #include "study/verification/contact_checks.hpp"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ public:
                          return in_grid({ { length * (faces_up ? s : 1 - s), width * t, z } });
                        });
     };
-    model.self_contacts.push_back(touching_surfaces(model, { side(height, true), side(height + gap, false) }, 0));
+    let_touch(model, { side(height, true), side(height + gap, false) }, 0);
   }
 
   /// Coordinates of the blocks, in voxels, and of the grid [m].
