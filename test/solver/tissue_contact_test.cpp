@@ -11,6 +11,8 @@ namespace
 
 using namespace test;
 
+using Point = std::array<double, 3>;
+
 // Holds the side z = 0 of a model along z and moves the opposite one by `way` [m].
 void press(Model& model, double way, double ramp)
 {
@@ -115,8 +117,9 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
     EXPECT_EQ(ledger["contact_stored"], 0);  // they have parted
     EXPECT_EQ(ledger["friction"] > 0.005 * initial, friction > 0);
     const Vectors from = displacements(*solver);
-    const double dt = 1e-6;
-    solver->advance(dt, solver->controls());
+    const double begin = solver->time();
+    solver->advance(0.5 * solver->time_step(), solver->controls());
+    const double dt = solver->time() - begin;
     const Vectors to = displacements(*solver);
     Vectors velocity(v.size()), middle(v.size());
     for (std::size_t n = 0; n < v.size(); ++n)
@@ -127,11 +130,12 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
       }
     const std::array<double, 6> after = momenta(middle, velocity);
     for (std::size_t i = 0; i < 6; ++i)
-      EXPECT_NEAR(after[i], before[i], (single_precision() ? 3e-5 : 1e-11) * std::abs(before[i < 3 ? 2 : 4])) << i;
+      EXPECT_NEAR(after[i], before[i], (single_precision() ? 1e-5 : 1e-11) * std::abs(before[i < 3 ? 2 : 4])) << i;
   }
 }
 
-// Balls of voxels, whose smooth surfaces lie outside of the steps, collide out of centre, without damping.
+// Balls of voxels, whose smooth surfaces lie outside of the steps, collide out of centre, or glance off each other at
+// 1 m/s, without damping.
 TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
 {
   const double radius = 5.2, middle = 6.5;
@@ -140,7 +144,7 @@ TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
   settings.poisson = 0.45;
   settings.keep = [&](std::int32_t i, std::int32_t j, std::int32_t k)
   { return std::hypot((i < 13 ? i : i - 13) + 0.5 - middle, j + 0.5 - middle, k + 0.5 - middle) < radius; };
-  for (const double friction : { 0.0, 0.3 })
+  for (const auto& [friction, glances] : { std::make_pair(0.0, false), { 0.3, false }, { 0.0, true } })
   {
     Model model = block_model(settings);
     SelfContact contact;
@@ -153,8 +157,8 @@ TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
     for (std::size_t n = 0; n < u.size(); ++n)
       if (model.nodes[n][0] > 13)
       {
-        u[n] = { { -2.4e-3, 2.3e-3, 0.7e-3 } };
-        v[n] = { { -0.3, 0.06, 0.03 } };
+        u[n] = glances ? Point{ { -4.5e-3, 9e-3, 0.7e-3 } } : Point{ { -2.4e-3, 2.3e-3, 0.7e-3 } };
+        v[n] = glances ? Point{ { 0, -1, 0 } } : Point{ { -0.3, 0.06, 0.03 } };
       }
     solver->set_displacements(u);
     solver->set_velocities(v);
@@ -165,9 +169,9 @@ TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
       solver->advance(0.5e-3, solver->controls());
       const EnergyLedger ledger = solver->ledger();
       stored = std::max(stored, ledger["contact_stored"]);
-      EXPECT_NEAR(mechanical(ledger) + ledger["friction"], initial, 0.01 * initial) << slice;
+      EXPECT_NEAR(mechanical(ledger) + ledger["friction"], initial, (friction > 0 ? 0.01 : 1e-3) * initial) << slice;
     }
-    EXPECT_GT(stored, 0.03 * initial);
+    EXPECT_GT(stored, (glances ? 0.003 : 0.03) * initial);
     EXPECT_EQ(solver->ledger()["contact_stored"], 0);
   }
 }

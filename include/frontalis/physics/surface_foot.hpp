@@ -23,9 +23,9 @@ struct SurfaceFoot
   T gap;             ///< from the surface, negative behind it [m]
   Vec3<T> gradient;  ///< of the gap: nearly the normal
   Vec3<T> normal;    ///< of the surface, unit vector: the point is x = foot + (gap + bulge) * normal
-  T weight[3];     ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
-  T inside[3];     ///< the same, of the nearest point in the triangle
-  T spread[3];     ///< derivatives of the gap by the corners' normals along normal - gradient [m]
+  T weight[3];       ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
+  T inside[3];       ///< the same, of the nearest point in the triangle
+  T spread[3];       ///< derivatives of the gap by the corners' normals along normal - gradient [m]
   Vec3<T> mean_normal;  ///< interpolated there, its length not 1
   Vec3<T> mean_place;   ///< that point
   // the triangle's plane
@@ -67,7 +67,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
     foot.weight[i] = foot.below[i];
   // Each repetition reduces the error by the height over the radius of curvature. Lengths of the direction do not
   // matter.
-  for (int repetition = 0; repetition < 3; ++repetition)
+  for (int repetition = 0; repetition < 2; ++repetition)
   {
     for (int i = 0; i < 3; ++i)
       foot.inside[i] = N::max(foot.weight[i], N::of(0));
@@ -103,18 +103,18 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
     bulges[i] = share * counts[i] * (bulges[i] - all);
   const Vec3<T> turn1 = counts[1] * n[1] - counts[0] * n[0], turn2 = counts[2] * n[2] - counts[0] * n[0];
   const Vec3<T> first = ab + way * turn1, second = ac + way * turn2, across = cross(first, second);
-  foot.gradient = (T(1) / N::max(dot(across, direction), N::of(0.1) * length)) *
-                  ((way * dot(foot.normal, turn1) - bulges[1] + bulges[0]) * cross(second, direction) +
-                   (way * dot(foot.normal, turn2) - bulges[2] + bulges[0]) * cross(direction, first) +
-                   stretch * across);
+  foot.gradient =
+      (T(1) / N::max(dot(across, direction), N::of(0.1) * length)) *
+      ((way * dot(foot.normal, turn1) - bulges[1] + bulges[0]) * cross(second, direction) +
+       (way * dot(foot.normal, turn2) - bulges[2] + bulges[0]) * cross(direction, first) + stretch * across);
   return foot;
 }
 
 /// The force on a corner of the triangle [N] that belongs to forces on the point: `pressed` times the gradient of the
 /// gap, and `along` perpendicular to it. Together with corner_turn() those on the three corners are opposite to the two
-/// on the point, in sum and in moment, to rounding: the first are gradients of the gap, which depends on relative places
-/// alone, and the couple of the second, which acts at the height of the point, is taken up by forces normal to the
-/// triangle.
+/// on the point, in sum and in moment, to rounding: the first are gradients of the gap, which depends on relative
+/// places alone, and the couple of the second, which acts at the height of the point, is taken up by forces normal to
+/// the triangle.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed, const Vec3<T>& along)

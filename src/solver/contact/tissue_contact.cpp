@@ -234,7 +234,7 @@ typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p
   }
   Vector way{ 0, 0, 0 };
   const auto& corners = surface_.triangles[track.triangle].vertex;
-  if (track.touches == Touching::yes)
+  if (track.touches == Touching::yes && friction > 0)
   {
     way = track.stretch + (placed[p].place - placed[p].before);
     for (int i = 0; i < 3; ++i)

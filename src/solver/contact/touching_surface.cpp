@@ -275,16 +275,23 @@ void TouchingSurface::place(std::size_t v, const Real* const u[3], Placed& at) c
 {
   const Vertex& vertex = vertices[v];
   const auto& nodes = model_.voxel_nodes[vertex.voxel];
-  double weight[8];
-  physics::trilinear_weights<double>(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
-  Vector place = vertex.rest, first = vertex.tangent[0], second = vertex.tangent[1];
+  const auto& c = vertex.coordinates;
+  Real weight[8];
+  physics::trilinear_weights<Real>(Real(c[0]), Real(c[1]), Real(c[2]), weight);
+  // displacement, and its derivatives along the tangents; rows of four, which compilers turn into vectors
+  Real sum[3][4] = {};
   for (std::size_t b = 0; b < 8; ++b)
   {
-    const Vector moved{ double(u[0][nodes[b]]), double(u[1][nodes[b]]), double(u[2][nodes[b]]) };
-    place = place + weight[b] * moved;
-    first = first + double(vertex.along[0][b]) * moved;
-    second = second + double(vertex.along[1][b]) * moved;
+    const Real moved[4] = { u[0][nodes[b]], u[1][nodes[b]], u[2][nodes[b]], 0 };
+    for (std::size_t axis = 0; axis < 4; ++axis)
+    {
+      sum[0][axis] += weight[b] * moved[axis];
+      sum[1][axis] += Real(vertex.along[0][b]) * moved[axis];
+      sum[2][axis] += Real(vertex.along[1][b]) * moved[axis];
+    }
   }
+  const auto row = [&](std::size_t k) { return Vector{ double(sum[k][0]), double(sum[k][1]), double(sum[k][2]) }; };
+  const Vector place = vertex.rest + row(0), first = vertex.tangent[0] + row(1), second = vertex.tangent[1] + row(2);
   const Vector area = cross(first, second);
   at.before = at.place;
   at.place = place;

@@ -1,8 +1,9 @@
-// hard cases of contact with rigid bodies: a finger, a lid, bodies that jump, edges, two bodies on one sheet
+// hard cases of contact: a finger, a lid, bodies that jump, edges, two bodies on one sheet; lips
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/contact_model.hpp"
+#include "frontalis/study/self_contact_model.hpp"
 #include "study/stability/stability_cases.hpp"
 
 #include <algorithm>
@@ -236,15 +237,76 @@ void pinched_sheet(CaseRun& run)
   let_rest(run, motion, "pinched, drawn and let go", "pinched_sheet", "A thin sheet is pinched, drawn and let go");
 }
 
+void lips(CaseRun& run)
+{
+  // two lips, joined at the corners of the mouth, around which a muscle runs as a ring; bones hold them above and below
+  const Voxel size = run.size();
+  const std::int32_t slit = size[2] / 2, corner = static_cast<std::int32_t>(run.number("corner"));
+  VoxelBox box{ size, { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
+  box.fill = [&](const Voxel& v) { return v[2] == slit && v[0] >= corner && v[0] < size[0] - corner ? 0.0 : 1.0; };
+  Model model = voxel_model(box);
+  model.damping = run.number("damping", "1/s");
+  const double x0 = 0.5 * size[0], z0 = slit + 0.5;
+  add_muscles(model, { Muscle{ "ring", 1e6 * run.number("stress", "MPa"), true, true } },
+              [&](std::size_t e)
+              {
+                // the ring is an ellipse about the slit; fibres go along it
+                const auto& v = model.voxels[e];
+                const double a = x0 - 0.5 * corner, b = run.number("half_height"), x = (v[0] + 0.5 - x0) / a,
+                             z = (v[2] + 0.5 - z0) / b, radius = std::hypot(x, z);
+                if (radius < 0.5 || radius > 1.2)
+                  return std::vector<Fibre>();
+                const double tx = -z / b, tz = x / a, along = std::hypot(tx, tz);
+                return std::vector<Fibre>{
+                  { 0, { { static_cast<float>(tx / along), 0, static_cast<float>(tz / along) } }, 0.5F }
+                };
+              });
+  hold_face(model, 2, false, "jaw");
+  hold_face(model, 2, true, "skull");
+  const auto side = [&](std::int32_t k, bool faces_up)
+  {
+    return grid_mesh(2 * (size[0] - 2 * corner), 2 * size[1],
+                     [&](double s, double t) -> Point
+                     {
+                       const double x = corner + (faces_up ? s : 1 - s) * (size[0] - 2 * corner);
+                       return { { 1e-3 * x, 1e-3 * t * size[1], 1e-3 * k } };
+                     });
+  };
+  let_touch(model, { side(slit, true), side(slit + 1, false) }, run.number("friction"));
+  GuardedTrial motion(run, model);
+  const auto opened = [&](float activation, double millimetres)
+  {
+    Controls controls = motion.controls(activation);
+    controls.bone[0] = shifted({ { 0, 0, -1e-3 * millimetres } });
+    return controls;
+  };
+  const double shut = run.number("shut", "mm"), open = run.number("open", "mm");
+  motion.advance({ run.seconds("pressing"), opened(1, -shut), 20 });
+  // the sides of the slit are grids of nodes of equal number
+  const Vectors u = motion.displacements();
+  double overlap = -1;
+  const auto across = nodes_where(model, [&](const Point& p) { return std::lround(1e3 * p[2]) == slit; });
+  for (const auto n : across)
+    for (const auto m : nodes_where(model,
+                                    [&](const Point& p)
+                                    {
+                                      return p[0] == rest_position(model, n)[0] && p[1] == rest_position(model, n)[1] &&
+                                             std::lround(1e3 * p[2]) == slit + 1;
+                                    }))
+      overlap = std::max(overlap, 1e3 * (u[n][2] - u[m][2]) - 1);
+  run.check("overlap of the lips", "mm", 0, std::max(overlap, 0.0), "overlap");
+  run.check("lips apart", "mm", 0, std::max(-overlap, 0.0), "apart");
+  motion.advance({ run.seconds("tearing"), opened(1, open), 20 });
+  motion.advance({ run.seconds("closing"), opened(0, 0), 20 });
+  let_rest(run, motion, "pressed, torn open and closed", "lips", "Lips are pressed by full activation and torn open");
+}
+
 }  // namespace
 
 CaseFunctions hard_contacts()
 {
-  return { { "finger", finger },
-           { "blinking", blinking },
-           { "body_jump", body_jump },
-           { "sharp_edge", sharp_edge },
-           { "pinched_sheet", pinched_sheet } };
+  return { { "finger", finger },         { "blinking", blinking },           { "body_jump", body_jump },
+           { "sharp_edge", sharp_edge }, { "pinched_sheet", pinched_sheet }, { "lips", lips } };
 }
 
 }  // namespace frontalis

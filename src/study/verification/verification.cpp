@@ -39,6 +39,7 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "contact_impact", true, verify_contact_impact },
            { "contact_wrench", true, verify_contact_wrench },
            { "contact_incline", true, verify_contact_incline },
+           { "self_contact", false, verify_self_contact },
            { "energy_balance", true, verify_energy_balance },
            { "precision", false, verify_precision },
            { "heart_beam", false, verify_heart_beam },

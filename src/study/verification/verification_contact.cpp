@@ -1,9 +1,8 @@
 // contact with rigid bodies: blocks that are pressed, bounce, slip and slide, on every backend
 
 #include "frontalis/physics/contact.hpp"
-#include "frontalis/solver/backend.hpp"
 #include "frontalis/study/contact_model.hpp"
-#include "study/verification/verification_cases.hpp"
+#include "study/verification/contact_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,65 +28,6 @@ Model falling_block(double gap, double friction)
   model.contacts.push_back(touching_side(model, false, flat_body(-gap, -1)));
   model.contacts[0].friction = friction;
   return model;
-}
-
-// Calls `verify` for each backend of this machine. Backends that do not compute contact are listed as skipped.
-void on_every_backend(Finding& finding, const std::function<void(const Backend&)>& verify)
-{
-  for (const Backend& backend : available_backends())
-    try
-    {
-      verify(backend);
-    }
-    catch (const BackendUnavailable& why)
-    {
-      finding.skipped += (finding.skipped.empty() ? "" : "; ") + std::string(why.what());
-    }
-}
-
-std::unique_ptr<Solver> make(const Model& model, const Backend& backend, bool ledger = false, double time_step = 0)
-{
-  return make_solver(std::make_shared<const Model>(model), { backend, 1, time_step, ledger });
-}
-
-Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
-}
-
-double mean(const Vectors& vectors, std::size_t axis)
-{
-  double sum = 0;
-  for (const Point& v : vectors)
-    sum += v[axis];
-  return sum / static_cast<double>(vectors.size());
-}
-
-double relative(double found, double expected) { return 100 * std::abs(found / expected - 1); }
-
-// mass of each node [kg]
-std::vector<double> lumped_masses(const Model& model)
-{
-  std::vector<double> mass(model.nodes.size(), 0);
-  for (const auto& corners : model.voxel_nodes)
-    for (const auto node : corners)
-      mass[node] += density * edge * edge * edge / 8;
-  return mass;
-}
-
-// Force [N] and moment [N m] on a plate, or rate of change of the tissue's momentum and angular momentum.
-using Wrench = std::array<double, 6>;
-
-void add_momentum(Wrench& sum, const Point& place, const Point& momentum)
-{
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
-    sum[axis] += momentum[axis];
-    sum[3 + axis] += place[j] * momentum[k] - place[k] * momentum[j];
-  }
 }
 
 }  // namespace
