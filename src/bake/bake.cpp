@@ -135,9 +135,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     bind(scene, surfaces, frame, model, monitor);
   copy_poses(scene, model);
 
-  monitor.begin("check");
   switch_off(model, scene.switched_off);
-  check_model(model);
   if (measure)
   {
     monitor.begin("muscle volumes");
@@ -145,6 +143,9 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     for (std::size_t m = 0; m < fibres.size(); ++m)
       report->muscles[m].nurbs = fibres[m].fitted_size;
   }
+  monitor.begin("check");
+  weaken_muscles(scene, frame, model);
+  check_model(model);
   monitor.finish();
   return model;
 }

@@ -62,16 +62,25 @@ std::array<Vector3d, 3> face_axes(const Scene& scene)
   return { forward, up.cross(forward), up };
 }
 
+Vector3 in_face_frame(const Scene& scene, const Vector3& position)
+{
+  const auto axes = face_axes(scene);
+  const Vector3d from_origin = to_vector(position) - to_vector(scene.frame.origin);
+  return { axes[0].dot(from_origin), axes[1].dot(from_origin), axes[2].dot(from_origin) };
+}
+
 void copy_presets(const Scene& scene, Model& model)
 {
-  for (const auto& [name, activations] : scene.expressions)
-  {
-    Model::Expression& expression = model.expressions.emplace_back(Model::Expression{ name, {} });
-    for (const auto& [muscle, activation] : activations)
-      expression.activation.emplace_back(
-          index_of(model.muscles, muscle, scene.file + ": expression '" + name + "'", "muscle"),
-          static_cast<float>(activation));
-  }
+  for (const auto& [from, to] :
+       { std::pair{ &scene.expressions, &model.expressions }, std::pair{ &scene.action_units, &model.action_units } })
+    for (const auto& [name, pose] : *from)
+    {
+      Model::Expression& copy = to->emplace_back(Model::Expression{ name, {} });
+      for (const auto& [muscle, activation] : pose.activation)
+        copy.activation.emplace_back(
+            index_of(model.muscles, muscle, scene.file + ": expression '" + name + "'", "muscle"),
+            static_cast<float>(activation));
+    }
   for (const DemoPhase& phase : scene.demo)
     model.demo.push_back({ phase.expression.empty() ? -2
                            : phase.expression == "relax"
@@ -110,7 +119,7 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
 
   for (const SceneMuscle& muscle : scene.muscles)
     model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length,
-                              muscle.rise_time, muscle.fall_time });
+                              muscle.rise_time, muscle.fall_time, muscle.tone });
   model.damping = scene.time.damping;
   model.time_scaling = scene.time.scaling;
   model.frame_rate = scene.time.frame_rate;
@@ -138,10 +147,24 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
 
 void copy_poses(const Scene& scene, Model& model)
 {
-  for (std::size_t p = 0; p < scene.demo.size(); ++p)
-    for (const BonePose& pose : scene.demo[p].bones)
+  const auto copy = [&](const std::vector<BonePose>& from, std::vector<Model::BonePose>& to)
+  {
+    for (const BonePose& pose : from)
       if (const auto bone = std::find(model.bones.begin(), model.bones.end(), pose.bone); bone != model.bones.end())
-        model.demo[p].bones.push_back({ static_cast<std::int32_t>(bone - model.bones.begin()), pose.shift, pose.turn });
+      {
+        const auto centre = scene.bone_centres.find(pose.bone);
+        to.push_back({ static_cast<std::int32_t>(bone - model.bones.begin()), pose.shift, pose.turn,
+                       centre == scene.bone_centres.end() ? Vector3{} : in_face_frame(scene, centre->second) });
+      }
+  };
+  std::size_t p = 0;
+  for (const auto& [name, pose] : scene.expressions)
+    copy(pose.bones, model.expressions[p++].bones);
+  p = 0;
+  for (const auto& [name, pose] : scene.action_units)
+    copy(pose.bones, model.action_units[p++].bones);
+  for (p = 0; p < scene.demo.size(); ++p)
+    copy(scene.demo[p].bones, model.demo[p].bones);
 }
 
 }  // namespace frontalis

@@ -68,9 +68,9 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
 std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
 {
   if (!options.expression.empty())
-    return expression_activation(model, options.expression);
+    return expression_controls(model, options.expression).activation;
   if (!model.expressions.empty())
-    return expression_activation(model, model.expressions.front().name);
+    return expression_controls(model, model.expressions.front().name).activation;
   return std::vector<float>(model.muscles.size(), 0.75F);
 }
 

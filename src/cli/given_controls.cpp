@@ -71,7 +71,7 @@ Controls row_controls(const Model& model, const std::vector<std::string>& header
   }
   try
   {
-    Controls controls{ target_activation(model, {}, activation), std::vector<RigidTransform>(model.bones.size()) };
+    Controls controls = target_controls(model, {}, activation);
     for (const auto& [bone, values] : poses)
       set_bone_motion(model, bone, pose_from(values), controls.bone);
     return controls;
@@ -101,17 +101,15 @@ std::map<std::string, double> parse_activation_list(const std::string& text)
   return listed;
 }
 
-std::vector<float> target_activation(const Model& model, const std::string& expression,
-                                     const std::map<std::string, double>& listed)
+Controls target_controls(const Model& model, const std::string& expression, const std::map<std::string, double>& listed)
 {
-  std::vector<float> activation = expression_activation(model, expression.empty() ? "relax" : expression);
-  set_activations(model, listed, activation);
-  return activation;
+  Controls controls = expression_controls(model, expression.empty() ? "relax" : expression);
+  set_activations(model, listed, controls.activation);
+  return controls;
 }
 
-std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts)
+void parse_bone_motions(const Model& model, const std::vector<std::string>& texts, std::vector<RigidTransform>& bones)
 {
-  std::vector<RigidTransform> bones(model.bones.size());
   std::set<std::string> given;
   for (const std::string& text : texts)
   {
@@ -129,7 +127,6 @@ std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::ve
     set_bone_motion(model, name, pose_from({ { values[0], values[1], values[2], values[3], values[4], values[5] } }),
                     bones);
   }
-  return bones;
 }
 
 ControlCurve ramp_to(const Controls& target, double ramp)

@@ -12,15 +12,15 @@ namespace frontalis
 /// Reads "frontalis_left=0.75,procerus=0.2". Throws WrongUsage on any other form.
 std::map<std::string, double> parse_activation_list(const std::string& text);
 
-/// One activation per muscle: that of the expression (may be empty), replaced by that of the list; 0 for the others.
-/// Throws Error on values outside 0..1, and on unknown muscles and expressions, with those that the model has.
-std::vector<float> target_activation(const Model& model, const std::string& expression,
-                                     const std::map<std::string, double>& listed);
+/// The expression (empty: relax), with the activations of the list in place of its own. Throws Error on values outside
+/// 0..1, and on unknown muscles and expressions, with those that the model has.
+Controls target_controls(const Model& model, const std::string& expression,
+                         const std::map<std::string, double>& listed);
 
 /// Reads "jaw=0,0,-2,0,10,0", one text per bone: shift along x, y, z [mm] and rotation vector about the origin
-/// [degrees], both in the face frame. Returns one motion per bone of the model, in the local frame. Throws WrongUsage
-/// on any other form, and Error on unknown bones and motions that are not finite.
-std::vector<RigidTransform> parse_bone_motions(const Model& model, const std::vector<std::string>& texts);
+/// [degrees], both in the face frame. Sets the motions of these bones in the local frame. Throws WrongUsage on any
+/// other form, and Error on unknown bones and motions that are not finite.
+void parse_bone_motions(const Model& model, const std::vector<std::string>& texts, std::vector<RigidTransform>& bones);
 
 /// From rest to a target over a ramp.
 ControlCurve ramp_to(const Controls& target, double ramp);

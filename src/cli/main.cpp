@@ -42,6 +42,7 @@ int main(int argc, char** argv)
   frontalis::add_bench_command(app);
   frontalis::add_effects_command(app);
   frontalis::add_verify_command(app);
+  frontalis::add_faces_command(app);
   frontalis::add_accuracy_command(app);
   frontalis::add_stability_command(app);
 

@@ -198,10 +198,14 @@ void switch_off(Solver& solver, EffectSet off)
 ControlCurve curve_of(const RunOptions& options, const Model& model)
 {
   const double ramp = options.ramp < 0 ? std::min(0.1, options.seconds / 2) : options.ramp;
-  const std::vector<RigidTransform> bones = parse_bone_motions(model, options.bones);
   if (options.activation_file.empty())
-    return ramp_to({ target_activation(model, options.expression, parse_activation_list(options.activation)), bones },
-                   ramp);
+  {
+    Controls target = target_controls(model, options.expression, parse_activation_list(options.activation));
+    parse_bone_motions(model, options.bones, target.bone);
+    return ramp_to(target, ramp);
+  }
+  std::vector<RigidTransform> bones(model.bones.size());
+  parse_bone_motions(model, options.bones, bones);
   const ControlCurve curve = read_control_curve(options.activation_file, model);
   return options.bones.empty() ? curve : with_bones(curve, bones, ramp);
 }
@@ -287,7 +291,7 @@ void add_run_command(CLI::App& app)
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   command->add_option("--activate", options->activation, "activations from 0 to 1: MUSCLE=VALUE,MUSCLE=VALUE,...");
   command->add_option("--expression", options->expression,
-                      "a named set of activations, over which --activate takes precedence");
+                      "a named expression, over which --activate and --bone take precedence");
   command->add_option(
       "--activations", options->activation_file,
       "activations and poses over time: a table (CSV) with a column time [s], one column per muscle, and "

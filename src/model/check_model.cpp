@@ -141,6 +141,7 @@ void check_fibres(const Model& model)
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
     for (const double time : { model.muscles[m].rise_time, model.muscles[m].fall_time })
       check_not_negative("muscles", fmt::format("rise or fall time [s] of entry {}", m), time);
+  check_each("muscles (tone)", check_proportion, model.muscles, &Muscle::tone);
   const std::size_t entries = model.fibre_muscle.size();
   check_ranges("fibre_begin", model.fibre_begin, model.voxels.size(), entries);
   check_length("fibre_weight", model.fibre_weight.size(), entries, "entry of fibre_muscle");
@@ -191,27 +192,37 @@ void check_loads(const Model& model)
   }
 }
 
+void check_size_of_weight(const std::string& array, std::size_t at, double value)
+{
+  check_proportion(array, at, std::abs(value));
+}
+
+void check_bones(const Model& model, const std::string& name, const std::vector<Model::BonePose>& poses)
+{
+  check_each(name + " (bone)", index_below(model.bones.size()), poses, &Model::BonePose::bone);
+  for (const auto field : { &Model::BonePose::shift, &Model::BonePose::turn, &Model::BonePose::centre })
+    check_each(name + " (motion of a bone)", check_finite, poses, field);
+}
+
 void check_presets(const Model& model)
 {
   for (const Model::AccuracyProfile& profile : model.profiles)
     for (const auto& [what, value] : { std::pair{ "error", profile.error }, { "cost", profile.cost } })
       check_not_negative("profiles '" + profile.name + "'", what, value);
-  for (const Model::Expression& expression : model.expressions)
-  {
-    const std::string name = "expressions '" + expression.name + "'";
-    using Activation = std::pair<std::int32_t, float>;
-    check_each(name, index_below(model.muscles.size()), expression.activation, &Activation::first);
-    check_each(name, check_proportion, expression.activation, &Activation::second);
-  }
+  for (const auto* poses : { &model.expressions, &model.action_units })
+    for (const Model::Expression& pose : *poses)
+    {
+      const std::string name = (poses == &model.expressions ? "expressions '" : "action_units '") + pose.name + "'";
+      using Activation = std::pair<std::int32_t, float>;
+      check_each(name, index_below(model.muscles.size()), pose.activation, &Activation::first);
+      check_each(name, check_size_of_weight, pose.activation, &Activation::second);
+      check_bones(model, name, pose.bones);
+    }
   check_each("demo", index_below(model.expressions.size(), -2), model.demo, &Model::DemoPhase::expression);
   check_each("demo (ramp)", check_finite, model.demo, &Model::DemoPhase::ramp);
   check_each("demo (seconds)", check_positive, model.demo, &Model::DemoPhase::seconds);
   for (const Model::DemoPhase& phase : model.demo)
-  {
-    check_each("demo (bone)", index_below(model.bones.size()), phase.bones, &Model::BonePose::bone);
-    check_each("demo (shift)", check_finite, phase.bones, &Model::BonePose::shift);
-    check_each("demo (turn)", check_finite, phase.bones, &Model::BonePose::turn);
-  }
+    check_bones(model, "demo", phase.bones);
 }
 
 void check_settings(const Model& model)

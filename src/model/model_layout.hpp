@@ -36,6 +36,29 @@ void exchange_binding(Archive& archive, const std::string& path, Bound& binding)
   archive(path + "/coordinates", binding.coordinates);
 }
 
+template <class Archive, class Bones>
+void exchange_bones(Archive& archive, const std::string& path, Bones& bones)
+{
+  using Pose = Model::BonePose;
+  if (archive.group_if(!bones.empty(), path))
+    archive.table(path, bones, Column{ "bone", &Pose::bone }, Column{ "shift", &Pose::shift },
+                  Column{ "turn", &Pose::turn }, Column{ "centre", &Pose::centre });
+}
+
+template <class Archive, class Poses>
+void exchange_poses(Archive& archive, const std::string& path, Poses& poses)
+{
+  archive.table(path, poses, Column{ "name", &Model::Expression::name });
+  using Activation = std::pair<std::int32_t, float>;
+  for (std::size_t p = 0; p < poses.size(); ++p)
+  {
+    const std::string group = path + "/" + std::to_string(p);
+    archive.table(group, poses[p].activation, Column{ "muscle", &Activation::first },
+                  Column{ "activation", &Activation::second });
+    exchange_bones(archive, group + "/bones", poses[p].bones);
+  }
+}
+
 /// Writes the group VTKHDF, version 1.0, an unstructured grid of VTK_VOXEL cells (whose corner order is ours), with
 /// material, fill, muscle and fibre of each voxel and the constraint of each node, so that ParaView opens the model
 /// file. Points are in local coordinates [m].
@@ -61,7 +84,7 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive.table("muscles", model.muscles, Column{ "name", &Muscle::name },
                 Column{ "stress_reference", &Muscle::stress_reference }, Column{ "passive", &Muscle::passive },
                 Column{ "tension_length", &Muscle::tension_length }, Column{ "rise_time", &Muscle::rise_time },
-                Column{ "fall_time", &Muscle::fall_time });
+                Column{ "fall_time", &Muscle::fall_time }, Column{ "tone", &Muscle::tone });
   archive("fibre_begin", model.fibre_begin);
   archive("fibre_muscle", model.fibre_muscle);
   archive("fibre_weight", model.fibre_weight);
@@ -119,19 +142,13 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive("mass_scaling/time_step", model.mass_scaling.time_step);
   archive("mass_scaling/materials", model.mass_scaling.materials);
 
-  archive.table("expressions", model.expressions, Column{ "name", &Model::Expression::name });
-  using Activation = std::pair<std::int32_t, float>;
-  for (std::size_t e = 0; e < model.expressions.size(); ++e)
-    archive.table("expressions/" + std::to_string(e), model.expressions[e].activation,
-                  Column{ "muscle", &Activation::first }, Column{ "activation", &Activation::second });
+  exchange_poses(archive, "expressions", model.expressions);
+  exchange_poses(archive, "action_units", model.action_units);
   using Phase = Model::DemoPhase;
   archive.table("demo", model.demo, Column{ "expression", &Phase::expression }, Column{ "ramp", &Phase::ramp },
                 Column{ "seconds", &Phase::seconds });
-  using Pose = Model::BonePose;
   for (std::size_t p = 0; p < model.demo.size(); ++p)
-    if (const std::string path = "demo/" + std::to_string(p); archive.group_if(!model.demo[p].bones.empty(), path))
-      archive.table(path, model.demo[p].bones, Column{ "bone", &Pose::bone }, Column{ "shift", &Pose::shift },
-                    Column{ "turn", &Pose::turn });
+    exchange_bones(archive, "demo/" + std::to_string(p), model.demo[p].bones);
   archive("switched_off", model.switched_off);
   using Profile = Model::AccuracyProfile;
   archive.table("profiles", model.profiles, Column{ "name", &Profile::name }, Column{ "error", &Profile::error },

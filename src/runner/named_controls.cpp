@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,6 +33,56 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+// the motion in the local frame of a share of a pose
+RigidTransform motion_of(const Model& model, const Model::BonePose& pose, double share)
+{
+  std::array<double, 3> turn{}, shift{}, from_centre{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    turn[axis] = share * pose.turn[axis];
+    shift[axis] = share * pose.shift[axis] + pose.centre[axis];
+    from_centre[axis] = -pose.centre[axis];
+  }
+  const RigidTransform in_face = composed(rigid_motion(turn, shift), rigid_motion({}, from_centre));
+  return composed(inverse(model.to_face), composed(in_face, model.to_face));
+}
+
+// A pose of one side moves what is of that side, half of what has no side, and nothing of the other side.
+double share_of_side(const std::string& name, const std::string& side)
+{
+  const auto is_of = [&](const char* end) { return boost::algorithm::ends_with(name, end); };
+  if (side.empty())
+    return 1;
+  return is_of(side.c_str()) ? 1 : is_of("_left") || is_of("_right") ? 0 : 0.5;
+}
+
+// adds a pose by its name, or by its name with _left or _right; false if there is none
+bool add_pose(const Model& model, const std::vector<Model::Expression>& poses, const std::string& name,
+              double intensity, Controls& controls)
+{
+  for (const std::string side : { "", "_left", "_right" })
+    for (const Model::Expression& pose : poses)
+      if (pose.name + side == name)
+      {
+        for (const auto& [muscle, weight] : pose.activation)
+          controls.activation[muscle] +=
+              static_cast<float>(intensity * share_of_side(model.muscles[muscle].name, side)) * weight;
+        for (const Model::BonePose& bone : pose.bones)
+          controls.bone[bone.bone] =
+              composed(motion_of(model, bone, intensity * share_of_side(model.bones[bone.bone], side)),
+                       controls.bone[bone.bone]);
+        return true;
+      }
+  return false;
+}
+
+Controls limited(Controls controls)
+{
+  for (float& activation : controls.activation)
+    activation = std::clamp(activation, 0.0f, 1.0f);
+  return controls;
+}
+
 }  // namespace
 
 void set_activations(const Model& model, const std::map<std::string, double>& named, std::vector<float>& activation)
@@ -57,18 +108,42 @@ void set_activations(const Model& model, const std::map<std::string, double>& na
   activation = changed;
 }
 
-std::vector<float> expression_activation(const Model& model, const std::string& name)
+Controls rest_controls(const Model& model)
 {
-  std::vector<float> activation(model.muscles.size(), 0);
-  if (name == "relax")
-    return activation;
-  const std::vector<std::string> expressions = names_of(model.expressions);
-  const std::size_t expression = index_of(expressions, name);
-  if (expression == expressions.size())
-    throw Error("no expression is called '" + name + "'; there is relax, " + listed(expressions));
-  for (const auto& [muscle, value] : model.expressions[expression].activation)
-    activation[static_cast<std::size_t>(muscle)] = value;
-  return activation;
+  Controls rest{ std::vector<float>(model.muscles.size(), 0), std::vector<RigidTransform>(model.bones.size()) };
+  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+    rest.activation[m] = static_cast<float>(model.muscles[m].tone);
+  return rest;
+}
+
+Controls expression_controls(const Model& model, const std::string& name)
+{
+  Controls controls = rest_controls(model);
+  if (name != "relax" && !add_pose(model, model.expressions, name, 1, controls))
+    throw Error("no expression is called '" + name + "'; there is relax, " + listed(names_of(model.expressions)));
+  return limited(controls);
+}
+
+Controls action_unit_controls(const Model& model, const std::map<std::string, double>& intensities)
+{
+  Controls controls = rest_controls(model);
+  for (const auto& [name, intensity] : intensities)
+  {
+    if (!(intensity >= 0 && intensity <= 1))
+      throw Error(fmt::format("intensity of action unit '{}' is {}; must be from 0 to 1", name, intensity));
+    if (!add_pose(model, model.action_units, name, intensity, controls))
+      throw Error("no action unit is called '" + name + "'; there is " + listed(names_of(model.action_units)));
+  }
+  return limited(controls);
+}
+
+void take_pose(const Model& model, const Controls& pose, Controls& controls)
+{
+  controls.activation = pose.activation;
+  for (const auto* poses : { &model.expressions, &model.action_units })
+    for (const Model::Expression& known : *poses)
+      for (const Model::BonePose& bone : known.bones)
+        controls.bone[bone.bone] = pose.bone[bone.bone];
 }
 
 void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
@@ -110,12 +185,12 @@ ControlCurve demo_curve(const Model& model, const Controls& begin)
     curve.time.push_back(end);
     curve.controls.push_back(target);
     if (phase.expression > -2)
-      target.activation.assign(target.activation.size(), 0);
-    if (phase.expression >= 0)
-      for (const auto& [muscle, activation] : model.expressions.at(phase.expression).activation)
-        target.activation.at(muscle) = activation;
+      take_pose(
+          model,
+          expression_controls(model, phase.expression < 0 ? "relax" : model.expressions.at(phase.expression).name),
+          target);
     for (const Model::BonePose& pose : phase.bones)
-      set_bone_motion(model, model.bones.at(pose.bone), rigid_motion(pose.turn, pose.shift), target.bone);
+      target.bone.at(pose.bone) = motion_of(model, pose, 1);
     curve.time.push_back(end + std::min(phase.ramp, phase.seconds));
     end += phase.seconds;
     curve.controls.push_back(target);

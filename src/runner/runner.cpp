@@ -53,9 +53,16 @@ void Runner::set_activation(const std::map<std::string, double>& activation)
 
 void Runner::set_expression(const std::string& name)
 {
-  const std::vector<float> activation = expression_activation(*self_->model, name);
+  const Controls pose = expression_controls(*self_->model, name);
   const std::lock_guard<std::mutex> lock(self_->mutex);
-  self_->target.activation = activation;
+  take_pose(*self_->model, pose, self_->target);
+}
+
+void Runner::set_action_units(const std::map<std::string, double>& intensities)
+{
+  const Controls pose = action_unit_controls(*self_->model, intensities);
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  take_pose(*self_->model, pose, self_->target);
 }
 
 void Runner::set_bone(const std::string& name, const RigidTransform& motion)

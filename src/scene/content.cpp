@@ -50,6 +50,7 @@ public:
 private:
   void put(double value) { text_ += ' ' + number_text(value); }
   void put(const std::string& text) { text_ += fmt::format(" {}:{}", text.size(), text); }
+  void put(const BonePose& pose) { add(pose.bone, pose.shift, pose.turn); }
   void put(const Region& region) { add(region.lower, region.upper); }
   template <class Kind, class = std::enable_if_t<std::is_enum_v<Kind>>>
   void put(Kind kind)
@@ -101,7 +102,7 @@ void add_surface(const Surface& surface, Content& content)
 void add_muscle(const SceneMuscle& muscle, Content& content)
 {
   content.line("muscle", muscle.name, muscle.volume, muscle.fibre, muscle.stress_reference, muscle.passive,
-               muscle.tension_length, muscle.rise_time, muscle.fall_time);
+               muscle.tension_length, muscle.rise_time, muscle.fall_time, muscle.tone);
   for (const MuscleEnd& end : { muscle.origin, muscle.insertion })
     content.add(end.surface, end.points);
   content.add(muscle.ring ? (*muscle.ring ? "ring" : "open") : "");
@@ -127,6 +128,8 @@ void add_anatomy(const Scene& scene, Content& content)
     content.line("layer", layer.name, layer.surface, layer.volume, layer.material, layer.thickness);
   for (const SceneMuscle& muscle : scene.muscles)
     add_muscle(muscle, content);
+  for (const SceneWeakness& w : scene.weakness)
+    content.line("weakness", w.muscles, w.keeps, w.centre, w.radius, w.dose);
 }
 
 void add_restrictions(const Scene& scene, Content& content)
@@ -151,14 +154,14 @@ void add_output(const Scene& scene, Content& content)
   for (const SceneLandmark& landmark : scene.landmarks)
     content.line("landmark", landmark.name, landmark.position);
   content.line("frame", scene.frame.id, scene.frame.origin, scene.frame.forward, scene.frame.up);
-  for (const auto& [name, activation] : scene.expressions)
-    content.line("expression", name, activation);
+  for (const auto& [bone, centre] : scene.bone_centres)
+    content.line("centre", bone, centre);
+  for (const auto& [name, pose] : scene.action_units)
+    content.line("action unit", name, pose.activation, pose.bones);
+  for (const auto& [name, pose] : scene.expressions)
+    content.line("expression", name, pose.activation, pose.bones);
   for (const DemoPhase& phase : scene.demo)
-  {
-    content.line("demo", phase.expression, phase.ramp, phase.seconds);
-    for (const BonePose& pose : phase.bones)
-      content.add(pose.bone, pose.shift, pose.turn);
-  }
+    content.line("demo", phase.expression, phase.ramp, phase.seconds, phase.bones);
 }
 
 void add_numerics(const Scene& scene, Content& content)

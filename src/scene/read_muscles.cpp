@@ -92,6 +92,7 @@ void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle,
       mapping.optional("stress_reference").number(Dimension::pressure, positive, muscle.stress_reference);
   muscle.rise_time = mapping.optional("rise_time").number(Dimension::time, not_negative, muscle.rise_time);
   muscle.fall_time = mapping.optional("fall_time").number(Dimension::time, not_negative, muscle.fall_time);
+  muscle.tone = mapping.optional("tone").number(Dimension::number, proportion, muscle.tone);
   muscle.passive = mapping.optional("passive").boolean(muscle.passive);
   muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
 }
@@ -191,66 +192,30 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   names.muscles.complete = !node.given() || node.is_mapping();
 }
 
-void read_expressions(const Node& node, Scene& scene, SceneNames& names)
+void read_weakness(const Node& node, Scene& scene, const SceneNames& names)
 {
   for (const auto& [name, entry] : node.named_pairs())
   {
-    if (name == "relax")
+    SceneWeakness weakness;
+    if (!entry.is_mapping())
     {
-      entry.fault("'relax' is there in every scene, with all muscles at 0; choose another name");
+      weakness.muscles = names.muscles.both_sides(name);
+      entry.check_known(weakness.muscles[0], names.muscles);
+      weakness.keeps = entry.number(Dimension::number, proportion, 0);
+      scene.weakness.push_back(weakness);
       continue;
     }
-    names.expressions.names.push_back(name);
-    std::map<std::string, double>& activation = scene.expressions[name];
-    for (const auto& [key, value] : entry.pairs())
-      for (const std::string& muscle : names.muscles.both_sides(key))
-      {
-        value.check_known(muscle, names.muscles);
-        if (value.is_null())
-          value.fault("found nothing; must be an activation from 0 to 1");
-        else if (!activation.emplace(muscle, value.number(Dimension::number, proportion, 0)).second)
-          value.fault("'{}' has an activation already; a muscle may stand once", muscle);
-      }
-  }
-  names.expressions.complete = !node.given() || node.is_mapping();
-}
-
-static void read_poses(const Node& node, const SceneNames& names, std::vector<BonePose>& poses)
-{
-  if (!node.given())
-    return;
-  for (const auto& [bone, entry] : node.named_pairs())
-  {
-    entry.check_known(bone, names.bones);
-    BonePose& pose = poses.emplace_back();
-    pose.bone = bone;
     Mapping mapping(entry);
-    pose.shift = mapping.optional("shift").vector(Dimension::length, any_number, pose.shift);
-    pose.turn = mapping.optional("turn").vector(Dimension::angle, any_number, pose.turn);
-  }
-}
-
-void read_demo(const Node& node, Scene& scene, const SceneNames& names)
-{
-  for (const Node& entry : node.entries())
-  {
-    DemoPhase phase;
-    Mapping mapping(entry);
-    phase.expression = mapping.optional("expression").reference(names.expressions);
-    read_poses(mapping.optional("bones"), names, phase.bones);
-    if (!mapping.has("expression") && !mapping.has("bones"))
-      entry.fault("has neither 'expression' nor 'bones'; must have at least one of them");
-    const Node ramp = mapping.optional("ramp");
-    phase.ramp = ramp.number(Dimension::time, not_negative, phase.ramp);
-    phase.seconds = mapping.optional("seconds").number(Dimension::time, positive, phase.seconds);
-    if (phase.ramp > phase.seconds)
-    {
-      if (ramp.given())
-        ramp.fault(ramp.found() + "; must be at most 'seconds', which includes the ramp");
-      else
-        phase.ramp = phase.seconds;
-    }
-    scene.demo.push_back(phase);
+    weakness.keeps = mapping.optional("keeps").number(Dimension::number, proportion, 0);
+    if (const Node muscles = mapping.optional("muscles"); muscles.given())
+      weakness.muscles = muscles.references(names.muscles);
+    const std::string where = one_of(entry, mapping, { "sphere", "dose" });
+    if (where.empty())
+      continue;
+    weakness.dose = where == "dose";
+    weakness.centre = mapping.optional(where).vector(Dimension::length, any_number, {});
+    weakness.radius = mapping.required("radius", "a length greater than 0").number(Dimension::length, positive, 1);
+    scene.weakness.push_back(weakness);
   }
 }
 

@@ -37,6 +37,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_volumes(mapping.required("volumes", "a mapping of volumes"), scene, names);
   read_layers(mapping.optional("layers"), scene, names);
   read_muscles(mapping.optional("muscles"), scene, names);
+  read_weakness(mapping.optional("weakness"), scene, names);
   read_constraints(mapping.optional("constraints"), scene, names);
   read_loads(mapping.optional("loads"), scene, names);
   read_skin(mapping.required("skin", "the surface to publish: {surface: NAME}"), scene.skin, names);
@@ -45,7 +46,9 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_effects(mapping.optional("effects"), scene);
   read_time(mapping.optional("time"), scene.time);
   read_accuracy(mapping.optional("accuracy"), options, scene, names);
-  read_expressions(mapping.optional("expressions"), scene, names);
+  read_bone_centres(mapping.optional("bones"), scene, names);
+  const Node action_units = mapping.optional("action_units");
+  read_expressions(action_units, mapping.optional("expressions"), scene, names);
   read_demo(mapping.optional("demo"), scene, names);
 }
 

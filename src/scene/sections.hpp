@@ -33,6 +33,7 @@ void read_materials(const Node& node, Scene& scene, SceneNames& names);
 void read_volumes(const Node& node, Scene& scene, SceneNames& names);
 void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);
+void read_weakness(const Node& node, Scene& scene, const SceneNames& names);
 void read_constraints(const Node& node, Scene& scene, SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), because friction is an effect.
@@ -41,7 +42,10 @@ void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene);
 void read_time(const Node& node, SceneTime& time);
 void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, const SceneNames& names);
-void read_expressions(const Node& node, Scene& scene, SceneNames& names);
+/// Must be called after read_constraints(), which names the bones.
+void read_bone_centres(const Node& node, Scene& scene, const SceneNames& names);
+/// Reads `action_units`, which may name a file with action units and expressions, then `expressions`.
+void read_expressions(const Node& action_units, const Node& expressions, Scene& scene, SceneNames& names);
 void read_demo(const Node& node, Scene& scene, const SceneNames& names);
 
 /// Reads {lower: [x, y, z], upper: [x, y, z]}. One of the two lists may be missing, and numbers may be null.

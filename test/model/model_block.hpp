@@ -73,7 +73,10 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   model.mass_scaling = { MassScalingSettings::Kind::selective, 1.5, { 1 }, 2e-5 };
   model.profiles = { { "draft", 0.3e-3, 0.8, "a bench" }, { "fine", 0, 0, "" } };
   model.profile = "draft";
+  model.muscles[0].tone = 0.125;
+  const Model::BonePose opened{ 1, { { 0, 0, -2e-3 } }, { { 0, 0.2, 0 } }, { { -80e-3, 0, -50e-3 } } };
   model.expressions = { { "raise", { { 0, 0.75f } } }, { "nothing", {} } };
+  model.action_units = { { "AU1", { { 0, -0.5f } }, { opened } } };
   model.demo = { { 0, 0.2, 1.5 }, { -1, 0.3, 1, { { 1, { { 1e-3, 0, 0 } }, { { 0, 0.1, 0 } } } } } };
   model.scene_hash = "0123456789abcdef";
   return model;

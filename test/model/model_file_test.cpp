@@ -131,6 +131,14 @@ TEST_F(ModelFile, GivesBackEveryField)
   ASSERT_EQ(b.expressions.size(), 2u);
   EXPECT_EQ(a.expressions[0].activation, b.expressions[0].activation);
   EXPECT_TRUE(b.expressions[1].activation.empty());
+  EXPECT_TRUE(b.expressions[0].bones.empty());
+  EXPECT_EQ(b.muscles[0].tone, 0.125);
+  ASSERT_EQ(b.action_units.size(), 1u);
+  EXPECT_EQ(b.action_units[0].name, "AU1");
+  EXPECT_EQ(a.action_units[0].activation, b.action_units[0].activation);
+  ASSERT_EQ(b.action_units[0].bones.size(), 1u);
+  EXPECT_EQ(b.action_units[0].bones[0].bone, 1);
+  EXPECT_EQ(b.action_units[0].bones[0].centre[0], -80e-3);
   ASSERT_EQ(b.demo.size(), 2u);
   EXPECT_EQ(b.demo[1].expression, -1);
   EXPECT_TRUE(b.demo[0].bones.empty());

@@ -210,6 +210,83 @@ TEST(EveryKey, ways_to_give_fibres)
   EXPECT_EQ(net.weights[15], 0.5);
 }
 
+TEST(EveryKey, action_units_and_weakness)
+{
+  const Scene& scene = every_key();
+  ASSERT_EQ(scene.action_units.size(), 2U);
+  const FacePose& closed = scene.action_units.at("AU43");
+  EXPECT_EQ(closed.activation.at("other"), -0.5);
+  ASSERT_EQ(closed.bones.size(), 1U);
+  expect_vector(closed.bones[0].turn, { 0, 0.5235987755982988, 0 });
+  expect_vector(scene.bone_centres.at("finger"), { 0.01, 0.02, 0.003 });
+  const FacePose& both = scene.expressions.at("both");
+  EXPECT_EQ(both.activation.at("fibres"), 0.5 * 0.5 + 0.125);
+  EXPECT_EQ(both.activation.at("ended"), 0.125);
+  EXPECT_EQ(both.activation.at("other"), -0.25);
+  ASSERT_EQ(both.bones.size(), 1U);
+  expect_vector(both.bones[0].shift, { 0, 0, 0.002 });
+  expect_vector(both.bones[0].turn, { 0, 0.2617993877991494, 0 });
+
+  ASSERT_EQ(scene.weakness.size(), 3U);
+  EXPECT_EQ(scene.weakness[0].muscles, std::vector<std::string>{ "other" });
+  EXPECT_EQ(scene.weakness[0].keeps, 0.5);
+  EXPECT_EQ(scene.weakness[0].radius, 0);
+  EXPECT_EQ(scene.weakness[1].muscles.size(), 2U);
+  EXPECT_EQ(scene.weakness[1].keeps, 0.25);
+  EXPECT_NEAR(scene.weakness[1].radius, 0.004, 1e-15);
+  EXPECT_FALSE(scene.weakness[1].dose);
+  EXPECT_TRUE(scene.weakness[2].dose);
+  EXPECT_TRUE(scene.weakness[2].muscles.empty());
+  expect_vector(scene.weakness[2].centre, { 0, 0, 0.001 });
+}
+
+// A file that scenes share may name more than a scene has; a muscle without a side is both of its sides.
+TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
+{
+  const TemporaryFolder folder;
+  folder.write("units.yaml",
+               "unit: mm\n"
+               "action_units:\n"
+               "  AU1: {pull: 1, absent: 1}\n"
+               "  AU2: {absent: 1}\n"
+               "  AU26: {bones: {jaw: {shift: [0, 0, -2]}, tail: {shift: [1, 0, 0]}}}\n"
+               "expressions:\n"
+               "  up: {AU1: 0.5, AU2: 1}\n"
+               "  down: {AU2: 1}\n"
+               "  mine: {AU1: 1}\n");
+  const std::string scene_text =
+      "unit: mm\n"
+      "surfaces: {bar: {shape: box, size: [30, 10, 10]}, wall: {shape: box, centre: [-16, 0, 0], size: [2, 14, 14]}}\n"
+      "volumes: {bar: {inside: bar, material: flesh, tissue: true}}\n"
+      "materials: {flesh: {young: 34 kPa, poisson: 0.49, density: 1000}}\n"
+      "muscles: {pull_left: {volume: bar, fibre: [1, 0, 0]}, pull_right: {volume: bar, fibre: [1, 0, 0]}}\n"
+      "constraints: [{name: hold, rigid: wall, bone: jaw}]\n"
+      "skin: {surface: bar}\n"
+      "action_units: units.yaml\n"
+      "expressions: {mine: {pull_left: 0.25}}\n";
+  const Scene scene = read_scene(folder.write("scene.yaml", scene_text));
+  ASSERT_EQ(scene.action_units.size(), 2U);
+  EXPECT_EQ(scene.action_units.at("AU1").activation,
+            (std::map<std::string, double>{ { "pull_left", 1 }, { "pull_right", 1 } }));
+  ASSERT_EQ(scene.action_units.at("AU26").bones.size(), 1U);
+  ASSERT_EQ(scene.expressions.size(), 2U);
+  EXPECT_EQ(scene.expressions.at("up").activation.at("pull_right"), 0.5);
+  EXPECT_EQ(scene.expressions.at("mine").activation, (std::map<std::string, double>{ { "pull_left", 0.25 } }));
+
+  folder.write("units.yaml", "unit: mm\naction_units:\n  AU1: {pull: 2}\n");
+  try
+  {
+    read_scene(folder.write("scene.yaml", scene_text));
+    FAIL() << "a weight of 2 is taken";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("units.yaml:3: action_units.AU1.pull: found '2'; must be at least -1"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(EveryKey, muscles_and_expressions)
 {
   const Scene& scene = every_key();
@@ -228,9 +305,12 @@ TEST(EveryKey, muscles_and_expressions)
   EXPECT_FALSE(scene.muscles[1].passive);
   EXPECT_TRUE(scene.muscles[1].tension_length);
 
-  ASSERT_EQ(scene.expressions.size(), 2U);
-  EXPECT_EQ(scene.expressions.at("raise_brows").at("fibres"), 0.75);
-  EXPECT_EQ(scene.expressions.at("frown").at("other"), 0);
+  EXPECT_EQ(scene.muscles[0].tone, 0.25);
+  EXPECT_EQ(scene.muscles[1].tone, 0);
+
+  ASSERT_EQ(scene.expressions.size(), 3U);
+  EXPECT_EQ(scene.expressions.at("raise_brows").activation.at("fibres"), 0.75);
+  EXPECT_EQ(scene.expressions.at("frown").activation.at("other"), 0);
   ASSERT_EQ(scene.demo.size(), 3U);
   EXPECT_NEAR(scene.demo[0].ramp, 0.2, 1e-15);
   EXPECT_EQ(scene.demo[0].seconds, 2);

@@ -76,7 +76,7 @@ TEST(Set, has_its_muscles_with_volumes_of_their_own)
   EXPECT_EQ(volume.priority, 1);
   EXPECT_EQ(named(scene.volumes, "procerus").material, "flesh");
   const std::map<std::string, double> up{ { "frontalis_left", 0.5 }, { "frontalis_right", 0.5 }, { "procerus", 0.25 } };
-  EXPECT_EQ(scene.expressions.at("up"), up);
+  EXPECT_EQ(scene.expressions.at("up").activation, up);
 }
 
 TEST(Set, is_the_same_as_its_entries_written_out)

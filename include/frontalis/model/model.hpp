@@ -88,20 +88,22 @@ struct Model
   Precision precision = Precision::single;  ///< of the CPU backend
   TimeStepEstimate time_step_estimate = TimeStepEstimate::element;
 
-  // presets by name: activations by muscle index
+  /// Motion of a bone from its rest pose, in the face frame.
+  struct BonePose
+  {
+    std::int32_t bone = -1;          ///< index into bones
+    std::array<double, 3> shift{};   ///< [m], after the turn
+    std::array<double, 3> turn{};    ///< rotation vector about the centre [rad]
+    std::array<double, 3> centre{};  ///< [m]
+  };
+  /// Pose of the face by name. Activations by muscle index, -1..1, are added to the muscle's tone.
   struct Expression
   {
     std::string name;
     std::vector<std::pair<std::int32_t, float>> activation;
+    std::vector<BonePose> bones{};
   };
-  std::vector<Expression> expressions;
-  /// Motion of a bone from its rest pose, in the face frame.
-  struct BonePose
-  {
-    std::int32_t bone = -1;         ///< index into bones
-    std::array<double, 3> shift{};  ///< [m], after the turn
-    std::array<double, 3> turn{};   ///< rotation vector about the origin of the face frame [rad]
-  };
+  std::vector<Expression> expressions, action_units;
   struct DemoPhase
   {
     std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: that of the phase before

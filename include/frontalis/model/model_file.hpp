@@ -8,7 +8,7 @@ namespace frontalis
 {
 
 /// Version of the file layout; files of another version are refused.
-constexpr int model_file_version = 10;
+constexpr int model_file_version = 11;
 
 /// Writes the model whole or not at all (a temporary file beside `path`, then renamed). Equal models give equal bytes.
 /// Throws Error.

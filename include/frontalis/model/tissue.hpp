@@ -32,6 +32,7 @@ struct Muscle
   bool tension_length = true;
   double rise_time = 0;  ///< time constant with which activation rises to the commanded one [s]; 0: at once
   double fall_time = 0;  ///< the same for falling activation [s]
+  double tone = 0;       ///< activation at rest, 0..1
 };
 
 /// Mass added to voxels so that they do not limit the time step.

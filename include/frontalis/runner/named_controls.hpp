@@ -13,10 +13,20 @@ namespace frontalis
 /// value is not within 0..1, nothing is changed and an Error names all of them and the existing muscles.
 void set_activations(const Model& model, const std::map<std::string, double>& named, std::vector<float>& activation);
 
-/// The activation of each muscle in a named expression; muscles that the expression does not name are at 0. The
-/// expression `relax` exists in every model and names none. Throws an Error that lists the existing expressions if
-/// there is none of this name.
-std::vector<float> expression_activation(const Model& model, const std::string& name);
+/// All muscles at their tone and all bones at rest: the expression `relax`.
+Controls rest_controls(const Model& model);
+
+/// A named expression of the model, added to rest_controls(); activations are limited to 0..1. A name with _left or
+/// _right at its end that no expression has is the half of an expression: it moves what is of that side, half as much
+/// what has no side, and nothing of the other. Throws an Error that lists the existing expressions if there is none of
+/// this name.
+Controls expression_controls(const Model& model, const std::string& name);
+
+/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left.
+Controls action_unit_controls(const Model& model, const std::map<std::string, double>& intensities);
+
+/// Sets all activations, and the motions of the bones that expressions or action units of the model move.
+void take_pose(const Model& model, const Controls& pose, Controls& controls);
 
 /// Sets the motion of a bone from its rest pose, given in the face frame. If there is no such bone, or the motion is
 /// not finite and rigid, nothing is changed and an Error says so and lists the existing bones.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/effect.hpp"
+#include "frontalis/scene/expression.hpp"
 #include "frontalis/scene/geometry.hpp"
 #include "frontalis/scene/restriction.hpp"
 #include "frontalis/scene/tissue.hpp"
@@ -83,23 +84,6 @@ struct SceneTime
   double activation_slew = 0;
 };
 
-/// Motion of a bone from its rest pose, in the face frame.
-struct BonePose
-{
-  std::string bone;
-  Vector3 shift{ 0, 0, 0 };  ///< [m], after the turn
-  Vector3 turn{ 0, 0, 0 };   ///< rotation vector about the origin of the face frame [rad]
-};
-
-/// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
-struct DemoPhase
-{
-  std::string expression;       ///< empty: as in the phase before
-  std::vector<BonePose> bones;  ///< other bones stay where they are
-  double ramp = 0.3;            ///< duration of the ramp [simulated s]
-  double seconds = 1.0;         ///< duration of the phase, including the ramp [simulated s]
-};
-
 /// Contents of a scene file, in SI units. doc/scene.md documents every key of the file.
 struct Scene
 {
@@ -110,6 +94,7 @@ struct Scene
   std::vector<SceneMaterial> materials;
   std::vector<Layer> layers;
   std::vector<SceneMuscle> muscles;
+  std::vector<SceneWeakness> weakness;
   std::vector<SceneConstraint> constraints;
   std::vector<SceneLoad> loads;
   std::vector<SceneLandmark> landmarks;
@@ -120,7 +105,10 @@ struct Scene
   SceneTime time;
   AccuracyProfile accuracy;  ///< the chosen profile
   std::vector<AccuracyProfile> profiles;
-  std::map<std::string, std::map<std::string, double>> expressions;  ///< expression -> muscle -> activation 0..1
+  std::map<std::string, Vector3>
+      bone_centres;  ///< that turns of bones in poses of the face go about [m]; else the face frame's origin
+  std::map<std::string, FacePose> action_units;
+  std::map<std::string, FacePose> expressions;
   std::vector<DemoPhase> demo;
   std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
 };

@@ -74,9 +74,20 @@ struct SceneMuscle
   int line = 0;
   double rise_time = 0;             ///< time constant of increasing activation [s]; 0: no delay
   double fall_time = 0;             ///< time constant of decreasing activation [s]; 0: no delay
+  double tone = 0;                  ///< activation at rest, 0..1
   MuscleEnd origin{}, insertion{};  ///< both or neither are given
   std::optional<bool> ring{};       ///< whether the fibres run around a hole; absent: the shape decides
   std::optional<ControlNet> net{};
+};
+
+/// Loss of strength: palsy, or a toxin. Active stress is multiplied by the factors of all that hold at a place.
+struct SceneWeakness
+{
+  std::vector<std::string> muscles;  ///< empty: all
+  double keeps = 0;                  ///< share of the active stress that is left, 0..1
+  Vector3 centre{ 0, 0, 0 };         ///< scene coordinates [m]
+  double radius = 0;                 ///< [m]; 0: everywhere
+  bool dose = false;                 ///< the loss falls as exp(-(distance / radius)^2) instead of ending at the radius
 };
 
 }  // namespace frontalis

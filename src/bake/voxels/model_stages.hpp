@@ -57,8 +57,11 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
 
 /// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.
 void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
-/// The poses of the demo, once the model has its bones.
+/// The poses of bones in expressions, action units and the demo, once the model has its bones.
 void copy_poses(const Scene& scene, Model& model);
+
+/// Lowers the weights of muscles where the scene makes them weak. The last stage: reports count whole muscles.
+void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the

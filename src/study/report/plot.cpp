@@ -117,22 +117,24 @@ std::string script(const Plot& plot, const std::string& path)
 
 }  // namespace
 
-void write_plot(const Plot& plot, const std::string& path)
+void run_gnuplot(const std::string& commands, const std::string& path)
 {
-  const std::string commands = path + ".gnuplot", messages = path + ".log";
-  write_text(commands, script(plot, path));
+  const std::string file = path + ".gnuplot", messages = path + ".log";
+  write_text(file, commands);
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
     throw Error("plot " + path +
-                ": the program gnuplot is missing (Debian's package gnuplot-nox); its commands are in " + commands);
-  const auto word = [](const std::string& file) { return "'" + replaced(file, "'", "'\\''") + "'"; };
-  const bool drawn = std::system(("gnuplot " + word(commands) + " 2>" + word(messages) + " >&2").c_str()) == 0;
+                ": the program gnuplot is missing (Debian's package gnuplot-nox); its commands are in " + file);
+  const auto word = [](const std::string& name) { return "'" + replaced(name, "'", "'\\''") + "'"; };
+  const bool drawn = std::system(("gnuplot " + word(file) + " 2>" + word(messages) + " >&2").c_str()) == 0;
   std::ifstream log(messages);
   const std::string said{ std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>() };
   std::filesystem::remove(messages);
   if (!drawn)
-    throw Error("plot " + path + ": gnuplot failed on " + commands + ": " + said);
-  std::filesystem::remove(commands);
+    throw Error("plot " + path + ": gnuplot failed on " + file + ": " + said);
+  std::filesystem::remove(file);
 }
+
+void write_plot(const Plot& plot, const std::string& path) { run_gnuplot(script(plot, path), path); }
 
 std::string write_plots(const Plots& plots, const std::string& folder)
 {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "frontalis/scene/geometry.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Motion of a bone from its rest pose, in the face frame.
+struct BonePose
+{
+  std::string bone;
+  Vector3 shift{ 0, 0, 0 };  ///< [m], after the turn
+  Vector3 turn{ 0, 0, 0 };   ///< rotation vector about the bone's centre (Scene::bone_centres) [rad]
+};
+
+/// What an expression or an action unit does at full intensity.
+struct FacePose
+{
+  /// By muscle, -1..1; the sum with the muscle's tone is limited to 0..1.
+  std::map<std::string, double> activation;
+  std::vector<BonePose> bones;  ///< other bones stay where they are
+};
+
+/// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
+struct DemoPhase
+{
+  std::string expression;       ///< empty: as in the phase before
+  std::vector<BonePose> bones;  ///< other bones stay where they are
+  double ramp = 0.3;            ///< duration of the ramp [simulated s]
+  double seconds = 1.0;         ///< duration of the phase, including the ramp [simulated s]
+};
+
+}  // namespace frontalis

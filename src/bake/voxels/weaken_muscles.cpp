@@ -1,0 +1,67 @@
+#include "bake/voxels/model_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+double share_kept(const SceneWeakness& weakness, const Vector3& place)
+{
+  if (weakness.radius == 0)
+    return weakness.keeps;
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    squared += std::pow((place[axis] - weakness.centre[axis]) / weakness.radius, 2);
+  const double lost = weakness.dose ? std::exp(-squared) : squared <= 1 ? 1 : 0;
+  return 1 - (1 - weakness.keeps) * lost;
+}
+
+}  // namespace
+
+// A weak voxel has less of the muscle. Of muscles with passive stress, the difference is another muscle, NAME_passive,
+// which is never active: so backends know nothing of weakness, and models without it pay nothing.
+void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
+{
+  if (scene.weakness.empty())
+    return;
+  const std::vector<std::int32_t> begin = std::exchange(model.fibre_begin, { 0 });
+  const auto muscle = std::exchange(model.fibre_muscle, {});
+  const auto weight = std::exchange(model.fibre_weight, {});
+  const auto direction = std::exchange(model.fibre_direction, {});
+  const auto add = [&](std::int32_t of, double proportion, const std::array<float, 3>& along)
+  {
+    model.fibre_muscle.push_back(static_cast<std::int16_t>(of));
+    model.fibre_weight.push_back(static_cast<float>(proportion));
+    model.fibre_direction.push_back(along);
+  };
+  std::map<std::int32_t, std::int32_t> passive_part;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    const Vector3 place = to_array(frame.voxel_centre(model, e));
+    for (std::int32_t f = begin[e]; f < begin[e + 1]; ++f)
+    {
+      const Muscle of = model.muscles[muscle[f]];
+      double kept = 1;
+      for (const SceneWeakness& weakness : scene.weakness)
+        if (weakness.muscles.empty() ||
+            std::find(weakness.muscles.begin(), weakness.muscles.end(), of.name) != weakness.muscles.end())
+          kept *= share_kept(weakness, place);
+      if (kept > 0)
+        add(muscle[f], kept * weight[f], direction[f]);
+      if (!of.passive || kept == 1)
+        continue;
+      const auto part = passive_part.emplace(muscle[f], model.muscles.size());
+      if (part.second)
+        model.muscles.push_back({ of.name + "_passive", of.stress_reference, true, of.tension_length });
+      add(part.first->second, (1 - kept) * weight[f], direction[f]);
+    }
+    model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
+  }
+}
+
+}  // namespace frontalis

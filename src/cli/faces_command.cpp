@@ -1,0 +1,131 @@
+#include "cli/command_options.hpp"
+#include "cli/model_source.hpp"
+#include "cli/progress.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/study/faces.hpp"
+#include "frontalis/study/portrait.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+namespace frontalis
+{
+namespace
+{
+
+struct FacesOptions
+{
+  ModelSource source;
+  std::string people;  ///< file; empty: config/people.yaml
+  std::vector<std::string> only;
+  bool all_landmarks = false;
+  bool measured_only = false;
+  std::string json, pictures;
+  int columns = 6;
+  FaceSettings settings;
+};
+
+using Pictures = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>;
+
+/// Those of the model, in the order of the people's file; the others after them.
+std::vector<std::string> chosen_expressions(const FacesOptions& options, const Model& model,
+                                            const std::vector<std::string>& in_order)
+{
+  if (!options.only.empty())
+    return options.only;
+  std::vector<std::string> names;
+  const auto has = [&](const std::string& name)
+  {
+    return std::any_of(model.expressions.begin(), model.expressions.end(),
+                       [&](const auto& e) { return e.name == name; });
+  };
+  std::copy_if(in_order.begin(), in_order.end(), std::back_inserter(names), has);
+  for (const auto& expression : model.expressions)
+    if (std::find(names.begin(), names.end(), expression.name) == names.end())
+      names.push_back(expression.name);
+  return names;
+}
+
+void measure_faces(FacesOptions& options)
+{
+  if (options.people.empty())
+    options.people = FRONTALIS_SOURCE_DIRECTORY "/config/people.yaml";
+  const People people = read_people(options.people);
+  const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  const std::vector<std::string> names = chosen_expressions(options, *model, people.order);
+  if (!options.pictures.empty())
+    make_folder(options.pictures);
+
+  Progress progress;
+  std::string running;
+  std::optional<Portrait> portrait;
+  Pictures pictures;
+  options.settings.watch = [&](double done)
+  {
+    progress.update(running, done);
+    if (interrupt_requested())
+      throw Interrupted();
+  };
+  if (!options.pictures.empty())
+    options.settings.settled = [&](const std::string& name, const SkinState& skin, const Controls& controls)
+    {
+      if (!portrait)
+        portrait.emplace(*model, skin);
+      if (!name.empty() || pictures.empty())
+        pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(skin, controls));
+    };
+  std::vector<FaceRow> rows;
+  for (const std::string& name : names)
+  {
+    running = name;
+    const auto known = people.expressions.find(name);
+    const PublishedExpression nothing;
+    const auto found =
+        measure_expression(model, name, known == people.expressions.end() ? nothing : known->second, options.settings);
+    rows.insert(rows.end(), found.begin(), found.end());
+  }
+  progress.clear();
+  fmt::print("{}", faces_table(rows, options.all_landmarks).text());
+  if (!options.json.empty())
+    write_text(options.json, faces_table(rows, true).json());
+  if (!options.pictures.empty())
+    write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
+  const auto compared =
+      std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return row.most == row.most; });
+  const auto failed = std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return !row.passed(); });
+  const std::string summary =
+      fmt::format("{} of {} figures of {} expressions are not as people's", failed, compared, names.size());
+  if (failed > 0 && !options.measured_only)
+    throw Error(summary);
+  fmt::print("{}\n", summary);
+}
+
+}  // namespace
+
+void add_faces_command(CLI::App& app)
+{
+  const auto options = std::make_shared<FacesOptions>();
+  CLI::App* command = app.add_subcommand(
+      "faces", "play the expressions of a scene or a baked model and compare how landmarks move with people");
+  command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
+  command->add_option("--only", options->only, "expressions to play: NAME,NAME,... (all)")->delimiter(',');
+  command->add_option("--people", options->people, "file with the motions of people (config/people.yaml)");
+  add_positive(*command, "--seconds", options->settings.seconds, "simulated seconds per expression (1.2)");
+  command->add_option("--ramp", options->settings.ramp, "seconds in which muscles and bones get there (0.1)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--all-landmarks", options->all_landmarks, "list landmarks of which nothing is published, too");
+  command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
+  command->add_option("--json", options->json, "write the figures of all landmarks to this file");
+  command->add_option("--pictures", options->pictures,
+                      "write a contact sheet to faces.png in this folder (needs gnuplot)");
+  add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");
+  add_solver_options(*command, options->settings.solver);
+  add_scene_options(*command, options->source);
+  command->callback([options] { measure_faces(*options); });
+}
+
+}  // namespace frontalis
