@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace frontalis
 {
@@ -13,15 +14,16 @@ DemoPlayer::DemoPlayer(std::shared_ptr<const Model> model) : model_(std::move(mo
   first_round_ = demo_curve(*model_, rest);
   later_rounds_ = demo_curve(*model_, first_round_.controls.back());
   period_ = first_round_.time.back();
-  for (std::size_t bone = 0; bone < model_->bones.size(); ++bone)
-    if (std::any_of(model_->demo.begin(), model_->demo.end(),
-                    [&](const Model::DemoPhase& phase)
-                    {
-                      return std::any_of(phase.bones.begin(), phase.bones.end(),
-                                         [&](const Model::BonePose& pose)
-                                         { return pose.bone == static_cast<std::int32_t>(bone); });
-                    }))
-      moved_.push_back(bone);
+  std::set<std::int32_t> moved;
+  for (const Model::DemoPhase& phase : model_->demo)
+  {
+    for (const Model::BonePose& pose : phase.bones)
+      moved.insert(pose.bone);
+    if (phase.expression >= 0)
+      for (const Model::BonePose& pose : model_->expressions.at(static_cast<std::size_t>(phase.expression)).bones)
+        moved.insert(pose.bone);
+  }
+  moved_.assign(moved.begin(), moved.end());
 }
 
 bool DemoPlayer::moves(const std::string& bone) const

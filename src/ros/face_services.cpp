@@ -128,6 +128,8 @@ bool FaceNode::on_list_muscles(ListMuscles::Request&, ListMuscles::Response& res
                   for (const auto& expression : model.expressions)
                     response.expressions.push_back(expression.name);
                   response.expressions.push_back("relax");
+                  for (const auto& unit : model.action_units)
+                    response.action_units.push_back(unit.name);
                 });
 }
 
