@@ -181,7 +181,9 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
   catch (const Error& error)
   {
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
+    // also takes back what was applied before the fault
     config = config_;
+    apply_config(*running, config_);
   }
 }
 
