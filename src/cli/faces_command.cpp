@@ -3,10 +3,11 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/guard.hpp"
 #include "frontalis/study/faces.hpp"
 #include "frontalis/study/portrait.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
@@ -24,7 +25,7 @@ struct FacesOptions
   std::vector<std::string> only;
   bool all_landmarks = false;
   bool measured_only = false;
-  std::string json, pictures;
+  std::string json, table, pictures;
   int columns = 6;
   FaceSettings settings;
 };
@@ -79,6 +80,7 @@ void measure_faces(FacesOptions& options)
         pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(skin, controls));
     };
   std::vector<FaceRow> rows;
+  std::vector<std::string> faults;
   for (const std::string& name : names)
   {
     running = name;
@@ -92,6 +94,8 @@ void measure_faces(FacesOptions& options)
   fmt::print("{}", faces_table(rows, options.all_landmarks).text());
   if (!options.json.empty())
     write_text(options.json, faces_table(rows, true).json());
+  if (!options.table.empty())
+    write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty())
     write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
   const auto compared =
@@ -99,6 +103,8 @@ void measure_faces(FacesOptions& options)
   const auto failed = std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return !row.passed(); });
   const std::string summary =
       fmt::format("{} of {} figures of {} expressions are not as people's", failed, compared, names.size());
+  if (!faults.empty())
+    throw Error(fmt::format("{}; {} could not be played:\n{}", summary, faults.size(), fmt::join(faults, "\n")));
   if (failed > 0 && !options.measured_only)
     throw Error(summary);
   fmt::print("{}\n", summary);
@@ -120,6 +126,7 @@ void add_faces_command(CLI::App& app)
   command->add_flag("--all-landmarks", options->all_landmarks, "list landmarks of which nothing is published, too");
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
   command->add_option("--json", options->json, "write the figures of all landmarks to this file");
+  command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--pictures", options->pictures,
                       "write a contact sheet to faces.png in this folder (needs gnuplot)");
   add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");

@@ -2,28 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace frontalis
 {
 
 DemoPlayer::DemoPlayer(std::shared_ptr<const Model> model) : model_(std::move(model))
 {
-  const Controls rest{ std::vector<float>(model_->muscles.size(), 0),
-                       std::vector<RigidTransform>(model_->bones.size()) };
-  first_round_ = demo_curve(*model_, rest);
+  first_round_ = demo_curve(*model_, rest_controls(*model_));
   later_rounds_ = demo_curve(*model_, first_round_.controls.back());
   period_ = first_round_.time.back();
-  std::set<std::int32_t> moved;
-  for (const Model::DemoPhase& phase : model_->demo)
-  {
-    for (const Model::BonePose& pose : phase.bones)
-      moved.insert(pose.bone);
-    if (phase.expression >= 0)
-      for (const Model::BonePose& pose : model_->expressions.at(static_cast<std::size_t>(phase.expression)).bones)
-        moved.insert(pose.bone);
-  }
-  moved_.assign(moved.begin(), moved.end());
+  const RigidTransform rest;
+  const auto away = [&](const RigidTransform& pose)
+  { return pose.rotation != rest.rotation || pose.translation != rest.translation; };
+  for (std::size_t bone = 0; bone < model_->bones.size(); ++bone)
+    if (std::any_of(first_round_.controls.begin(), first_round_.controls.end(),
+                    [&](const Controls& knot) { return away(knot.bone[bone]); }))
+      moved_.push_back(bone);
 }
 
 bool DemoPlayer::moves(const std::string& bone) const

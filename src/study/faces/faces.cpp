@@ -100,6 +100,7 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
   std::vector<Places> frames;
   SkinState skin;
   const int count = static_cast<int>(std::lround(settings.seconds / frame_seconds));
+  frames.reserve(static_cast<std::size_t>(count) + 1);
   for (int frame = 0; frame <= count; ++frame)
   {
     if (frame > 0)

@@ -81,7 +81,7 @@ double distance_from_line(const std::array<float, 3>& p, const std::vector<const
 
 struct Portrait::Canvas
 {
-  std::vector<Vector> colour = std::vector<Vector>(std::size_t{ finer * width } * finer * height, { 1, 1, 1 });
+  std::vector<Vector> colour = std::vector<Vector>(std::size_t{ finer } * width * finer * height, { 1, 1, 1 });
   std::vector<double> depth = std::vector<double>(colour.size(), -std::numeric_limits<double>::infinity());
 
   void put(int column, int row, double at, const Vector& what)
@@ -104,7 +104,7 @@ Portrait::Portrait(const Model& model, const SkinState& rest) : model_(model)
       high[axis] = std::max(high[axis], double(v[axis + 1]));
     }
   middle_ = { 0, 0, 0.5 * (low[1] + high[1]) - 4e-3 };
-  pixel_ = 1.12 * (high[1] - low[1]) / (finer * height);
+  pixel_ = 1.08 * std::max((high[0] - low[0]) / (finer * width), (high[1] - low[1]) / (finer * height));
   const auto *upper = find(model, rest, "upper_lip"), *lower = find(model, rest, "lower_lip"),
              *corner = find(model, rest, "mouth_corner_left"), *chin = find(model, rest, "chin");
   const bool mouth = upper && lower && corner && chin;
@@ -272,7 +272,9 @@ void write_contact_sheet(const std::vector<std::pair<std::string, std::vector<st
                          const std::string& path)
 {
   constexpr int title = 22;  // [pixels]
-  const int count = static_cast<int>(portraits.size()), rows = (count + columns - 1) / columns;
+  const int count = static_cast<int>(portraits.size());
+  columns = std::min(columns, count);
+  const int rows = (count + columns - 1) / columns;
   const int wide = columns * Portrait::width, high = rows * (Portrait::height + title);
   std::string pixels(std::size_t(wide) * std::size_t(high) * 3, '\xff'), labels;
   for (int p = 0; p < count; ++p)
