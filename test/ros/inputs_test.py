@@ -102,7 +102,7 @@ class Inputs(unittest.TestCase):
         self.check(self.step(0.25), 0.1, 0.75)
         # an expression, action units and blendshapes take the whole face
         self.send("expression", Expression(name=["wink"], onset=0.5))
-        self.check(self.step(0.25), 0.35, 0.5)
+        self.check(self.step(0.25), 0.35, 0.375)
         self.send("joint_states", JointState(name=[RIGHT], position=[0.7]))
         self.check(self.step(0.25), 0.6, 0.7)
         self.send("blendshapes", Blendshapes(name=["browOuterUpRight"], weight=[0.5]))
