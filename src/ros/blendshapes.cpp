@@ -1,6 +1,7 @@
 #include "frontalis/ros/blendshapes.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/runner/named_controls.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -10,40 +11,58 @@
 namespace frontalis
 {
 
+namespace
+{
+
+// whether the model has this action unit, or one of which this is a half
+bool has_unit(const Model& model, const std::string& name)
+{
+  return std::any_of(model.action_units.begin(), model.action_units.end(),
+                     [&](const auto& unit)
+                     { return name == unit.name || name == unit.name + "_left" || name == unit.name + "_right"; });
+}
+
+}  // namespace
+
 BlendshapeTable::BlendshapeTable(const std::string& file, const Model& model)
 {
   if (file.empty())
     return;
-  std::string row;
+  std::string name;
   try
   {
     for (const auto& entry : YAML::LoadFile(file))
     {
-      row = entry.first.as<std::string>();
-      auto& shares = rows_[row];
+      name = entry.first.as<std::string>();
+      Row& row = rows_[name];
       for (const auto& share : entry.second)
       {
-        const auto muscle = share.first.as<std::string>();
+        const auto key = share.first.as<std::string>();
         const auto value = share.second.as<double>();
         if (!(value >= 0 && value <= 1))
-          throw Error(fmt::format("{}: {}: {}: found {}; must be from 0 to 1", file, row, muscle, value));
-        if (std::any_of(model.muscles.begin(), model.muscles.end(), [&](const auto& m) { return m.name == muscle; }))
-          shares.emplace_back(muscle, value);
+          throw Error(fmt::format("{}: {}: {}: found {}; must be from 0 to 1", file, name, key, value));
+        const auto& muscles = model.muscles;
+        const auto muscle =
+            std::find_if(muscles.begin(), muscles.end(), [&](const auto& known) { return known.name == key; });
+        if (muscle != muscles.end())
+          row.muscles.emplace_back(muscle - muscles.begin(), value);
+        else if (has_unit(model, key))
+          row.units.emplace_back(key, value);
       }
     }
   }
   catch (const YAML::Exception& fault)
   {
-    throw Error(fmt::format("{}: {}: must be a mapping of muscles to numbers from 0 to 1: {}", file,
-                            row.empty() ? "blendshapes" : row, fault.what()));
+    throw Error(fmt::format("{}: {}: must be a mapping of muscles and action units to numbers from 0 to 1: {}", file,
+                            name.empty() ? "blendshapes" : name, fault.what()));
   }
 }
 
-std::map<std::string, double> BlendshapeTable::activation(const std::vector<std::string>& names,
-                                                          const std::vector<double>& weights,
-                                                          std::set<std::string>& lacking) const
+Controls BlendshapeTable::pose(const Model& model, const std::vector<std::string>& names,
+                               const std::vector<double>& weights, std::set<std::string>& lacking) const
 {
-  std::map<std::string, double> out;
+  std::vector<double> added(model.muscles.size(), 0.0);
+  std::map<std::string, double> units;
   std::set<std::string> seen;
   for (std::size_t entry = 0; entry < names.size(); ++entry)
   {
@@ -54,12 +73,17 @@ std::map<std::string, double> BlendshapeTable::activation(const std::vector<std:
       throw Error(fmt::format("blendshape '{}' is named twice", names[entry]));
     if (!(weights[entry] >= 0 && weights[entry] <= 1))
       throw Error(fmt::format("weight of '{}' is {}; must be from 0 to 1", names[entry], weights[entry]));
-    if (row->second.empty())
+    if (row->second.muscles.empty() && row->second.units.empty())
       lacking.insert(names[entry]);
-    for (const auto& [muscle, share] : row->second)
-      out[muscle] = std::min(1.0, out[muscle] + share * weights[entry]);
+    for (const auto& [muscle, share] : row->second.muscles)
+      added[muscle] += share * weights[entry];
+    for (const auto& [unit, share] : row->second.units)
+      units[unit] = std::min(1.0, units[unit] + share * weights[entry]);
   }
-  return out;
+  Controls pose = action_unit_controls(model, units);
+  for (std::size_t muscle = 0; muscle < added.size(); ++muscle)
+    pose.activation[muscle] = static_cast<float>(std::min(1.0, pose.activation[muscle] + added[muscle]));
+  return pose;
 }
 
 }  // namespace frontalis

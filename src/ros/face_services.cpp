@@ -128,6 +128,8 @@ bool FaceNode::on_list_muscles(ListMuscles::Request&, ListMuscles::Response& res
                   for (const auto& expression : model.expressions)
                     response.expressions.push_back(expression.name);
                   response.expressions.push_back("relax");
+                  for (const auto& unit : model.action_units)
+                    response.action_units.push_back(unit.name);
                 });
 }
 
@@ -179,7 +181,9 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
   catch (const Error& error)
   {
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
+    // also takes back what was applied before the fault
     config = config_;
+    apply_config(*running, config_);
   }
 }
 

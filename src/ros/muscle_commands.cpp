@@ -29,7 +29,9 @@ MuscleCommands::MuscleCommands(std::shared_ptr<const Model> model) : model_(std:
 
 void MuscleCommands::clear()
 {
-  courses_.assign(model_->muscles.size(), { { 0, 0 } });
+  courses_.clear();
+  for (const Muscle& muscle : model_->muscles)
+    courses_.push_back({ { 0, muscle.tone } });
   end_ = heard_ = 0;
   commanded_ = false;
 }
@@ -82,8 +84,8 @@ void MuscleCommands::follow(const std::map<std::string, Course>& courses, double
 
 void MuscleCommands::relax(double now, double seconds)
 {
-  for (Course& course : courses_)
-    course = { { now, value_at(course, now) }, { now + seconds, 0 } };
+  for (std::size_t muscle = 0; muscle < courses_.size(); ++muscle)
+    courses_[muscle] = { { now, value_at(courses_[muscle], now) }, { now + seconds, model_->muscles[muscle].tone } };
   end_ = now + seconds;
 }
 

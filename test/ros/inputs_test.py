@@ -7,7 +7,7 @@ import unittest
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
-from frontalis.msg import Blendshapes, Expression, MuscleActivation
+from frontalis.msg import ActionUnits, Blendshapes, Expression, MuscleActivation
 from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
@@ -35,6 +35,7 @@ class Inputs(unittest.TestCase):
         rospy.Subscriber("/rosout", Log, lambda log: cls.warnings.append(log.msg) if "refused" in log.msg else None)
         cls.topics = {}
         for name, kind in (("joint_states", JointState), ("joint_trajectory", JointTrajectory), ("blendshapes", Blendshapes),
+                           ("action_units", ActionUnits),
                            ("bone_pose", TransformStamped)):
             cls.topics[name] = rospy.Publisher("/face/" + name, kind, queue_size=10)
         cls.topics["muscle_activation"] = cls.face.activation
@@ -99,8 +100,13 @@ class Inputs(unittest.TestCase):
         self.step(0.5)
         self.send("joint_states", JointState(name=[LEFT], position=[0.1]))
         self.check(self.step(0.25), 0.1, 0.75)
+        # an expression, action units and blendshapes take the whole face
+        self.send("expression", Expression(name=["wink"], onset=0.5))
+        self.check(self.step(0.25), 0.35, 0.375)
+        self.send("joint_states", JointState(name=[RIGHT], position=[0.7]))
+        self.check(self.step(0.25), 0.6, 0.7)
         self.send("blendshapes", Blendshapes(name=["browOuterUpRight"], weight=[0.5]))
-        self.check(self.step(0.25), 0.1, 0.3)
+        self.check(self.step(0.25), 0, 0.3)
 
     def test_expression_goes_there_stays_and_relaxes(self):
         self.send("expression", Expression(name=["raise"], onset=0.2, hold=0.3, release=0.4))
@@ -125,6 +131,40 @@ class Inputs(unittest.TestCase):
         self.check(self.step(0.1), 0.45, 0.3)
         self.send("blendshapes", Blendshapes(name=["browInnerUp", "browOuterUpLeft"], weight=[1, 1]))
         self.check(self.step(0.1), 1, 0.6)
+
+    def tip(self):
+        """Height of the tip at the latest frame [m]."""
+        self.face.wait_for_frame(lambda: True, "the landmarks")
+        return self.face.height("tip")
+
+    def test_action_units_and_their_halves(self):
+        rest = self.tip()
+        self.send("action_units", ActionUnits(name=["AU1", "AU1_left"], intensity=[0.5, 0.25]))
+        self.check(self.step(0.1), 0.375, 0.25)
+        # units that a message does not name are at 0; this one shifts the bone
+        self.send("action_units", ActionUnits(name=["AU27"], intensity=[0.5]))
+        self.check(self.step(2), 0, 0)
+        self.assertAlmostEqual(self.tip() - rest, 0.002, 4)
+
+    def test_expression_moves_bones_and_gives_them_back(self):
+        rest = self.tip()
+        self.send("expression", Expression(name=["drop", "wink"], onset=0.5, hold=2, release=0.5))
+        self.check(self.step(0.25), 0.3, 0)
+        self.send("joint_states", JointState(name=[LEFT], position=[0]))
+        self.check(self.step(2.2), 0, 0)
+        self.assertAlmostEqual(self.tip() - rest, 0.002, 4)
+        self.step(2.5)
+        self.assertAlmostEqual(self.tip(), rest, 4)
+        # full intensity of another's pose, and a message of its own for the bone
+        self.send("blendshapes", Blendshapes(name=["jawOpen"], weight=[1]))
+        self.step(2)
+        self.assertAlmostEqual(self.tip() - rest, 0.004, 4)
+        pose = TransformStamped(child_frame_id="skull")
+        pose.transform.rotation.w = 1
+        pose.transform.translation.x = 0.001
+        self.send("bone_pose", pose)
+        self.step(2)
+        self.assertAlmostEqual(self.tip(), rest, 4)
 
     def test_watchdog_relaxes_a_face_without_controller(self):
         self.config.update_configuration({"command_timeout": 0.4, "relax_time": 0.2})
@@ -194,6 +234,13 @@ class Inputs(unittest.TestCase):
                 Blendshapes(name=["eyebrowsUp"], weight=[0.5]),
                 Blendshapes(name=["browInnerUp"] * 2, weight=[0.5] * 2),
                 Blendshapes(name=["browInnerUp"], weight=[]),
+            ],
+            "action_units": [
+                ActionUnits(name=["AU1"], intensity=[1.5]),
+                ActionUnits(name=["AU1"], intensity=[nan]),
+                ActionUnits(name=["AU99"], intensity=[0.5]),
+                ActionUnits(name=["AU1", "AU1"], intensity=[0.1, 0.1]),
+                ActionUnits(name=many, intensity=[0.5] * len(many)),
             ],
             "expression": [
                 Expression(name=["astonish"]),

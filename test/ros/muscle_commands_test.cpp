@@ -67,13 +67,18 @@ TEST(Blendshapes, TableHasTheNamesOfFaceTrackers)
   Model model = small_model();
   model.muscles[0].name = "frontalis_left";
   model.muscles[1].name = "zygomaticus_major_right";
+  model.muscles[0].tone = 0.1;
+  model.bones = { "mandible" };
+  model.action_units.push_back({ "AU27", {}, { { 0, {}, { { 0, 0.5, 0 } }, {} } } });
   const BlendshapeTable table(std::string(FRONTALIS_SOURCE_DIRECTORY) + "/config/blendshapes.yaml", model);
   EXPECT_EQ(table.size(), 52u);
   std::set<std::string> lacking;
-  const auto activation = table.activation({ "browInnerUp", "mouthSmileRight", "jawOpen" }, { 0.5, 1, 1 }, lacking);
-  EXPECT_DOUBLE_EQ(activation.at("frontalis_left"), 0.3);
-  EXPECT_GT(activation.at("zygomaticus_major_right"), 0.5);
-  EXPECT_EQ(lacking, std::set<std::string>{ "jawOpen" });
+  const auto pose =
+      table.pose(model, { "browInnerUp", "mouthSmileRight", "jawOpen", "tongueOut" }, { 0.5, 1, 0.5, 1 }, lacking);
+  EXPECT_FLOAT_EQ(pose.activation[0], 0.1f + 0.3f);
+  EXPECT_GT(pose.activation[1], 0.5f);
+  EXPECT_NE(pose.bone[0].rotation[0], 1);
+  EXPECT_EQ(lacking, std::set<std::string>{ "tongueOut" });
 }
 
 }  // namespace

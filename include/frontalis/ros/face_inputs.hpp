@@ -5,9 +5,11 @@
 #include "frontalis/ros/demo_player.hpp"
 #include "frontalis/ros/muscle_commands.hpp"
 #include "frontalis/ros/parameters.hpp"
+#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/runner/runner.hpp"
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <frontalis/ActionUnits.h>
 #include <frontalis/Blendshapes.h>
 #include <frontalis/Expression.h>
 #include <frontalis/MuscleActivation.h>
@@ -61,6 +63,7 @@ private:
   void on_muscle_activation(const MuscleActivation& message);
   void on_joint_states(const sensor_msgs::JointState& message);
   void on_joint_trajectory(const trajectory_msgs::JointTrajectory& message);
+  void on_action_units(const ActionUnits& message);
   void on_blendshapes(const Blendshapes& message);
   void on_expression(const Expression& message);
   void on_bone_pose(const geometry_msgs::TransformStamped& message);
@@ -73,6 +76,15 @@ private:
            const std::vector<double>& values);
   void command(const char* topic, Runner& running, double now,
                const std::map<std::string, MuscleCommands::Course>& courses, double begin);
+  /// Durations [s]: to reach a pose, to keep it (0: until the next command), to relax after that.
+  struct Timing
+  {
+    double onset = 0, hold = 0, release = 0;
+  };
+  /// Commands all muscles, and the bones that expressions or action units of the model move.
+  void take_pose(const char* topic, Runner& running, double now, const Controls& pose, const Timing& timing);
+  void set_bones(Runner& running, double time) const;
+  Controls present_bones(double time) const;
   std::map<std::string, double> present(double time) const;
   void check_stamp(const ros::Time& stamp) const;
   void end_demo(const char* topic);
@@ -88,7 +100,9 @@ private:
   std::unique_ptr<DemoPlayer> demo_;
   bool demo_playing_ = false;
   std::unique_ptr<MuscleCommands> commands_;
-  bool silent_ = false;  ///< the watchdog relaxes the face, or has done so
+  ControlCurve bones_;           ///< motions of bones by the latest pose; empty: none
+  std::set<std::string> posed_;  ///< bones that move by it
+  bool silent_ = false;          ///< the watchdog relaxes the face, or has done so
   std::unique_ptr<BlendshapeTable> blendshapes_;
   std::set<std::string> lacking_;  ///< blendshapes that were reported
   std::unique_ptr<BoneFollower> follower_;

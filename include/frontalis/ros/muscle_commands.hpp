@@ -23,7 +23,7 @@ public:
   /// Linear between knots, constant before the first and after the last. Times do not descend.
   using Course = std::vector<Knot>;
 
-  /// All muscles at 0.
+  /// All muscles at their tone.
   explicit MuscleCommands(std::shared_ptr<const Model> model);
 
   /// Sets activations, 0..1, by the names of muscles at once; other muscles go on. Throws an Error that names all
@@ -32,9 +32,9 @@ public:
   /// Takes muscles along courses, which begin at `begin` or later; until then they do as commanded before. Throws the
   /// Errors of set().
   void follow(const std::map<std::string, Course>& courses, double begin, double now);
-  /// Takes all muscles to 0 over some seconds. This does not count as a command.
+  /// Takes all muscles to their tone over some seconds. This does not count as a command.
   void relax(double now, double seconds);
-  /// Without any command again: all muscles at 0.
+  /// Without any command again: all muscles at their tone.
   void clear();
 
   std::map<std::string, double> at(double time) const;

@@ -1,6 +1,7 @@
 #include "ros/panel/face_panel.hpp"
 
 #include <dynamic_reconfigure/Reconfigure.h>
+#include <frontalis/ActionUnits.h>
 #include <frontalis/Expression.h>
 #include <frontalis/MuscleActivation.h>
 #include <pluginlib/class_list_macros.hpp>
@@ -10,6 +11,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFormLayout>
 #include <QGridLayout>
 #include <QGroupBox>
 #include <QHBoxLayout>
@@ -19,6 +21,7 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSlider>
+#include <QTabWidget>
 #include <QTimer>
 #include <QVBoxLayout>
 
@@ -33,7 +36,6 @@ namespace
 
 constexpr int full = 1000;                    // of a slider, at activation 1
 constexpr std::chrono::seconds untouched(1);  // after which a slider shows the activation of the face again
-constexpr int buttons_per_row = 3;
 
 bool ends_with(const std::string& text, const std::string& end)
 {
@@ -73,7 +75,9 @@ FacePanel::FacePanel(QWidget* parent)
       colour_(new QComboBox),
       onset_(new QDoubleSpinBox),
       expressions_(new QGridLayout),
-      sliders_(new QGridLayout),
+      muscles_(new QGridLayout),
+      units_(new QGridLayout),
+      tabs_(new QTabWidget),
       speed_(new QProgressBar),
       energy_(new QLabel),
       message_(new QLabel("no face yet"))
@@ -94,29 +98,29 @@ FacePanel::FacePanel(QWidget* parent)
 
   auto* const expressions = new QGroupBox("Expressions");
   auto* const expressions_box = new QVBoxLayout(expressions);
-  auto* const blend = new QHBoxLayout;
-  blend->addWidget(new QLabel("within"));
+  auto* const blend = new QFormLayout;
   onset_->setRange(0, 10);
   onset_->setSingleStep(0.1);
   onset_->setValue(0.3);
   onset_->setSuffix(" s");
-  blend->addWidget(onset_);
-  blend->addStretch();
+  blend->addRow("within", onset_);
   expressions_box->addLayout(blend);
   expressions_box->addLayout(expressions_);
 
-  auto* const muscles = new QGroupBox("Muscles (left, right)");
-  auto* const muscles_box = new QVBoxLayout(muscles);
-  auto* const scroll = new QScrollArea;
-  auto* const area = new QWidget;
-  sliders_->setColumnStretch(1, 1);
-  sliders_->setColumnStretch(2, 1);
-  area->setLayout(sliders_);
-  scroll->setWidget(area);
-  scroll->setWidgetResizable(true);
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setMinimumHeight(200);
-  muscles_box->addWidget(scroll);
+  muscles_->setColumnStretch(1, 1);
+  muscles_->setColumnStretch(2, 1);
+  units_->setColumnStretch(1, 1);
+  for (const auto& [layout, title] : { std::pair{ muscles_, "Muscles (left, right)" }, { units_, "Action units" } })
+  {
+    auto* const scroll = new QScrollArea;
+    auto* const area = new QWidget;
+    area->setLayout(layout);
+    scroll->setWidget(area);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setMinimumHeight(200);
+    tabs_->addTab(scroll, title);
+  }
 
   speed_->setRange(0, 150);
   speed_->setFormat("real-time factor %v %");
@@ -129,7 +133,7 @@ FacePanel::FacePanel(QWidget* parent)
   all->addWidget(energy_);
   all->addWidget(message_);
   all->addWidget(expressions);
-  all->addWidget(muscles, 1);
+  all->addWidget(tabs_, 1);
 
   for (const auto& [widget, name] : { std::pair<QWidget*, const char*>{ face_, "face" },
                                       { locked_, "locked" },
@@ -137,6 +141,7 @@ FacePanel::FacePanel(QWidget* parent)
                                       { reset, "reset" },
                                       { colour_, "colour" },
                                       { onset_, "onset" },
+                                      { tabs_, "tabs" },
                                       { speed_, "speed" },
                                       { message_, "message" } })
     widget->setObjectName(name);
@@ -176,6 +181,9 @@ void FacePanel::load(const rviz::Config& config)
     locked_->setChecked(locked);
   if (config.mapGetFloat("Onset", &onset))
     onset_->setValue(onset);
+  int tab = 0;
+  if (config.mapGetInt("Tab", &tab))
+    tabs_->setCurrentIndex(tab);
   connect_to_face();
 }
 
@@ -185,6 +193,7 @@ void FacePanel::save(rviz::Config config) const
   config.mapSetValue("Face", face_->text());
   config.mapSetValue("Left Equals Right", locked_->isChecked());
   config.mapSetValue("Onset", onset_->value());
+  config.mapSetValue("Tab", tabs_->currentIndex());
 }
 
 void FacePanel::connect_to_face()
@@ -199,6 +208,7 @@ void FacePanel::connect_to_face()
     return;
   }
   activation_ = handle_.advertise<MuscleActivation>(face + "/muscle_activation", 10);
+  action_units_ = handle_.advertise<ActionUnits>(face + "/action_units", 10);
   expression_ = handle_.advertise<Expression>(face + "/expression", 10);
   state_ = handle_.subscribe<SimulationState>(face + "/state", 1,
                                               [this](const SimulationState::ConstPtr& state) { on_state(*state); });
@@ -249,7 +259,8 @@ void FacePanel::poll()
 void FacePanel::clear_muscles()
 {
   slider_of_.clear();
-  for (QGridLayout* const layout : { sliders_, expressions_ })
+  unit_of_.clear();
+  for (QGridLayout* const layout : { muscles_, units_, expressions_ })
     while (QLayoutItem* const item = layout->takeAt(0))
     {
       delete item->widget();
@@ -265,41 +276,64 @@ void FacePanel::show_muscles(const ListMuscles::Response& face)
   {
     if (slider_of_.count(muscle) > 0)
       continue;
-    auto* const label = new QLabel(words(stem(muscle)));
-    label->setToolTip(QString::fromStdString(muscle));
-    sliders_->addWidget(label, row, 0);
+    muscles_->addWidget(new QLabel(words(stem(muscle))), row, 0);
     const std::string other = counterpart(muscle);
-    const bool paired = std::find(face.name.begin(), face.name.end(), other) != face.name.end();
-    add_slider(muscle, row, ends_with(muscle, "_right") ? 2 : 1);
-    if (paired)
-      add_slider(other, row, ends_with(other, "_right") ? 2 : 1);
+    add_muscle(muscle, row);
+    if (std::find(face.name.begin(), face.name.end(), other) != face.name.end())
+      add_muscle(other, row);
     ++row;
   }
-  sliders_->setRowStretch(row, 1);
+  muscles_->setRowStretch(row, 1);
+  row = 0;
+  for (const std::string& unit : face.action_units)
+  {
+    QSlider* const slider = unit_of_[unit] = new_slider(unit);
+    units_->addWidget(new QLabel(words(unit)), row, 0);
+    units_->addWidget(slider, row++, 1);
+    connect(slider, &QSlider::valueChanged, this, [this] { on_action_unit(); });
+  }
+  units_->setRowStretch(row, 1);
   int button = 0;
   for (const std::string& name : face.expressions)
   {
     auto* const made = new QPushButton(words(name));
     made->setObjectName(QString::fromStdString("expression/" + name));
     connect(made, &QPushButton::clicked, this, [this, name] { express(name); });
-    expressions_->addWidget(made, button / buttons_per_row, button % buttons_per_row);
+    expressions_->addWidget(made, button / 3, button % 3);
     ++button;
   }
 }
 
-void FacePanel::add_slider(const std::string& muscle, int row, int column)
+QSlider* FacePanel::new_slider(const std::string& name)
 {
   auto* const slider = new QSlider(Qt::Horizontal);
   slider->setRange(0, full);
-  slider->setObjectName(QString::fromStdString(muscle));
-  slider->setToolTip(QString::fromStdString(muscle));
-  slider_of_[muscle] = slider;
-  // a muscle of the middle has both columns
-  sliders_->addWidget(slider, row, column, 1, counterpart(muscle).empty() ? 2 : 1);
-  connect(slider, &QSlider::valueChanged, this, [this, muscle] { on_slider(muscle); });
+  slider->setObjectName(QString::fromStdString(name));
+  slider->setToolTip(QString::fromStdString(name));
+  return slider;
 }
 
-void FacePanel::on_slider(const std::string& muscle)
+void FacePanel::add_muscle(const std::string& muscle, int row)
+{
+  QSlider* const slider = slider_of_[muscle] = new_slider(muscle);
+  // a muscle of the middle has both columns
+  muscles_->addWidget(slider, row, ends_with(muscle, "_right") ? 2 : 1, 1, counterpart(muscle).empty() ? 2 : 1);
+  connect(slider, &QSlider::valueChanged, this, [this, muscle] { on_muscle(muscle); });
+}
+
+void FacePanel::on_action_unit()
+{
+  ActionUnits message;
+  message.header.stamp = ros::Time::now();
+  for (const auto& [unit, slider] : unit_of_)
+  {
+    message.name.push_back(unit);
+    message.intensity.push_back(static_cast<double>(slider->value()) / full);
+  }
+  action_units_.publish(message);
+}
+
+void FacePanel::on_muscle(const std::string& muscle)
 {
   edited_ = std::chrono::steady_clock::now();
   MuscleActivation message;

@@ -22,13 +22,14 @@ class QLineEdit;
 class QProgressBar;
 class QPushButton;
 class QSlider;
+class QTabWidget;
 
 namespace frontalis
 {
 
-/// A panel of rviz that moves a face and shows its state: a slider per muscle, left and right in one row, buttons for
-/// expressions, pause and reset, the colours of the skin, gauges. It talks to the face by topics and services alone.
-/// The name of a slider as a QObject is that of its muscle.
+/// A panel of rviz that moves a face and shows its state: a slider per muscle, left and right in one row, and per
+/// action unit, buttons for expressions, pause and reset, the colours of the skin, gauges. It talks to the face by
+/// topics and services alone. The name of a slider as a QObject is that of its muscle or action unit.
 class FacePanel : public rviz::Panel
 {
   Q_OBJECT
@@ -45,10 +46,12 @@ private:
   /// Looks for finished calls of services, and for the muscles of the face if they are not known.
   void poll();
   void show_muscles(const ListMuscles::Response& face);
-  void add_slider(const std::string& muscle, int row, int column);
+  QSlider* new_slider(const std::string& name);
+  void add_muscle(const std::string& muscle, int row);
   void clear_muscles();
   void on_state(const SimulationState& state);
-  void on_slider(const std::string& muscle);
+  void on_muscle(const std::string& muscle);
+  void on_action_unit();
   void express(const std::string& name);
   /// Calls a service in another thread, because a face may answer late; `use` has the outcome later, in this thread.
   template <typename Service>
@@ -62,14 +65,17 @@ private:
   QComboBox* colour_;
   QDoubleSpinBox* onset_;
   QGridLayout* expressions_;
-  QGridLayout* sliders_;
+  QGridLayout* muscles_;
+  QGridLayout* units_;
+  QTabWidget* tabs_;
   QProgressBar* speed_;
   QLabel* energy_;
   QLabel* message_;
   std::map<std::string, QSlider*> slider_of_;  ///< by muscle
+  std::map<std::string, QSlider*> unit_of_;    ///< by action unit
 
   ros::NodeHandle handle_;
-  ros::Publisher activation_, expression_;
+  ros::Publisher activation_, action_units_, expression_;
   ros::Subscriber state_;
   bool paused_ = false;
   bool asked_ = false;                              ///< a call for the muscles is under way

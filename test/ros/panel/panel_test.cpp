@@ -101,6 +101,9 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
   EXPECT_TRUE(run_until([&] { return left->value() == 600 && right->value() == 0; }));
   EXPECT_TRUE(run_until([&] { return find<QProgressBar>("speed")->value() > 0; }));
 
+  find<QSlider>("AU1")->setValue(800);
+  EXPECT_TRUE(reaches(0.4, 0.4));
+
   auto* const pause = find<QAbstractButton>("pause");
   pause->click();
   EXPECT_TRUE(run_until([&] { return latest_.paused && pause->text() == "Play"; }));
