@@ -17,8 +17,6 @@ namespace frontalis
 namespace
 {
 
-using namespace test;
-
 constexpr double radius = 12e-3, voxel = 1.5e-3, corneum = 0.02e-3, dermis = 1e-3;
 
 Scene ball_in_shells()
