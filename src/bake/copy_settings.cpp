@@ -1,3 +1,4 @@
+#include "bake/shapes/head/head.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/scene/content_hash.hpp"
@@ -136,12 +137,33 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
 }
 
+/// The pose, in the face frame, of a bone at an angle of its joint.
+static BonePose pose_of(const Scene& scene, const SceneJoint& joint, double angle)
+{
+  Eigen::Matrix3d to_face;
+  const auto axes = face_axes(scene);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    to_face.row(row) = axes[static_cast<std::size_t>(row)];
+  const Vector3d at = to_vector(joint.joint.at);
+  const Vector3d centre =
+      to_face * ((joint.head ? head_of(*joint.head)->moved(at) : at) - to_vector(scene.frame.origin));
+  const Vector3d axis = to_face * to_vector(joint.joint.axis);
+  const Vector3d slide = to_face * to_vector(joint.joint.slide);
+  return { joint.bone, to_array(centre - Eigen::AngleAxisd(angle, axis) * centre + angle * slide),
+           to_array(angle * axis), 0 };
+}
+
 void copy_poses(const Scene& scene, Model& model)
 {
   for (std::size_t p = 0; p < scene.demo.size(); ++p)
-    for (const BonePose& pose : scene.demo[p].bones)
+    for (BonePose pose : scene.demo[p].bones)
+    {
+      for (const SceneJoint& joint : scene.joints)
+        if (joint.bone == pose.bone && pose.angle != 0)
+          pose = pose_of(scene, joint, pose.angle);
       if (const auto bone = std::find(model.bones.begin(), model.bones.end(), pose.bone); bone != model.bones.end())
         model.demo[p].bones.push_back({ static_cast<std::int32_t>(bone - model.bones.begin()), pose.shift, pose.turn });
+    }
 }
 
 }  // namespace frontalis

@@ -215,7 +215,7 @@ void read_expressions(const Node& node, Scene& scene, SceneNames& names)
   names.expressions.complete = !node.given() || node.is_mapping();
 }
 
-static void read_poses(const Node& node, const SceneNames& names, std::vector<BonePose>& poses)
+static void read_poses(const Node& node, const Scene& scene, const SceneNames& names, std::vector<BonePose>& poses)
 {
   if (!node.given())
     return;
@@ -225,6 +225,14 @@ static void read_poses(const Node& node, const SceneNames& names, std::vector<Bo
     BonePose& pose = poses.emplace_back();
     pose.bone = bone;
     Mapping mapping(entry);
+    if (mapping.has("angle"))
+    {
+      const Node angle = mapping.optional("angle");
+      pose.angle = angle.number(Dimension::angle, any_number, 0);
+      if (std::none_of(scene.joints.begin(), scene.joints.end(), [&b = bone](const auto& j) { return j.bone == b; }))
+        angle.fault("'{}' has no joint; 'joints' must have one, or the pose 'shift' and 'turn'", bone);
+      continue;
+    }
     pose.shift = mapping.optional("shift").vector(Dimension::length, any_number, pose.shift);
     pose.turn = mapping.optional("turn").vector(Dimension::angle, any_number, pose.turn);
   }
@@ -237,7 +245,7 @@ void read_demo(const Node& node, Scene& scene, const SceneNames& names)
     DemoPhase phase;
     Mapping mapping(entry);
     phase.expression = mapping.optional("expression").reference(names.expressions);
-    read_poses(mapping.optional("bones"), names, phase.bones);
+    read_poses(mapping.optional("bones"), scene, names, phase.bones);
     if (!mapping.has("expression") && !mapping.has("bones"))
       entry.fault("has neither 'expression' nor 'bones'; must have at least one of them");
     const Node ramp = mapping.optional("ramp");
