@@ -76,7 +76,7 @@ def skin_colours(vertices, faces, cage):
     t = out.clip(0, 1)
     middle = 9.5 + 4.5 * t - 14.4 * (t - 0.62).clip(0, 1) ** 1.2
     hair = (1.3 - abs(z - middle) / (3.6 * (1 - 0.55 * t))).clip(0, 1)
-    hair *= ((out + 0.02) * 12).clip(0, 1) * ((1 - out) * 8).clip(0, 1) * (x > -40)
+    hair *= ((out + 0.02) * 6).clip(0, 1) * ((1 - out) * 6).clip(0, 1) * (x > -40)
     return colours * (1 - 0.75 * hair[:, None]) + 0.75 * hair[:, None] * numpy.array([0.25, 0.17, 0.13])
 
 
@@ -102,13 +102,14 @@ def draw(actors, views, picture, size=440):
     """views: azimuth and elevation [degrees], the point looked at and half the height of the picture there [mm]."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(size * len(views), int(1.2 * size))
+    window.SetMultiSamples(0)  # which depth peeling needs; the picture is drawn at twice its size instead
+    window.SetSize(2 * size * len(views), 2 * int(1.2 * size))
     for k, (azimuth, elevation, focus, half) in enumerate(views):
         renderer = vtk.vtkRenderer()
         renderer.SetBackground(1, 1, 1)
         renderer.SetViewport(k / len(views), 0, (k + 1) / len(views), 1)
         renderer.SetUseDepthPeeling(1)
+        renderer.SetMaximumNumberOfPeels(20)
         for actor in actors:
             renderer.AddActor(actor)
         a, e = numpy.radians([azimuth, elevation])
@@ -134,9 +135,13 @@ def draw(actors, views, picture, size=440):
     image = vtk.vtkWindowToImageFilter()
     image.SetInput(window)
     image.ReadFrontBufferOff()
+    half_size = vtk.vtkImageShrink3D()
+    half_size.SetInputConnection(image.GetOutputPort())
+    half_size.SetShrinkFactors(2, 2, 1)
+    half_size.MeanOn()
     writer = vtk.vtkPNGWriter()
     writer.SetFileName(str(picture))
-    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetInputConnection(half_size.GetOutputPort())
     writer.Write()
 
 

@@ -1,3 +1,4 @@
+#include "bake/shapes/head/head.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/scene/content_hash.hpp"
@@ -145,17 +146,35 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
 }
 
+/// The pose, in the face frame, of a bone, or of its joint at an angle.
+static Model::BonePose pose_of(const Scene& scene, const BonePose& pose, std::int32_t bone)
+{
+  const auto has_bone = [&](const SceneJoint& joint) { return joint.bone == pose.bone; };
+  const auto of_bone = std::find_if(scene.joints.begin(), scene.joints.end(), has_bone);
+  if (pose.angle == 0 || of_bone == scene.joints.end())
+  {
+    const auto centre = scene.bone_centres.find(pose.bone);
+    return { bone, pose.shift, pose.turn,
+             centre == scene.bone_centres.end() ? Vector3{} : in_face_frame(scene, centre->second) };
+  }
+  Eigen::Matrix3d to_face;
+  const auto axes = face_axes(scene);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    to_face.row(row) = axes[static_cast<std::size_t>(row)];
+  const Vector3d at = to_vector(of_bone->joint.at);
+  const Vector3d shift = pose.angle * (to_face * to_vector(of_bone->joint.slide));
+  const Vector3d turn = pose.angle * (to_face * to_vector(of_bone->joint.axis));
+  return { bone, to_array(shift), to_array(turn),
+           in_face_frame(scene, to_array(of_bone->head ? head_of(*of_bone->head)->moved(at) : at)) };
+}
+
 void copy_poses(const Scene& scene, Model& model)
 {
   const auto copy = [&](const std::vector<BonePose>& from, std::vector<Model::BonePose>& to)
   {
     for (const BonePose& pose : from)
       if (const auto bone = std::find(model.bones.begin(), model.bones.end(), pose.bone); bone != model.bones.end())
-      {
-        const auto centre = scene.bone_centres.find(pose.bone);
-        to.push_back({ static_cast<std::int32_t>(bone - model.bones.begin()), pose.shift, pose.turn,
-                       centre == scene.bone_centres.end() ? Vector3{} : in_face_frame(scene, centre->second) });
-      }
+        to.push_back(pose_of(scene, pose, static_cast<std::int32_t>(bone - model.bones.begin())));
   };
   std::size_t p = 0;
   for (const auto& [name, pose] : scene.expressions)

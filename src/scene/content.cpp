@@ -152,7 +152,13 @@ void add_output(const Scene& scene, Content& content)
 {
   content.line("skin", scene.skin.surface, scene.skin.crop, scene.skin.extrapolation);
   for (const SceneLandmark& landmark : scene.landmarks)
+  {
     content.line("landmark", landmark.name, landmark.position);
+    if (landmark.head)
+      content.add(landmark.point.vertex, landmark.point.at, landmark.point.right, landmark.head->dimensions);
+  }
+  for (const SceneJoint& joint : scene.joints)
+    content.line("joint", joint.bone, joint.joint.at, joint.joint.axis, joint.joint.slide);
   content.line("frame", scene.frame.id, scene.frame.origin, scene.frame.forward, scene.frame.up);
   for (const auto& [bone, centre] : scene.bone_centres)
     content.line("centre", bone, centre);

@@ -75,7 +75,8 @@ private:
   {
     auto pose = std::find_if(poses.begin(), poses.end(), [&](const BonePose& p) { return p.bone == added.bone; });
     if (pose == poses.end())
-      pose = poses.insert(pose, { added.bone, {}, {} });
+      pose = poses.insert(pose, { added.bone, {}, {}, 0 });
+    pose->angle += share * added.angle;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       pose->shift[axis] += share * added.shift[axis];
@@ -83,13 +84,18 @@ private:
     }
   }
 
-  static BonePose pose_of(const std::string& bone, const Node& entry)
+  BonePose pose_of(const std::string& bone, const Node& entry) const
   {
     BonePose pose;
     pose.bone = bone;
     Mapping mapping(entry);
     pose.shift = mapping.optional("shift").vector(Dimension::length, any_number, pose.shift);
     pose.turn = mapping.optional("turn").vector(Dimension::angle, any_number, pose.turn);
+    const Node angle = mapping.optional("angle");
+    pose.angle = angle.number(Dimension::angle, any_number, 0);
+    const auto& joints = scene_.joints;
+    if (angle.given() && std::none_of(joints.begin(), joints.end(), [&](const auto& j) { return j.bone == bone; }))
+      angle.fault("'{}' has no joint; 'joints' must have one, or the pose 'shift' and 'turn'", bone);
     return pose;
   }
 

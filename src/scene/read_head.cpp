@@ -50,8 +50,17 @@ void read_dimension(const std::string& name, const Node& node, const Names& land
       dimension.to = ends[1];
     }
   }
-  dimension.mean = read_length(mapping.required("mean", "a length greater than 0"));
-  dimension.deviation = read_length(mapping.required("sd", "a length greater than 0"));
+  const auto mean_and_deviation = [&](const std::string& sex) -> std::pair<double, double>
+  {
+    const auto pair = mapping.required(sex, "[mean, standard deviation]").entries();
+    return { pair.empty() ? 1 : read_length(pair.front()), pair.empty() ? 1 : read_length(pair.back()) };
+  };
+  const auto [men, men_deviation] = mean_and_deviation("men");
+  const auto [women, women_deviation] = mean_and_deviation("women");
+  dimension.men = men;
+  dimension.women = women;
+  dimension.mean = 0.5 * (men + women);
+  dimension.deviation = 0.5 * (men_deviation + women_deviation);
   Names earlier{ "dimension", {}, true };
   for (const auto& d : head.dimensions)
     earlier.names.push_back(d.name);
@@ -200,7 +209,11 @@ HeadTemplate::Curve read_curve(const Node& node)
     curve.points.push_back(read_place(point));
   if (curve.points.size() < 2 && !points.faulty())
     points.fault("found {} positions; must be at least two", curve.points.size());
-  curve.depth = fields.required("depth", "a proportion of the soft tissue").number(Dimension::number, proportion, 0.5);
+  if (fields.has("below"))
+    curve.below = read_length(fields.optional("below"));
+  else
+    curve.depth =
+        fields.required("depth", "a proportion of the soft tissue").number(Dimension::number, proportion, 0.5);
   return curve;
 }
 
@@ -211,6 +224,7 @@ void read_muscle(const std::string& name, const Node& node, HeadTemplate& head)
   Mapping fields(node);
   muscle.sided = fields.optional("sided").boolean(true);
   muscle.ring = fields.optional("ring").boolean(false);
+  muscle.pad = fields.optional("pad").boolean(false);
   muscle.thickness = read_length(fields.required("thickness", "a length greater than 0"));
   const Node curves = fields.required("curves", "a list of at least two curves");
   for (const Node& curve : curves.entries())
@@ -218,6 +232,56 @@ void read_muscle(const std::string& name, const Node& node, HeadTemplate& head)
   if (muscle.curves.size() < 2 && !curves.faulty())
     curves.fault("found {} curves; must be at least two", muscle.curves.size());
   head.muscles.push_back(muscle);
+}
+
+/// Reads landmarks that are vertices of the cage, in the midline or of the left side.
+void read_vertices(const Node& node, Names& landmarks, HeadTemplate& head)
+{
+  Mapping mapping(node);
+  for (const char* key : { "midline", "left" })
+    for (const auto& [name, number] : mapping.required(key, "numbers of vertices by name").named_pairs())
+    {
+      const int vertex = number.integer(1, 1000000, 1) - 1;
+      head.landmarks[name] = vertex;
+      landmarks.names.push_back(name);
+      auto& points = head.points["anthropometric"];
+      const bool sided = std::string(key) == "left";
+      points.push_back({ name + (sided ? "_left" : ""), vertex, {}, false });
+      if (sided)
+        points.push_back({ name + "_right", vertex, {}, true });
+    }
+}
+
+/// Reads a set of landmarks: each entry has a name, or its number, or those of the left point and its mirror image.
+void read_points(const std::string& set, const Node& list, HeadTemplate& head)
+{
+  for (const Node& entry : list.entries())
+  {
+    Mapping fields(entry);
+    HeadTemplate::Point point;
+    point.at = read_place(fields.required("at", "a position"));
+    const auto add = [&](const std::string& name)
+    {
+      point.name = name;
+      head.points[set].push_back(point);
+      point.right = true;
+    };
+    if (one_of(entry, fields, { "name", "number" }) == "name")
+    {
+      const std::string name = fields.optional("name").name();
+      for (const char* side : { "_left", "_right" })
+        add(name + side);
+      if (point.at[1] == 0)
+      {
+        head.points[set].pop_back();
+        head.points[set].back().name = name;
+      }
+      continue;
+    }
+    const Node numbers = fields.optional("number");
+    for (const Node& number : numbers.is_list() ? numbers.entries() : std::vector<Node>{ numbers })
+      add(fmt::format("{}_{}", set, number.integer(1, 1000, 1)));
+  }
 }
 
 void read_root(const Node& root, HeadTemplate& head)
@@ -235,14 +299,19 @@ void read_root(const Node& root, HeadTemplate& head)
     head.eye_radius = read_length(eye.required("radius", "a length greater than 0"));
   }
   Names landmarks{ "landmark", {}, true };
-  for (const auto& [name, node] : mapping.required("landmarks", "numbers of vertices by name").named_pairs())
-  {
-    head.landmarks[name] = node.integer(1, 1000000, 1) - 1;
-    landmarks.names.push_back(name);
-  }
+  read_vertices(mapping.required("landmarks", "{midline, left}"), landmarks, head);
   for (const auto& [name, node] : mapping.required("dimensions", "a mapping").named_pairs())
     read_dimension(name, node, landmarks, head);
   read_beside(mapping.required("bones", "a YAML file"), head, [&](const Node& node) { read_bones(node, head); });
+  for (const auto& [bone, node] : mapping.optional("joints").named_pairs())
+    head.joints[bone] = read_joint(node);
+  if (const Node points = mapping.optional("points"); points.given())
+    read_beside(points, head,
+                [&](const Node& node)
+                {
+                  for (const auto& [set, list] : node.named_pairs())
+                    read_points(set, list, head);
+                });
   read_beside(mapping.required("muscles", "a YAML file"), head,
               [&](const Node& node)
               {
@@ -253,21 +322,37 @@ void read_root(const Node& root, HeadTemplate& head)
 
 }  // namespace
 
+HeadTemplate::Joint read_joint(const Node& node)
+{
+  HeadTemplate::Joint joint;
+  Mapping fields(node);
+  joint.at = read_place(fields.required("at", "a position"));
+  joint.axis = fields.required("axis", "a direction").direction(joint.axis);
+  // lengths per degree
+  joint.slide = fields.optional("slide").vector(Dimension::length, any_number, joint.slide);
+  for (double& x : joint.slide)
+    x *= 180 / 3.14159265358979323846;
+  return joint;
+}
+
 std::vector<std::string> HeadTemplate::parts() const
 {
   std::vector<std::string> names{ "skin", "face", "visible", "eye_left", "eye_right" };
   for (const auto& [bone, steps] : bones)
     names.push_back(bone);
-  const std::vector<std::string> others = muscle_parts();
-  names.insert(names.end(), others.begin(), others.end());
+  for (const bool pads : { false, true })
+    for (const std::string& name : muscle_parts(pads))
+      names.push_back(name);
   return names;
 }
 
-std::vector<std::string> HeadTemplate::muscle_parts() const
+std::vector<std::string> HeadTemplate::muscle_parts(bool pads) const
 {
   std::vector<std::string> names;
   for (const Muscle& muscle : muscles)
-    if (muscle.sided)
+    if (muscle.pad != pads)
+      continue;
+    else if (muscle.sided)
     {
       names.push_back(muscle.name + "_left");
       names.push_back(muscle.name + "_right");

@@ -39,16 +39,68 @@ void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names)
   skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
 }
 
-void read_landmarks(const Node& node, Scene& scene)
+/// Adds the landmarks of a set of a head: {each: SET OF SURFACES, set: NAME, only: [NAME, …]}.
+static void read_head_landmarks(const Node& entry, Scene& scene, const SceneNames& names)
+{
+  Mapping mapping(entry);
+  Names heads{ "set of parts of a head", {}, names.surfaces.complete };
+  for (const auto& [name, shape] : names.heads)
+    heads.names.push_back(name);
+  const std::string of = mapping.optional("each").reference(heads);
+  const Node set = mapping.optional("set"), only = mapping.optional("only");
+  if (!heads.has(of))
+    return;
+  SceneLandmark landmark;
+  landmark.line = entry.line();
+  landmark.head = names.heads.at(of);
+  const auto& sets = landmark.head->head->points;
+  std::vector<std::string> known;
+  for (const auto& [name, points] : sets)
+    known.push_back(name);
+  const std::string chosen = set.given() ? set.choice(known) : "anthropometric";
+  if (sets.count(chosen) == 0)
+    return;
+  Names points{ "landmark", {}, true };
+  for (const auto& point : sets.at(chosen))
+    points.names.push_back(point.name);
+  const std::vector<std::string> wanted = only.given() ? only.references(points) : points.names;
+  for (const auto& point : sets.at(chosen))
+    if (std::find(wanted.begin(), wanted.end(), point.name) != wanted.end())
+    {
+      landmark.name = point.name;
+      landmark.point = point;
+      scene.landmarks.push_back(landmark);
+    }
+}
+
+void read_landmarks(const Node& node, Scene& scene, const SceneNames& names)
 {
   for (const auto& [name, entry] : node.named_pairs())
   {
+    if (entry.has("each"))
+    {
+      read_head_landmarks(entry, scene, names);
+      continue;
+    }
     SceneLandmark landmark;
     landmark.name = name;
     landmark.line = entry.line();
     landmark.position = entry.vector(Dimension::length, any_number, landmark.position);
     scene.landmarks.push_back(landmark);
   }
+}
+
+void read_joints(const Node& node, Scene& scene, const SceneNames& names)
+{
+  for (const auto& [bone, entry] : node.named_pairs())
+  {
+    entry.check_known(bone, names.bones);
+    scene.joints.push_back({ bone, read_joint(entry), {} });
+  }
+  for (const auto& [set, shape] : names.heads)
+    for (const auto& [bone, joint] : shape.head->joints)
+      if (names.bones.has(bone) && !node.has(bone))
+        scene.joints.push_back({ bone, joint, shape });
 }
 
 void read_time(const Node& node, SceneTime& time)

@@ -60,7 +60,8 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_constraints(mapping.optional("constraints"), scene, names);
   read_loads(mapping.optional("loads"), scene, names);
   read_skin(mapping.required("skin", "the surface to publish: {surface: NAME}"), scene.skin, names);
-  read_landmarks(mapping.optional("landmarks"), scene);
+  read_landmarks(mapping.optional("landmarks"), scene, names);
+  read_joints(mapping.optional("joints"), scene, names);
   scene.gravity = mapping.optional("gravity").vector(Dimension::acceleration, any_number, scene.gravity);
   read_effects(mapping.optional("effects"), scene);
   read_time(mapping.optional("time"), scene.time);

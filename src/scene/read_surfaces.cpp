@@ -127,7 +127,13 @@ void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
   const Node file = mapping.required("template", "the YAML file of a head");
   const Node many = mapping.optional("parts"), one = mapping.optional("part");
   read_dimensions(mapping, shape);
+  const Node sex = mapping.optional("sex");
   shape.head = folder.head(file);
+  const std::string of = sex.choice({ "male", "female" });
+  if (shape.head && !of.empty())
+    for (const auto& d : shape.head->dimensions)
+      if (d.derived_from.empty())
+        shape.dimensions.emplace(d.name, of == "male" ? d.men : d.women);
   if (shape.head)
     read_parts(many, one, "head", shape.head->parts(), shape.head->muscle_parts(), shape, parts);
   else
@@ -252,6 +258,8 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
     }
     names.surfaces.complete = names.surfaces.complete && !parts.names.empty();
     names.muscle_sets[name] = parts.muscles;
+    if (surface.shape->head)
+      names.heads[name] = *surface.shape;
     for (const std::string& part : parts.names)
     {
       // an entry of the part's own name replaces it

@@ -23,6 +23,7 @@ struct SceneNames
   Names expressions{ "expression", { "relax" }, true };
   Names bones{ "bone", {}, true };
   std::map<std::string, std::vector<std::string>> muscle_sets;  ///< the muscles among the parts of a set of surfaces
+  std::map<std::string, Shape> heads;                           ///< sets of parts of a head
 };
 
 // One function per section, in the order in which the file is read. The section may be absent.
@@ -40,7 +41,10 @@ void read_loads(const Node& node, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), because friction is an effect.
 void read_effects(const Node& node, Scene& scene);
 void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
-void read_landmarks(const Node& node, Scene& scene);
+void read_landmarks(const Node& node, Scene& scene, const SceneNames& names);
+/// Reads how bones turn; joints of heads are added to those of the scene.
+void read_joints(const Node& node, Scene& scene, const SceneNames& names);
+HeadTemplate::Joint read_joint(const Node& node);
 void read_time(const Node& node, SceneTime& time);
 void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), which names the bones.

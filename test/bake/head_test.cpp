@@ -3,12 +3,15 @@
 
 #include "bake/mesh/surface.hpp"
 #include "bake/shapes/head/head.hpp"
+#include "bake/shapes/head/muscle_net.hpp"
 
 #include "frontalis/error.hpp"
 
 #include "bake/scene_pieces.hpp"
 
 #include <gtest/gtest.h>
+
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
@@ -62,6 +65,55 @@ TEST(Head, TakesEachDimensionThatIsAskedFor)
   }
 }
 
+TEST(Head, TakesTheMeansOfEitherSex)
+{
+  for (const bool men : { true, false })
+  {
+    std::map<std::string, double> means;
+    for (const auto& d : shipped()->dimensions)
+      if (d.derived_from.empty())
+        means[d.name] = men ? d.men : d.women;
+    const Head head(shipped(), means);
+    for (const auto& [name, mean] : means)
+      EXPECT_NEAR(head.dimension(name), mean, 1e-3) << name;
+  }
+}
+
+TEST(Head, HasTheStandardLandmarksOnItsSkin)
+{
+  const TriangleMesh skin = default_head().part("face", 2e-3);
+  const TriangleTree tree(skin);
+  const auto& points = shipped()->points.at("ibug");
+  ASSERT_EQ(points.size(), 68u);
+  std::map<std::string, Vector3d> place;
+  for (const auto& point : points)
+  {
+    place[point.name] = default_head().place(point);
+    EXPECT_LT(tree.closest(place[point.name]).distance, 3e-4) << point.name;
+    EXPECT_LT((place[point.name] - to_vector(point.at).cwiseProduct(Vector3d(1, point.right ? -1 : 1, 1))).norm(), 6e-3)
+        << point.name;
+  }
+  // 68 names, from the subject's right ear to the left, with the chin in the midline
+  ASSERT_EQ(place.size(), 68u);
+  for (int n = 1; n < 17; ++n)
+    EXPECT_LT(place.at(fmt::format("ibug_{}", n))[1], place.at(fmt::format("ibug_{}", n + 1))[1]);
+  EXPECT_EQ(place.at("ibug_9")[1], 0);
+}
+
+TEST(Head, OpensItsJawDownAndForwards)
+{
+  const auto& joint = shipped()->joints.at("mandible");
+  const double angle = 32 * pi / 180;
+  const Vector3d at = to_vector(joint.at);
+  const auto moved = [&](const Vector3d& p) -> Vector3d
+  { return at + Eigen::AngleAxisd(angle, to_vector(joint.axis)) * (p - at) + angle * to_vector(joint.slide); };
+  // full opening (Ferrario 2005, Travers 2000): incisors part by 46 to 56 mm, condyles move by 11.9 mm
+  const Vector3d incisor(0, 0, -77e-3);
+  EXPECT_NEAR((moved(incisor) - incisor).norm(), 51e-3, 10e-3);
+  EXPECT_NEAR((moved(at) - at).norm(), 11.9e-3, 2e-3);
+  EXPECT_LT(moved(incisor)[2], incisor[2] - 35e-3);
+}
+
 TEST(Head, HasItsLandmarksOnTheSkinAlsoWhenChanged)
 {
   const Head head(shipped(), { { "zy_zy", 0.145 }, { "n_sn", 0.056 } });
@@ -100,6 +152,11 @@ TEST(Head, IsClosedAndMirrorsItself)
     for (const Vector3& p : mesh.vertices)
       middle += p[1];
     EXPECT_LT(std::abs(middle), 1e-9 * static_cast<double>(mesh.vertices.size())) << part;
+  }
+  for (const char* part : { "skull", "mandible", "teeth_upper", "teeth_lower" })
+  {
+    const TriangleMesh mesh = default_head().part(part, 3e-3);
+    EXPECT_LT(asymmetry(mesh, mesh), 1e-9) << part;
   }
   // vertices of the skin have images; its triangles need not, because a square has two diagonals
   const TriangleMesh skin = default_head().part("skin", 3e-3);
@@ -158,6 +215,30 @@ TEST(Head, HasClosedMusclesThatMirrorEachOther)
     }
   }
   EXPECT_THROW(default_head().part("tail", 0), Error);
+}
+
+TEST(Head, HasMusclesBetweenSkinAndBone)
+{
+  const TriangleMesh coarse = default_head().part("skin", 3e-3);
+  const TriangleTree tree(coarse);
+  const HeadBones bones(*shipped(), tree);
+  const PreparedSurface skin("skin", default_head().part("skin", 2e-3));
+  for (const auto& muscle : shipped()->muscles)
+  {
+    const auto net = default_head().net(muscle.name + (muscle.sided ? "_left" : ""));
+    const NurbsVolume volume = volume_of(*net);
+    int count = 0, in_bone = 0, outside = 0;
+    for (double u = 0.02; u < 1; u += 0.04)
+      for (double v = 0.05; v < 1; v += 0.1)
+        for (double w = 0.1; w < 1; w += 0.2, ++count)
+        {
+          const Vector3d p = volume.at({ u, v, w }).position;
+          in_bone += bones.any(p) < 0 ? 1 : 0;
+          outside += skin.signed_distance(p, skin.tree().closest(p)) > 0 ? 1 : 0;
+        }
+    EXPECT_LE(in_bone, 0.05 * count) << muscle.name << " of " << count;
+    EXPECT_LE(outside, 0.05 * count) << muscle.name << " of " << count;
+  }
 }
 
 PolygonMesh cube()

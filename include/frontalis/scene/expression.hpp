@@ -15,6 +15,7 @@ struct BonePose
   std::string bone;
   Vector3 shift{ 0, 0, 0 };  ///< [m], after the turn
   Vector3 turn{ 0, 0, 0 };   ///< rotation vector about the bone's centre (Scene::bone_centres) [rad]
+  double angle = 0;          ///< of the bone's joint (Scene::joints) [rad]; takes the place of both
 };
 
 /// What an expression or an action unit does at full intensity.

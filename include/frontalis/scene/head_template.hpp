@@ -17,6 +17,7 @@ struct HeadTemplate
     std::string name;
     std::string from, to;            ///< landmarks; `to` empty: from the left `from` to the right one
     double mean = 0, deviation = 0;  ///< midpoint of the published means of men and women, and their deviation [m]
+    double men = 0, women = 0;       ///< these means [m]
     std::vector<std::string> derived_from;  ///< the dimensions that it follows from; empty: it may be set alone
   };
   /// A place on the skin below which the bone lies at a known depth.
@@ -62,27 +63,47 @@ struct HeadTemplate
     std::vector<Solid> solids;
     double round = 0;  ///< radius of the edges that it makes [m]
   };
-  /// A line across a muscle: positions near the skin, and its depth as a proportion of the soft tissue (1: the bone).
+  /// A line across a muscle: positions near the skin, and its depth.
   struct Curve
   {
     std::vector<Vector3> points;
-    double depth = 0.5;
+    double depth = 0.5;  ///< as a proportion of the soft tissue (1: the bone)
+    double below = -1;   ///< of its middle [m], in place of `depth`, also past a bone; < 0: `depth` holds
   };
-  /// A muscle between its first and last curve, or around loops from its inner to its outer one.
+  /// A muscle between its first and last curve, or around loops from its inner to its outer one; or a fat pad.
   struct Muscle
   {
     std::string name;
     bool sided = true;  ///< a left and a right one
     bool ring = false;
+    bool pad = false;  ///< a fat pad
     std::vector<Curve> curves;
     double thickness = 0;  ///< [m]
   };
 
+  /// How a bone turns by one angle: about an axis that slides in proportion to the angle.
+  struct Joint
+  {
+    Vector3 at{ 0, 0, 0 }, axis{ 0, 0, 1 };  ///< a point of the axis [m], and its direction
+    Vector3 slide{ 0, 0, 0 };                ///< per angle [m/rad]
+  };
+  /// A named place on the skin: a vertex of the cage if `vertex` is at least 0, else the point of the skin closest to
+  /// `at`; `right`: its mirror image.
+  struct Point
+  {
+    std::string name;
+    int vertex = -1;
+    Vector3 at{ 0, 0, 0 };  ///< [m]
+    bool right = false;
+  };
+
   std::string file;
-  std::vector<std::string> files;        ///< every file that the template consists of
-  std::string cage;                      ///< OBJ file of the left half of the skin's control cage
-  double unit = 1;                       ///< metres per unit of the cage
-  std::map<std::string, int> landmarks;  ///< index of a vertex of the cage
+  std::vector<std::string> files;                    ///< every file that the template consists of
+  std::string cage;                                  ///< OBJ file of the left half of the skin's control cage
+  double unit = 1;                                   ///< metres per unit of the cage
+  std::map<std::string, int> landmarks;              ///< index of a vertex of the cage
+  std::map<std::string, std::vector<Point>> points;  ///< sets of landmarks: `anthropometric` and those of the files
+  std::map<std::string, Joint> joints;               ///< by bone
   std::vector<Dimension> dimensions;
   std::vector<DepthSite> depths;
   std::vector<std::pair<std::string, std::vector<BoneStep>>> bones;
@@ -92,7 +113,7 @@ struct HeadTemplate
 
   /// Names of the surfaces that can be made: skin, bones, eyeballs and muscles.
   std::vector<std::string> parts() const;
-  std::vector<std::string> muscle_parts() const;  ///< those that are muscles
+  std::vector<std::string> muscle_parts(bool pads = false) const;  ///< those that are muscles, or the fat pads
 };
 
 /// Reads a template and the files that it names. Throws Error with one line per fault.

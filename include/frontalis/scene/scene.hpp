@@ -3,6 +3,7 @@
 #include "frontalis/effect.hpp"
 #include "frontalis/scene/expression.hpp"
 #include "frontalis/scene/geometry.hpp"
+#include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/restriction.hpp"
 #include "frontalis/scene/tissue.hpp"
 
@@ -25,6 +26,17 @@ struct SceneLandmark
   std::string name;
   Vector3 position{ 0, 0, 0 };  ///< scene coordinates [m]; moved to the closest point of the skin
   int line = 0;
+  /// The head that has it, in place of `position`; left out where the published skin does not reach.
+  std::optional<Shape> head{};
+  HeadTemplate::Point point{};  ///< of that head
+};
+
+/// How a bone turns by one angle.
+struct SceneJoint
+{
+  std::string bone;
+  HeadTemplate::Joint joint;
+  std::optional<Shape> head;  ///< the head whose default has it; empty: the joint is in scene coordinates
 };
 
 /// Pose in the scene of the published frame (REP-155 face frame: origin at the sellion, x out of the face, z up).
@@ -100,6 +112,7 @@ struct Scene
   std::vector<SceneConstraint> constraints;
   std::vector<SceneLoad> loads;
   std::vector<SceneLandmark> landmarks;
+  std::vector<SceneJoint> joints;
   SceneSkin skin;
   FaceFrame frame;
   Vector3 gravity{ 0, 0, 0 };  ///< scene coordinates [m/s2]

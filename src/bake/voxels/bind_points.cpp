@@ -1,3 +1,4 @@
+#include "bake/shapes/head/head.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
@@ -146,7 +147,11 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
   for (const SceneLandmark& landmark : scene.landmarks)
   {
     const std::string place = place_in_scene(scene, "landmark", landmark);
-    const ClosestPoint closest = tree.closest(frame.to_local(to_vector(landmark.position)));
+    const Vector3d position =
+        landmark.head ? head_of(*landmark.head)->place(landmark.point) : to_vector(landmark.position);
+    const ClosestPoint closest = tree.closest(frame.to_local(position));
+    if (landmark.head && closest.distance > farthest_landmark)
+      continue;
     if (closest.triangle < 0)
       throw Error(place + ": there is no published skin on which it could lie");
     if (closest.distance > farthest_landmark)

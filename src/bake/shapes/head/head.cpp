@@ -128,6 +128,16 @@ Vector3d Head::landmark(const std::string& name, bool right) const
   return (*warp_)(p);
 }
 
+Vector3d Head::place(const HeadTemplate::Point& point) const
+{
+  for (const auto& [name, v] : head_->landmarks)
+    if (v == point.vertex)
+      return landmark(name, point.right);
+  Vector3d p = tree_->closest(to_vector(point.at)).point;
+  p[1] = point.at[1] == 0 ? 0 : point.right ? -p[1] : p[1];
+  return moved(p);
+}
+
 double Head::dimension(const std::string& name) const
 {
   for (const auto& d : head_->dimensions)

@@ -81,6 +81,9 @@ public:
   std::optional<ControlNet> net(const std::string& part) const;
   /// Value of a dimension [m] on this head's skin.
   double dimension(const std::string& name) const;
+  /// Where a place of the default head is on this one.
+  Vector3d moved(const Vector3d& p) const { return (*warp_)(p); }
+  Vector3d place(const HeadTemplate::Point& point) const;
   /// Position of a landmark; `right`: of its image on the right side.
   Vector3d landmark(const std::string& name, bool right = false) const;
 

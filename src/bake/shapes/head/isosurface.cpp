@@ -163,7 +163,8 @@ TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const B
     p[1] = p[1] == 0 ? 0 : -p[1];
   append(mesh, image, true);
   join_vertices(mesh);
-  return mesh;
+  // without vertices of triangles that snapping has made points
+  return keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
 }
 
 }  // namespace frontalis

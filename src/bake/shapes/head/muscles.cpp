@@ -47,6 +47,13 @@ Value interpolate(const At& at, int count, double t)
          (2 * p1 + (p2 - p0) * s + (2 * p0 - 5 * p1 + 4 * p2 - p3) * s * s + (3 * p1 - p0 - 3 * p2 + p3) * s * s * s);
 }
 
+/// Thickness at shares of a muscle's length and breadth over its mean in the middle: thin at the edges and ends.
+double cross_section(double along, double across)
+{
+  const double edge = std::abs(2 * across - 1), end = std::abs(2 * along - 1);
+  return (1 - 0.6 * edge * edge * edge) / 0.85 * (1 - 0.4 * std::pow(end, 4));
+}
+
 /// Point of a closed loop through the points, at a share of their number.
 Vector3d around(const std::vector<Vector3>& points, double share)
 {
@@ -86,13 +93,19 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
       const double t = (muscle.ring ? s : u) * (count - 1);
       const Vector3d p = interpolate<Vector3d>(
           [&](int c) { return muscle.ring ? around(curves[c].points, u) : along(curves[c].points, s); }, count, t);
-      const double depth = interpolate<double>([&](int c) { return curves[c].depth; }, count, t);
       const Below place = below(p);
       const double room = place.thickness;
-      const double half = 0.5 * std::min(muscle.thickness, 0.8 * room);
-      const double lowest = std::max(0.55 * room, room - half - 0.1e-3);
+      const double depth = interpolate<double>(
+          [&](int c) { return curves[c].below < 0 ? curves[c].depth * room : curves[c].below; }, count, t);
+      // a muscle that is to lie at a depth of its own may pass below a bone
+      const bool free = std::any_of(curves.begin() + static_cast<int>(t),
+                                    curves.begin() + std::min(count, static_cast<int>(std::ceil(t)) + 1),
+                                    [](const auto& curve) { return curve.below >= 0; });
+      const double thickness = muscle.thickness * cross_section(muscle.ring ? 0.5 : u, s);
+      const double half = 0.5 * (free ? thickness : std::min(thickness, 0.8 * room));
+      const double lowest = free ? depth : std::max(0.55 * room, room - half - 0.1e-3);
       const double highest = std::min(lowest, std::min(least_cover, 0.3 * room) + half);
-      const double middle = std::min(lowest, std::max(highest, depth * room));
+      const double middle = std::min(lowest, std::max(highest, depth));
       net.points.push_back(to_array(place.skin - (middle + half) * place.normal));
       net.points.push_back(to_array(place.skin - (middle - half) * place.normal));
     }
