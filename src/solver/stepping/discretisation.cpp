@@ -260,6 +260,7 @@ void Discretisation::share_masses()
   for (const AttachedNode& node : model_->attached)
     if (node.surface < 0)
     {
+      followers.push_back({ node.node, node.master, node.ratio });
       group_stiffness[node.master] += node.ratio * node.ratio * stiffness[node.node];
       group_mass[node.master] += node.ratio * node.ratio * node_mass[node.node];
     }

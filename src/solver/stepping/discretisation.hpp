@@ -86,6 +86,13 @@ public:
   /// Masses for the bound of the highest frequency, whose sums over groups of attached nodes are those of node_mass;
   /// infinite for a node that does not move with its master. Empty: node_mass.
   std::vector<double> bound_mass;
+  /// Nodes that are held and follow a master: displacement apart from the bone's is `ratio` times the master's.
+  struct Follower
+  {
+    std::int32_t node, master;
+    double ratio;
+  };
+  std::vector<Follower> followers;
   std::vector<std::array<float, 8>> corner_stiffness;  ///< factors on the bounds of voxels at their corners; empty: 1
   std::vector<float> weight_share;                     ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;                      ///< nodes whose motion is prescribed along all axes, ascending

@@ -46,11 +46,8 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
     root.push_back(1 / std::sqrt(mass));
   for (const auto n : discretisation.held)
     root[n] = 0;
-  std::vector<AttachedNode> followers;
-  for (const AttachedNode& node : model.attached)
-    if (node.surface < 0)
-      followers.push_back(node);
-  for (const AttachedNode& node : followers)
+  const auto& followers = discretisation.followers;
+  for (const auto& node : followers)
   {
     root[node.node] = 0;
     if (root[node.master] > 0)
@@ -71,11 +68,11 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
     for (std::size_t n = 0; n < root.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
         moved[n][axis] = u[n][axis] + scale * root[n] * mode[n][axis];
-    for (const AttachedNode& node : followers)
+    for (const auto& node : followers)
       for (std::size_t axis = 0; axis < 3; ++axis)
         moved[node.node][axis] += node.ratio * (moved[node.master][axis] - u[node.master][axis]);
     internal_forces(moved, forces);
-    for (const AttachedNode& node : followers)
+    for (const auto& node : followers)
       for (std::size_t axis = 0; axis < 3; ++axis)
         forces[node.master][axis] += node.ratio * (forces[node.node][axis] - present[node.node][axis]);
     size = {};
