@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/contact.hpp"
+#include "frontalis/model/presets.hpp"
 #include "frontalis/model/restriction.hpp"
 #include "frontalis/model/self_contact.hpp"
 #include "frontalis/model/shell.hpp"
@@ -10,7 +11,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -19,7 +19,7 @@ namespace frontalis
 /// Everything that the solver needs, constant while it runs. Plain arrays in SI units, in a local frame whose origin
 /// lies within the model (float keeps its precision) and whose x axis is the one with the longest rows of voxels: an
 /// even permutation of the scene's axes, which keeps the handedness.
-struct Model
+struct Model : ModelPresets
 {
   // grid: node (i,j,k) rests at (i,j,k) * spacing from the local origin
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  ///< voxel edges [m]
@@ -108,44 +108,8 @@ struct Model
   Precision precision = Precision::single;  ///< of the CPU backend
   TimeStepEstimate time_step_estimate = TimeStepEstimate::element;
 
-  /// Motion of a bone from its rest pose, in the face frame.
-  struct BonePose
-  {
-    std::int32_t bone = -1;          ///< index into bones
-    std::array<double, 3> shift{};   ///< [m], after the turn
-    std::array<double, 3> turn{};    ///< rotation vector about the centre [rad]
-    std::array<double, 3> centre{};  ///< [m]
-  };
-  /// Pose of the face by name. Activations by muscle index, -1..1, are added to the muscle's tone.
-  struct Expression
-  {
-    std::string name;
-    std::vector<std::pair<std::int32_t, float>> activation;
-    std::vector<BonePose> bones{};
-  };
-  std::vector<Expression> expressions, action_units;
-  struct DemoPhase
-  {
-    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: that of the phase before
-    double ramp = 0.3;              ///< [s] simulated
-    double seconds = 1;             ///< [s] simulated
-    std::vector<BonePose> bones{};  ///< other bones stay where they are
-  };
-  std::vector<DemoPhase> demo;
-
   /// Names of effects that the scene switched off; no data is stored for them (model/effects.hpp).
   std::vector<std::string> switched_off;
-
-  // accuracy profiles of the scene, as they were measured (doc/accuracy.md)
-  struct AccuracyProfile
-  {
-    std::string name;
-    double error = 0;     ///< of the skin, RMS [m]; 0: not measured
-    double cost = 0;      ///< wall seconds per simulated second; 0: not measured
-    std::string machine;  ///< on which it was measured
-  };
-  std::vector<AccuracyProfile> profiles;
-  std::string profile;  ///< name of the profile that the model was baked with
 
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
