@@ -12,7 +12,8 @@ double mean_length(const NurbsVolume& volume)
   double sum = 0;
   for (int fibre = 0; fibre < 9; ++fibre)
   {
-    const double v = (0.5 + fibre % 3) / 3, w = (0.5 + fibre / 3) / 3.0;
+    const int column = fibre % 3, row = fibre / 3;
+    const double v = (0.5 + column) / 3, w = (0.5 + row) / 3;
     Vector3d before = volume.at({ 0, v, w }).position;
     for (int c = 1; c <= chords; ++c)
     {
