@@ -106,15 +106,16 @@ TEST_P(ShellBackend, energy_and_momentum_are_kept)
         }
   };
   solver->set_velocities(v);
+  constexpr double allowed = 2e-3;
   double largest = 0;
   for (int k = 0; k < 20; ++k)
   {
     solver->advance(0.5e-3, solver->controls());
     const EnergyLedger ledger = solver->ledger();
-    EXPECT_LT(std::abs(ledger.imbalance()), 2e-3 * ledger.largest);
+    EXPECT_LT(std::abs(ledger.imbalance()), allowed * ledger.largest);
     largest = std::max(largest, ledger["shell"] / ledger.largest);
   }
-  EXPECT_GT(largest, 0.1);
+  EXPECT_GT(largest, 10 * allowed);  // so that a wrong energy of the film would be seen
   // momentum from two places of the centre of mass
   const double time = solver->time();
   momentum(displacements(*solver), before);

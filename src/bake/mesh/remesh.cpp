@@ -9,6 +9,9 @@
 namespace frontalis
 {
 
+// Mean length of the edges over the length that the algorithm is given, measured on spheres.
+constexpr double mean_over_target = 0.87;
+
 TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge)
 {
   namespace processing = CGAL::Polygon_mesh_processing;
@@ -25,7 +28,8 @@ TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge)
   processing::orient_polygon_soup(points, triangles);
   HalfEdgeMesh surface;
   processing::polygon_soup_to_polygon_mesh(points, triangles, surface);
-  processing::isotropic_remeshing(surface.faces(), edge, surface, CGAL::parameters::number_of_iterations(5));
+  processing::isotropic_remeshing(surface.faces(), edge / mean_over_target, surface,
+                                  CGAL::parameters::number_of_iterations(5));
   surface.collect_garbage();
   TriangleMesh out;
   for (const auto v : surface.vertices())

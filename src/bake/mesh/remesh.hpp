@@ -5,7 +5,7 @@
 namespace frontalis
 {
 
-/// The same surface in triangles whose edges are about `edge` [m] long: nearly all between 4/5 and 4/3 of it (Botsch &
+/// The same surface in triangles whose edges are `edge` [m] long on average, none much longer or shorter (Botsch &
 /// Kobbelt, A remeshing approach to multiresolution modeling, SGP 2004). Keeps the orientation and, roughly, the
 /// borders.
 TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge);
