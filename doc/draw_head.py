@@ -98,7 +98,7 @@ def eye_of(vertices):
     return actor_of(centre + size * ball, faces, colours)
 
 
-def draw(actors, views, picture, size=440):
+def draw(actors, views, picture, size=420):
     """views: azimuth and elevation [degrees], the point looked at and half the height of the picture there [mm]."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
@@ -156,7 +156,7 @@ def main(surfaces, cage, pictures):
                                                                  ("teeth_upper", (0.97, 0.96, 0.92)), ("teeth_lower", (0.97, 0.96, 0.92)))]
     others = ("face", "visible", "cut", "mouth", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
     muscles = []
-    names = [name for name in parts if name not in others]
+    names = [name for name in parts if name not in others and not name.startswith("fat_")]
     kinds = sorted({name.replace("_left", "").replace("_right", "") for name in names})
     for name in names:
         kind = kinds.index(name.replace("_left", "").replace("_right", ""))
