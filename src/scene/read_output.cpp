@@ -44,6 +44,7 @@ static void read_head_landmarks(const Node& entry, Scene& scene, const SceneName
 {
   Mapping mapping(entry);
   Names heads{ "set of parts of a head", {}, names.surfaces.complete };
+  heads.names.reserve(names.heads.size());
   for (const auto& [name, shape] : names.heads)
     heads.names.push_back(name);
   const std::string of = mapping.optional("each").reference(heads);
@@ -55,12 +56,14 @@ static void read_head_landmarks(const Node& entry, Scene& scene, const SceneName
   landmark.head = names.heads.at(of);
   const auto& sets = landmark.head->head->points;
   std::vector<std::string> known;
+  known.reserve(sets.size());
   for (const auto& [name, points] : sets)
     known.push_back(name);
   const std::string chosen = set.given() ? set.choice(known) : "anthropometric";
   if (sets.count(chosen) == 0)
     return;
   Names points{ "landmark", {}, true };
+  points.names.reserve(sets.at(chosen).size());
   for (const auto& point : sets.at(chosen))
     points.names.push_back(point.name);
   const std::vector<std::string> wanted = only.given() ? only.references(points) : points.names;

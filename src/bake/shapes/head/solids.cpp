@@ -91,6 +91,7 @@ HeadSolid::HeadSolid(const HeadTemplate::Solid& solid)
   if (kind_ == Kind::outline)
   {
     std::vector<Vector2d> flat;
+    flat.reserve(points.size());
     for (const Vector3d& p : points)
       flat.emplace_back(p.head<2>());
     polygon_ = spline(flat, true, 5);
@@ -99,6 +100,7 @@ HeadSolid::HeadSolid(const HeadTemplate::Solid& solid)
   {
     // radii are interpolated as a fourth coordinate
     std::vector<Eigen::Vector4d> with_radius;
+    with_radius.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
       with_radius.emplace_back(points[i][0], points[i][1], points[i][2], solid.sizes[i][0]);
     for (const Eigen::Vector4d& p : spline(with_radius, false, 4))
