@@ -315,9 +315,7 @@ SampledField distance_field(const std::vector<SlidingSurface>& surfaces, const s
   const auto distance = [&](const std::array<double, 3>& local)
   { return distance_from(sheets, frame.to_scene(to_vector(local))); };
   constexpr std::size_t grain = 64;
-  // large voxels do not resolve more than a quarter of their edge, and the samples take most of a bake's time
-  const double edge = to_vector(model.spacing).minCoeff();
-  return sample_field(rest, distance, std::min(std::max(0.5e-3, 0.25 * edge), 0.5 * edge), travel,
+  return sample_field(rest, distance, std::min(0.5e-3, 0.5 * to_vector(model.spacing).minCoeff()), travel,
                       [&](std::size_t count, const std::function<void(std::size_t)>& body)
                       { parallel_for(monitor, count, grain, body); });
 }
