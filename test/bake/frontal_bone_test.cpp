@@ -156,7 +156,7 @@ struct CoveredBone
     glide.surfaces = { "bone" };
     scene.constraints = { glide };
     BakeMonitor monitor(nullptr, progress);
-    restrict_nodes(scene, surfaces, frame, model, monitor);
+    restrict_nodes(scene, surfaces, {}, frame, model, monitor);
   }
 
   PreparedSurface sheet() const { return { "sheet", tissue_sheet(*surfaces[0], 1, {}, frame, model) }; }

@@ -13,7 +13,7 @@ namespace
 {
 
 // Compares backends on a shell with all effects: muscles, tendon, rigid and sliding nodes.
-class Shell : public testing::Test
+class ShellModel : public testing::Test
 {
 protected:
   void SetUp() override
@@ -53,7 +53,7 @@ protected:
 
 }  // namespace
 
-TEST_F(Shell, MovesAsTheReferenceDoes)
+TEST_F(ShellModel, MovesAsTheReferenceDoes)
 {
   const SkinState reference = after("reference", 0.15, 1), cuda = after("cuda", 0.15, 1);
   SkinState rest;
@@ -71,7 +71,7 @@ TEST_F(Shell, MovesAsTheReferenceDoes)
 }
 
 // Without sliding, because backends replace tangent planes at different times, which moves the skin by micrometres.
-TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
+TEST_F(ShellModel, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;
   for (const auto& node : model.sliding)
@@ -85,7 +85,7 @@ TEST_F(Shell, IsAsPreciseAsTheCpuWithoutSliding)
   EXPECT_LT(cuda, 2 * difference(after("cpu", 0.15, 1), reference) + 1e-8);
 }
 
-TEST_F(Shell, GivesTheSameBitsFromRunToRun)
+TEST_F(ShellModel, GivesTheSameBitsFromRunToRun)
 {
   const SkinState first = after("cuda", 0.05, 0.75f, 7), second = after("cuda", 0.05, 0.75f, 7);
   EXPECT_EQ(first.vertices, second.vertices);
@@ -93,7 +93,7 @@ TEST_F(Shell, GivesTheSameBitsFromRunToRun)
   EXPECT_EQ(first.landmarks, second.landmarks);
 }
 
-TEST_F(Shell, FetchingTheSkinDoesNotChangeTheMotion)
+TEST_F(ShellModel, FetchingTheSkinDoesNotChangeTheMotion)
 {
   const auto run = [&](bool look)
   {
@@ -111,7 +111,7 @@ TEST_F(Shell, FetchingTheSkinDoesNotChangeTheMotion)
   EXPECT_EQ(run(true).vertices, run(false).vertices);
 }
 
-TEST_F(Shell, StartsAgainAfterReset)
+TEST_F(ShellModel, StartsAgainAfterReset)
 {
   const auto solver = make_solver(model_, { "cuda", 0, 0 });
   const Controls controls{ std::vector<float>(model_->muscles.size(), 0.5f), {} };
@@ -126,7 +126,7 @@ TEST_F(Shell, StartsAgainAfterReset)
 }
 
 // The model is small, so that the test can run under compute-sanitizer's racecheck.
-TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
+TEST_F(ShellModel, OfAFewVoxelsMovesAsTheReferenceDoes)
 {
   ShellSettings settings;
   settings.voxel = 5e-3;
@@ -141,7 +141,7 @@ TEST_F(Shell, OfAFewVoxelsMovesAsTheReferenceDoes)
 }
 
 // At equilibrium under gravity and 30 % activation.
-TEST_F(Shell, StaysWhereItIsForAMillionSteps)
+TEST_F(ShellModel, StaysWhereItIsForAMillionSteps)
 {
   Model model = *model_;
   model.gravity = { { -9.81, 0, 0 } };

@@ -71,13 +71,13 @@ struct SceneMuscle
   std::string volume;
   Vector3 fibre{ 0, 0, 0 };         ///< unit vector in scene axes; 0: the fibres follow `net` or the shape
   double stress_reference = 0.3e6;  ///< active stress at full activation [Pa]
-  double cross_section = 0;         ///< of all fibres in people [m2]; 0: that of the muscle's volume
   bool passive = false;             ///< whether the fibres have the passive stress of Blemker et al. 2005
   bool tension_length = true;       ///< whether the active stress follows the tension-length curve
   int line = 0;
   double rise_time = 0;             ///< time constant of increasing activation [s]; 0: no delay
   double fall_time = 0;             ///< time constant of decreasing activation [s]; 0: no delay
   double tone = 0;                  ///< activation at rest, 0..1
+  double cross_section = 0;         ///< of all fibres in people [m2]; 0: that of the muscle's volume
   MuscleEnd origin{}, insertion{};  ///< both or neither are given
   std::optional<bool> ring{};       ///< whether the fibres run around a hole; absent: the shape decides
   std::optional<ControlNet> net{};
