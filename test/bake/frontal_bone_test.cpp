@@ -1,5 +1,6 @@
 // Nodes that slide over a bone stay on level sets of a distance field: that of the side of the bone that faces tissue.
 
+#include "bake/fibres/fibres.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 #include "frontalis/model/sample_field.hpp"
