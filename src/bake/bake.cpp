@@ -114,9 +114,9 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
                   "voxels or a smaller fill_min");
+    gaps.part(voxels, monitor);
     if (scene.accuracy.boundary != "true" || scene.accuracy.integration != "one_point")
       voxels.centre.clear();
-    gaps.part(voxels, monitor);
     frame = assemble_voxels(grid, voxels, model);
     if (!model.flaps.empty() && scene.accuracy.boundary == "true")
       throw Error(scene.file + ": boundary: true and gaps: parted are not possible together yet; choose one of them");

@@ -216,7 +216,7 @@ TEST_F(MadeHead, MeasuresItsMuscles)
   const Model model = bake_head(report, 1.5e-3);
   ASSERT_EQ(report.muscles.size(), 6u);
   expect_measured_muscles(report);
-  EXPECT_EQ(model.bones, std::vector<std::string>{ "mandible" });
+  EXPECT_EQ(model.bones, (std::vector<std::string>{ "mandible", "eye_left", "eye_right" }));
 }
 
 TEST(ForeheadScene, BakesWithAllItsParts)
@@ -317,8 +317,8 @@ TEST(RealFace, BakesWithAllItsMuscles)
   const Model model = bake(read_scene(source + "/config/real_face.yaml", options), &report);
   ASSERT_EQ(report.muscles.size(), 27u);
   expect_measured_muscles(report);
-  EXPECT_EQ(model.landmarks.size(), 7u);
-  EXPECT_EQ(model.bones, std::vector<std::string>{ "mandible" });
+  EXPECT_EQ(model.landmarks.size(), 24u);
+  EXPECT_EQ(model.bones, (std::vector<std::string>{ "mandible", "eye_left", "eye_right" }));
 }
 
 }  // namespace

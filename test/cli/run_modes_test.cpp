@@ -73,7 +73,7 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
   EXPECT_EQ(costs.at("voxels"), 32);
   for (const char* const time : { "plain_step_us", "step_us", "field_us" })
     EXPECT_GE(costs.at(time), 0) << time;
-  ASSERT_EQ(costs.at("effects").size(), 14U);
+  ASSERT_EQ(costs.at("effects").size(), 16U);
   for (const nlohmann::json& effect : costs.at("effects"))
   {
     const bool on = effect.at("on") == "on";

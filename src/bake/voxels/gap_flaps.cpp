@@ -109,6 +109,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
   for (std::size_t n = 0; n < voxel_of.size(); ++n)
     members[sets.find_set(n)].push_back(voxel_of[n]);
   std::vector<std::vector<std::uint32_t>> order;
+  order.reserve(members.size());
   for (auto& entry : members)
     order.push_back(std::move(entry.second));
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
