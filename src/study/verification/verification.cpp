@@ -31,8 +31,6 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "attachment", false, baked(verify_attachment) },
            { "free_sides", false, baked(verify_free_sides) },
            { "wrinkling", true, verify_wrinkling },
-           { "shell", false, verify_shell },
-           { "shell_film", false, verify_film },
            { "viscosity", true, verify_viscosity },
            { "hertz", false, verify_hertz },
            { "contact_pressure", true, verify_contact_pressure },
