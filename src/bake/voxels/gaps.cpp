@@ -40,7 +40,7 @@ Gaps::Gaps(const Scene& scene, const Volumes& volumes, const PreparedSurfaces& s
     : scene_(scene),
       volumes_(volumes),
       grid_(grid),
-      walls_(volumes, surfaces),
+      surfaces_(surfaces),
       thin_gaps_(scene.accuracy.gaps == "parted"),
       samples_(scene.accuracy.samples)
 {
@@ -73,7 +73,8 @@ void Gaps::mark(const Voxels& voxels, BakeMonitor& monitor)
                                     [](const Volume& volume) { return !volume.slits.empty(); });
   if (!thin_gaps_ && !any_slit)
     return;
-  const std::vector<char> gaps = walls_.cells_with_gaps(volumes_, grid_, thin_gaps_, monitor);
+  walls_.emplace(volumes_, surfaces_);
+  const std::vector<char> gaps = walls_->cells_with_gaps(volumes_, grid_, thin_gaps_, monitor);
   if (std::find(gaps.begin(), gaps.end(), 1) == gaps.end())
     return;
   level_.assign(gaps.size(), Level::far);
@@ -117,8 +118,8 @@ void Gaps::find_points(Tissue& tissue, const VoxelPlace& place) const
   const std::vector<char> is_tissue = classifier.tissue_samples(place);
   const Vector3d corner = grid_.corner(place);
   const Vector3d centre = corner + 0.5 * grid_.spacing;
-  tissue.pieces = walls_.pieces_in(Box(corner - reach * grid_.spacing, corner + (1 + reach) * grid_.spacing));
-  const std::uint64_t at_centre = walls_.enclosing(centre);
+  tissue.pieces = walls_->pieces_in(Box(corner - reach * grid_.spacing, corner + (1 + reach) * grid_.spacing));
+  const std::uint64_t at_centre = walls_->enclosing(centre);
   for (std::size_t s = 0; s < is_tissue.size(); ++s)
   {
     if (is_tissue[s] == 0)
@@ -126,7 +127,7 @@ void Gaps::find_points(Tissue& tissue, const VoxelPlace& place) const
     const Vector3d p = spread_point(Box(corner, corner + grid_.spacing), static_cast<int>(s) - 1);
     tissue.points.push_back(p);
     tissue.sample.push_back(static_cast<int>(s));
-    tissue.enclosing.push_back(walls_.enclosing(p, centre, at_centre, tissue.pieces));
+    tissue.enclosing.push_back(walls_->enclosing(p, centre, at_centre, tissue.pieces));
   }
   tissue.part.assign(tissue.points.size(), 0);
 }
@@ -139,7 +140,7 @@ void Gaps::find_parts(Tissue& tissue) const
   for (std::size_t i = 1; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j) &&
-          !walls_.part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
+          !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
         sets.union_set(i, j);
   // by the number of the scene's samples, and where that is equal by the first point
   const int all = samples_ * samples_ * samples_;
@@ -183,7 +184,7 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
   {
     const std::uint64_t pair = pair_of(tissue.copies[tissue.part[i]], other.copies[other.part[j]]);
     if (std::find(tissue.joined.begin(), tissue.joined.end(), pair) == tissue.joined.end() &&
-        !walls_.part(tissue.points[i], tissue.enclosing[i], other.points[j], pieces))
+        !walls_->part(tissue.points[i], tissue.enclosing[i], other.points[j], pieces))
       tissue.joined.push_back(pair);
   };
   bool any = false;
@@ -209,7 +210,7 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
       }
   if (best < std::numeric_limits<double>::max())
     join(nearest.first, nearest.second,
-         walls_.pieces_in(Box(tissue.points[nearest.first]).extend(other.points[nearest.second])));
+         walls_->pieces_in(Box(tissue.points[nearest.first]).extend(other.points[nearest.second])));
 }
 
 std::size_t Gaps::add_copies(Voxels& voxels)
@@ -313,8 +314,8 @@ bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) c
                        const Vector3d& x = tissue->points[entry.second];
                        const double length = std::sqrt(entry.first);
                        const Vector3d end = x + std::max(0.0, 1 - tolerance / length) * (point - x);
-                       return !walls_.leaves(x, tissue->enclosing[entry.second], end,
-                                             walls_.pieces_in(Box(x).extend(end)));
+                       return !walls_->leaves(x, tissue->enclosing[entry.second], end,
+                                              walls_->pieces_in(Box(x).extend(end)));
                      });
 }
 
@@ -348,7 +349,7 @@ std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
   const auto sees = [&](const Found& f)
   {
     const Vector3d& x = f.tissue->points[f.point];
-    return !walls_.part(x, f.tissue->enclosing[f.point], p, walls_.pieces_in(Box(x).extend(p)));
+    return !walls_->part(x, f.tissue->enclosing[f.point], p, walls_->pieces_in(Box(x).extend(p)));
   };
   const auto end = found.begin() + static_cast<std::ptrdiff_t>(looks);
   const auto seen = std::find_if(found.begin(), end, sees);

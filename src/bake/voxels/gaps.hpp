@@ -74,7 +74,8 @@ private:
   const Scene& scene_;
   const Volumes& volumes_;
   const Grid& grid_;
-  GapWalls walls_;
+  const PreparedSurfaces& surfaces_;
+  std::optional<GapWalls> walls_;  // only if there may be gaps
   bool thin_gaps_;
   int samples_;  ///< along each edge of the scene's voxels
   std::vector<const PreparedSurface*> none_;
