@@ -37,8 +37,8 @@ public:
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
-  /// What the colours of the skin show, the field that is published, and the value with the last colour (0: that of the
-  /// field).
+  /// Chooses what the colours of the skin show, which field is published, and the value that gets the last colour of
+  /// the scale (0: a value for each field that suits faces).
   void set_colour(SkinColour colour, SkinField field, double range);
   /// The field that frames must have, if there are subscribers who see it.
   std::optional<SkinField> wanted_field() const;

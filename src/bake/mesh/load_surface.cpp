@@ -52,7 +52,7 @@ constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// The surface of a control cage: polygons, of which only OBJ files are asked, mirrored and subdivided as told.
+/// The surface of a control cage: an OBJ file of polygons, mirrored and subdivided as the scene says.
 TriangleMesh import_cage(const Surface& surface)
 {
   PolygonMesh cage = read_polygons(surface.file, surface.unit);

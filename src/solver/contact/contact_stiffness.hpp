@@ -18,9 +18,9 @@ public:
   /// Makes points up to ten times as stiff, of Model::contacts alone.
   void stiffen(const Model& model, const Discretisation& discretisation) override;
 
-  /// Of a point [N/m], of Model::contacts.
+  /// Stiffness [N/m] of a point of one of Model::contacts.
   double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
-  /// Of a vertex [N/m], of Model::self_contacts.
+  /// Stiffness [N/m] of a vertex of one of Model::self_contacts.
   double of_self(std::size_t contact, std::size_t vertex) const { return of(bodies_ + contact, vertex); }
   /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue of Poisson's ratio 0.49 it is at most 7 % of
   /// the voxel's own.

@@ -9,8 +9,8 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor)
 {
-  // Edge of a brick of samples every 0.5 mm: over this way a plane leaves a head, whose radius is about 80 mm, by 0.1
-  // mm [m].
+  // A node may be this far [m] beyond the samples of its surface, and then keeps its last plane. Over 4 mm (a brick of
+  // eight samples, 0.5 mm apart) a plane departs by 0.1 mm from a head, whose radius is about 80 mm.
   constexpr double far = 4e-3;
   for (const SlidingNode& node : model.sliding)
   {

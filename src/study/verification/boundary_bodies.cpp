@@ -264,7 +264,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
     const Eigen::Vector3d y = turn.transpose() * to_vector(p);
     return turn * (bends ? Eigen::Vector3d(0, 0, -y[0]) : Eigen::Vector3d(-y[1], y[0], 0));
   };
-  // the second moment of the end, over that of its triangles with their tractions at their middles
+  // tractions act at the middles of the end's triangles: scale them so that their moment is the exact one
   const double moment = (round ? pi / 4 : 4.0 / 3) * std::pow(half, 4) * (bends ? 1 : 2);
   double of_triangles = 0;
   for (const auto& t : body.end.triangles)
