@@ -50,7 +50,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const Vec3<T>* const a = triangle.corner;
   const Vec3<T>* const n = triangle.normal;
   const Vec3<T> ab = a[1] - a[0], ac = a[2] - a[0], area = cross(ab, ac), ax = x - a[0];
-  const T squared = N::max(dot(area, area), N::of(1e-60)), inverse = T(1) / squared, above = dot(ax, area);
+  const T squared = N::max(dot(area, area), N::of(1e-30)), inverse = T(1) / squared, above = dot(ax, area);
   SurfaceFoot<T> foot;
   foot.slope[1] = inverse * cross(ac, area);
   foot.slope[2] = inverse * cross(area, ab);

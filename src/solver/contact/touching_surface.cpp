@@ -1,6 +1,5 @@
 #include "solver/contact/touching_surface.hpp"
 
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 
 #include <algorithm>
@@ -269,38 +268,5 @@ bool TouchingSurface::inseparable(std::size_t v, std::int32_t t) const
   return length < thickest_sheet * edge &&
          dot(way, normal) < -std::max(overlap_at_rest * edge, across_sheet * length) * norm(normal);
 }
-
-template <class Real>
-void TouchingSurface::place(std::size_t v, const Real* const u[3], Placed& at) const
-{
-  const Vertex& vertex = vertices[v];
-  const auto& nodes = model_.voxel_nodes[vertex.voxel];
-  const auto& c = vertex.coordinates;
-  Real weight[8];
-  physics::trilinear_weights<Real>(Real(c[0]), Real(c[1]), Real(c[2]), weight);
-  // displacement, and its derivatives along the tangents; rows of four, which compilers turn into vectors
-  Real sum[3][4] = {};
-  for (std::size_t b = 0; b < 8; ++b)
-  {
-    const Real moved[4] = { u[0][nodes[b]], u[1][nodes[b]], u[2][nodes[b]], 0 };
-    for (std::size_t axis = 0; axis < 4; ++axis)
-    {
-      sum[0][axis] += weight[b] * moved[axis];
-      sum[1][axis] += Real(vertex.along[0][b]) * moved[axis];
-      sum[2][axis] += Real(vertex.along[1][b]) * moved[axis];
-    }
-  }
-  const auto row = [&](std::size_t k) { return Vector{ double(sum[k][0]), double(sum[k][1]), double(sum[k][2]) }; };
-  const Vector place = vertex.rest + row(0), first = vertex.tangent[0] + row(1), second = vertex.tangent[1] + row(2);
-  const Vector area = cross(first, second);
-  at.before = at.place;
-  at.place = place;
-  const double scale = 1 / std::max(norm(area), 1e-12);
-  at.normal = scale * area;
-  at.dual = { { scale * cross(second, at.normal), scale * cross(at.normal, first) } };
-}
-
-template void TouchingSurface::place(std::size_t, const float* const[3], Placed&) const;
-template void TouchingSurface::place(std::size_t, const double* const[3], Placed&) const;
 
 }  // namespace frontalis

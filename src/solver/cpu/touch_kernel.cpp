@@ -1,0 +1,17 @@
+#include "solver/cpu/one_lane.hpp"
+#include "solver/cpu/touch_kernel_body.hpp"
+
+namespace frontalis
+{
+
+template <class Real>
+TouchKernels<Real> plain_touch_kernels()
+{
+  using Body = TouchKernelBody<OneLane<Real>>;
+  return { Body::place, Body::touch, Body::spread };
+}
+
+template TouchKernels<float> plain_touch_kernels();
+template TouchKernels<double> plain_touch_kernels();
+
+}  // namespace frontalis

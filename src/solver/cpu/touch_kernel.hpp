@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace frontalis
+{
+
+/// Number of vertices, or of pairs, that are processed together, one per lane.
+constexpr int touch_width = 16;
+
+/// Vertices of surfaces that touch each other, and the weights with which they follow the nodes of their voxels. Lanes
+/// beyond the last vertex are copies of the first one.
+template <class Real>
+struct VertexBlock
+{
+  std::int32_t node[8][touch_width];   ///< of the model
+  std::int32_t bound[8][touch_width];  ///< the same node's place among those that vertices are bound to
+  Real weight[8][touch_width];
+  Real along[2][8][touch_width];  ///< for the derivatives of the displacement along the tangents [1/m]
+  Real tangent[2][3][touch_width];
+  std::int32_t plane[touch_width];  ///< of the voxel; -2: the lane is empty
+};
+
+/// Vertices in motion, component by component.
+template <class Real>
+struct MovedVertices
+{
+  Real* u[3];        ///< displacement [m]
+  Real* before[3];   ///< in the step before
+  Real* normal[3];   ///< unit vectors
+  Real* dual[2][3];  ///< to the tangents: the normal turns by minus their sum, each times normal . tangent's change
+};
+
+/// Forces on vertices and what belongs to their normals (physics::corner_turn()).
+template <class Real>
+struct VertexSums
+{
+  Real* force[3];  ///< [N]
+  Real* turn[3];   ///< [N m]
+};
+
+/// Pairs of a vertex and a triangle of another surface, one per lane (physics/surface_touch.hpp). Lanes beyond the last
+/// pair are copies of the first one without stiffness.
+template <class Real>
+struct PairBlock
+{
+  std::int32_t vertex[4][touch_width];  ///< the point, and the triangle's corners
+  std::int32_t triangle[touch_width];   ///< -1: none
+  Real rest[3][3][touch_width];         ///< at rest, from corner 0: the point, corners 1 and 2 [m]
+  Real stiffness[touch_width], softer[3][touch_width], inner[3][touch_width];
+  Real overlap[touch_width], friction[touch_width];
+  // state
+  Real held[touch_width];  ///< physics::PairGrip::stiffness
+  Real pressed[touch_width], along[touch_width], stretch[3][touch_width];
+};
+
+template <class Real>
+struct PairForceBlock
+{
+  Real point[3][touch_width], corner[3][3][touch_width], turn[3][3][touch_width];
+  Real stored[touch_width], lost[touch_width];
+};
+
+/// Plain pointers, as for CpuKernel.
+template <class Real>
+struct PairArguments
+{
+  PairBlock<Real>* pairs;
+  PairForceBlock<Real>* forces;
+  double* due;            ///< of each block: way at which its pairs are looked at again [m]
+  std::uint8_t* touches;  ///< whether a pair of the block touches or has let go in this step
+  MovedVertices<Real> vertices;
+  double way;  ///< by which a vertex and a triangle can have come closer to each other [m]
+  Real response;
+  Real deepest;   ///< depth to which points are held [m]
+  Real patience;  ///< way after which a point that is behind a triangle but does not touch it is looked at again [m]
+  bool rubs;      ///< whether there is friction
+  /// Lets a pair whose foot lies beyond its triangle's edge go on to the triangle there.
+  void (*go_on)(void* context, std::int32_t block, int lane);
+  void* context;
+};
+
+template <class Real>
+struct TouchKernels
+{
+  /// Places vertices of blocks [first, last) at the displacements u of nodes.
+  void (*place)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices,
+                const std::array<const Real*, 3>& u, std::int32_t first, std::int32_t last);
+  /// Finds the forces of pairs in blocks [first, last) that are due.
+  void (*touch)(const PairArguments<Real>& arguments, std::int32_t first, std::int32_t last);
+  /// Adds forces of a block's vertices to those of bound nodes in planes [first_plane, end_plane), x, y, z and an
+  /// unused number for each, and sets the sums to 0.
+  void (*spread)(const VertexBlock<Real>& block, const MovedVertices<Real>& vertices, const VertexSums<Real>& sums,
+                 std::int32_t first_vertex, Real* node_forces, std::int32_t first_plane, std::int32_t end_plane);
+};
+
+/// The kernels without SIMD, in any precision.
+template <class Real>
+TouchKernels<Real> plain_touch_kernels();
+
+}  // namespace frontalis
