@@ -82,8 +82,13 @@ FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const Surface
   using N = Number<T>;
   const T none = N::of(0);
   const T pressed = none - stiffness * gap;
-  Vec3<T> along{ none, none, none };
   PairForce<T> force;
+  force.point = pressed * foot.gradient;
+  for (int i = 0; i < 3; ++i)
+  {
+    force.corner[i] = corner_force(triangle, foot, i, pressed);
+    force.turn[i] = corner_turn(triangle, foot, i, pressed);
+  }
   force.stored = N::of(-0.5) * pressed * gap;
   force.lost = none;
   if constexpr (rubs)
@@ -92,7 +97,10 @@ FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const Surface
     const T stays = N::select(touched, N::of(1), none);
     const auto held = touch<T>({ gap, foot.gradient, none, none }, stays * (grip.stretch + slip),
                                { { none, none, none }, grip.pressed, grip.along }, stiffness, pair.friction, response);
-    along = held.force - pressed * foot.gradient;
+    const Vec3<T> along = held.force - force.point;
+    force.point = held.force;
+    for (int i = 0; i < 3; ++i)
+      force.corner[i] = force.corner[i] + corner_drag(foot, i, along);
     force.stored = held.stored;
     // a point that leaves the surface loses the energy of its stretch, as in let_go()
     const T left = N::of(0.5 / sticking_stiffness) * grip.along * grip.along / N::max(grip.stiffness, N::of(1e-20));
@@ -103,12 +111,6 @@ FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const Surface
     grip.stretch = (N::of(-1 / sticking_stiffness) / N::max(stiffness, N::of(1e-20))) * along;
   }
   grip.stiffness = stiffness;
-  force.point = pressed * foot.gradient + along;
-  for (int i = 0; i < 3; ++i)
-  {
-    force.corner[i] = corner_force(triangle, foot, i, pressed, along);
-    force.turn[i] = corner_turn(triangle, foot, i, pressed);
-  }
   return force;
 }
 

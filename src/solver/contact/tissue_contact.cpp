@@ -1,7 +1,6 @@
 #include "solver/contact/tissue_contact.hpp"
 
 #include "frontalis/physics/sliding.hpp"
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/contact/contact_stiffness.hpp"
 
@@ -30,14 +29,6 @@ std::pair<std::int32_t, std::int32_t> part_of(std::size_t blocks, const NodeShar
 {
   return { static_cast<std::int32_t>(blocks * share.thread / share.threads),
            static_cast<std::int32_t>(blocks * (share.thread + 1) / share.threads) };
-}
-
-template <class Real>
-VertexSums<Real> sums_in(std::vector<Real>& sums)
-{
-  const std::size_t stride = sums.size() / 6;
-  Real* const p = sums.data();
-  return { { p, p + stride, p + 2 * stride }, { p + 3 * stride, p + 4 * stride, p + 5 * stride } };
 }
 
 }  // namespace
@@ -91,18 +82,17 @@ void TissueContact<Real>::make_vertex_blocks()
     const std::size_t lane = v % touch_width;
     const auto& vertex = surface_.vertices[v < count ? v : v - lane];
     VertexBlock<Real>& block = vertex_blocks_[v / touch_width];
-    Real weight[8];
-    const auto& c = vertex.coordinates;
-    physics::trilinear_weights<Real>(Real(c[0]), Real(c[1]), Real(c[2]), weight);
-    for (std::size_t b = 0; b < 8; ++b)
+    for (std::size_t two = 0; two < 4; ++two)
     {
-      const auto node = model_.voxel_nodes[vertex.voxel][b];
-      block.node[b][lane] = node;
-      block.bound[b][lane] = static_cast<std::int32_t>(
+      const auto node = model_.voxel_nodes[vertex.voxel][2 * two];
+      block.node[two][lane] = node;
+      block.bound[two][lane] = static_cast<std::int32_t>(
           std::lower_bound(bound_nodes_.begin(), bound_nodes_.end(), node) - bound_nodes_.begin());
-      block.weight[b][lane] = weight[b];
-      for (std::size_t k = 0; k < 2; ++k)
-        block.along[k][b][lane] = vertex.along[k][b];
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      block.coordinates[axis][lane] = Real(vertex.coordinates[axis]);
+      block.inverse_spacing[axis] = static_cast<Real>(1 / model_.spacing[axis]);
     }
     for (std::size_t k = 0; k < 2; ++k)
     {
@@ -118,10 +108,7 @@ template <class Real>
 MovedVertices<Real> TissueContact<Real>::moved_in(std::vector<Real>& components) const
 {
   const auto at = [&](std::size_t component) { return components.data() + component * stride(); };
-  return { { at(0), at(1), at(2) },
-           { at(3), at(4), at(5) },
-           { at(6), at(7), at(8) },
-           { { at(9), at(10), at(11) }, { at(12), at(13), at(14) } } };
+  return { { { at(0), at(1), at(2) }, { at(3), at(4), at(5) } }, at(6), rubs_ ? at(6 + Moved::stride) : nullptr };
 }
 
 template <class Real>
@@ -140,7 +127,7 @@ void TissueContact<Real>::reset()
     return;
   // the pairs of a vertex are in one block, so that each may lose a lane
   const std::size_t blocks = (most_pairs * count) / (touch_width - 1) + 1;
-  moved_.assign(moved_components * stride(), 0);
+  moved_.assign((6 + Moved::stride + (rubs_ ? 4 : 0)) * stride(), 0);
   live_.assign(vertex_blocks_.size(), 1);
   pairs_.assign(blocks, {});
   forces_.assign(blocks, {});
@@ -195,7 +182,7 @@ void TissueContact<Real>::prepare_step(const NodeShare& share, const Real* const
 {
   if (share.thread == 0 && sums_.size() < static_cast<std::size_t>(share.threads))
   {
-    sums_.resize(share.threads, std::vector<Real>(6 * stride(), 0));
+    sums_.resize(share.threads, std::vector<Real>(8 * stride(), 0));
     summed_.resize(share.threads, std::vector<std::uint8_t>(vertex_blocks_.size(), 0));
   }
   const Stage stage = clock_[0].stage;
@@ -261,13 +248,14 @@ template <class Real>
 void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std::vector<Real>& sums,
                                  std::vector<std::uint8_t>& summed, std::vector<double>& lost) const
 {
-  const VertexSums<Real> sum = sums_in(sums);
   const auto begin = static_cast<std::uint32_t>(plane_points_[std::max(share.first_plane - 1, 0)]);
   const auto count = static_cast<std::uint32_t>(plane_points_[share.end_plane]) - begin;
-  const auto add = [](Real* const(&to)[3], std::int32_t v, const Real(&part)[3][touch_width], int lane)
+  // all numbers of a record are read first, so that compilers can take them as one
+  const auto add = [](Real sign, const Real* from, Real* to)
   {
-    for (int axis = 0; axis < 3; ++axis)
-      to[axis][v] += part[axis][lane];
+    const Real record[4] = { to[0] + sign * from[0], to[1] + sign * from[1], to[2] + sign * from[2],
+                             to[3] + sign * from[3] };
+    std::copy(record, record + 4, to);
   };
   for (std::int32_t b = 0; b < arena.blocks; ++b)
     for (int lane = 0; arena.touches[b] != 0 && lane < touch_width; ++lane)
@@ -281,15 +269,25 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
           lost[plane] += double(force.lost[lane]);
       if (!(block.held[lane] > 0))
         continue;
-      for (int i = 0; i < 4; ++i)
+      const std::int32_t record = kernels_.record[lane];
+      const auto sum = [&](int i) -> Real*
       {
         const std::int32_t v = block.vertex[i][lane];
         if (static_cast<std::uint32_t>(v) - begin >= count)
-          continue;
+          return nullptr;
         summed[v / touch_width] = 1;
-        add(sum.force, v, i == 0 ? force.point : force.corner[i - 1], lane);
-        if (i > 0)
-          add(sum.turn, v, force.turn[i - 1], lane);
+        return sums.data() + 8 * std::ptrdiff_t{ v };
+      };
+      Real* const of_point = sum(0);
+      for (int i = 0; i < 3; ++i)
+      {
+        if (of_point != nullptr)
+          add(-1, force.corner[i] + record, of_point);
+        Real* const of_corner = sum(i + 1);
+        if (of_corner == nullptr)
+          continue;
+        add(1, force.corner[i] + record, of_corner);
+        add(1, force.turn[i] + record, of_corner + 4);
       }
     }
 }
@@ -305,8 +303,8 @@ void TissueContact<Real>::push(const NodeShare& share, const Moved& moved, std::
   for (std::size_t b = 0; b < summed.size(); ++b)
     if (summed[b] != 0)
     {
-      kernels_.spread(vertex_blocks_[b], moved, sums_in(sums), static_cast<std::int32_t>(b * touch_width),
-                      node_forces.data(), share.first_plane, share.end_plane);
+      kernels_.spread(vertex_blocks_.data(), moved, sums.data(), node_forces.data(), static_cast<std::int32_t>(b),
+                      share.first_plane, share.end_plane);
       summed[b] = 0;
       any = true;
     }
@@ -372,7 +370,7 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   if (!forces.empty())
   {
     const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
-    std::vector<Real> sums(6 * stride(), 0), node_forces(node_forces_.size(), 0);
+    std::vector<Real> sums(8 * stride(), 0), node_forces(node_forces_.size(), 0);
     std::vector<std::uint8_t> summed(vertex_blocks_.size(), 0);
     add_up(copy, all, sums, summed, no_losses);
     push(all, moved, sums, summed, node_forces,

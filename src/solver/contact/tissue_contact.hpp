@@ -50,7 +50,7 @@ private:
   using Foot = physics::SurfaceFoot<double>;
   using Moved = MovedVertices<Real>;
 
-  static constexpr std::size_t most_pairs = 2, moved_components = 15;
+  static constexpr std::size_t most_pairs = 2;
 
   enum class Stage : std::int32_t
   {

@@ -31,18 +31,25 @@ constexpr int rings = 3;
 // Motion between the sorting of triangles and the search, over the reach.
 constexpr double margin = 1.1;
 
+template <class Real>
+Vector record(const Real* records, std::size_t v)
+{
+  const Real* const r = records + v * MovedVertices<Real>::stride;
+  return { double(r[0]), double(r[1]), double(r[2]) };
+}
+
 }  // namespace
 
 template <class Real>
 physics::Vec3<double> TissueContact<Real>::place(std::size_t v, const Moved& moved) const
 {
-  return surface_.vertices[v].rest + Vector{ double(moved.u[0][v]), double(moved.u[1][v]), double(moved.u[2][v]) };
+  return surface_.vertices[v].rest + record(moved.record, v);
 }
 
 template <class Real>
 physics::Vec3<double> TissueContact<Real>::normal(std::size_t v, const Moved& moved) const
 {
-  return { double(moved.normal[0][v]), double(moved.normal[1][v]), double(moved.normal[2][v]) };
+  return record(moved.record + 4, v);
 }
 
 template <class Real>

@@ -73,32 +73,13 @@ std::vector<std::array<std::int32_t, 3>> smooth_neighbours(const TriangleMesh& m
   return neighbours;
 }
 
-void set_frame(TouchingSurface::Vertex& v, const std::array<double, 3>& spacing)
+void set_frame(TouchingSurface::Vertex& v)
 {
   const Vector& n = v.normal;
   const Vector axis = std::abs(n.x) < 0.7 ? Vector{ 1, 0, 0 } : Vector{ 0, 1, 0 };
   const Vector first = cross(axis, n);
   v.tangent[0] = (1 / norm(first)) * first;
   v.tangent[1] = cross(n, v.tangent[0]);
-  const double c[3] = { double(v.coordinates[0]), double(v.coordinates[1]), double(v.coordinates[2]) };
-  for (std::size_t k = 0; k < 2; ++k)
-  {
-    const Vector& t = v.tangent[k];
-    const double direction[3] = { t.x / spacing[0], t.y / spacing[1], t.z / spacing[2] };
-    for (int b = 0; b < 8; ++b)
-    {
-      double sum = 0;
-      for (int axis_of = 0; axis_of < 3; ++axis_of)
-      {
-        double product = ((b >> axis_of) & 1) != 0 ? direction[axis_of] : -direction[axis_of];
-        for (int other = 0; other < 3; ++other)
-          if (other != axis_of)
-            product *= ((b >> other) & 1) != 0 ? c[other] : 1 - c[other];
-        sum += product;
-      }
-      v.along[k][b] = static_cast<float>(sum);
-    }
-  }
 }
 
 }  // namespace
@@ -164,7 +145,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
       v.area_share = static_cast<float>(area / std::max(areas[source], 1e-30));
       v.rest = vector(mesh.vertices[source]);
       v.normal = (1 / std::max(norm(normal), 1e-30)) * normal;
-      set_frame(v, model_.spacing);
+      set_frame(v);
       vertices.push_back(v);
     }
   join(mesh, first_source, joined_within * *std::max_element(model_.spacing.begin(), model_.spacing.end()));

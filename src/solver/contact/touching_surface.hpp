@@ -27,8 +27,6 @@ public:
     Vector rest;
     Vector normal;                  // at rest, unit vector
     std::array<Vector, 2> tangent;  // their cross product is the normal
-    // weights of the voxel's nodes for the derivatives of the displacement along the tangents [1/m]
-    std::array<std::array<float, 8>, 2> along;
   };
   struct Triangle
   {

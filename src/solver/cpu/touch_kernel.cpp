@@ -7,8 +7,7 @@ namespace frontalis
 template <class Real>
 TouchKernels<Real> plain_touch_kernels()
 {
-  using Body = TouchKernelBody<OneLane<Real>>;
-  return { Body::place, Body::touch, Body::spread };
+  return TouchKernelBody<OneLane<Real>>::kernels();
 }
 
 template TouchKernels<float> plain_touch_kernels();

@@ -9,35 +9,28 @@ namespace frontalis
 /// Number of vertices, or of pairs, that are processed together, one per lane.
 constexpr int touch_width = 16;
 
-/// Vertices of surfaces that touch each other, and the weights with which they follow the nodes of their voxels. Lanes
-/// beyond the last vertex are copies of the first one.
+/// Vertices of surfaces that touch each other, and how they follow the nodes of their voxels. Lanes beyond the last
+/// vertex are copies of the first one.
 template <class Real>
 struct VertexBlock
 {
-  std::int32_t node[8][touch_width];   ///< of the model
-  std::int32_t bound[8][touch_width];  ///< the same node's place among those that vertices are bound to
-  Real weight[8][touch_width];
-  Real along[2][8][touch_width];  ///< for the derivatives of the displacement along the tangents [1/m]
-  Real tangent[2][3][touch_width];
-  std::int32_t plane[touch_width];  ///< of the voxel; -2: the lane is empty
+  std::int32_t node[4][touch_width];   ///< the voxel's corners 0, 2, 4 and 6; the next node is the next corner
+  std::int32_t bound[4][touch_width];  ///< the same, counted over the nodes that vertices are bound to
+  Real coordinates[3][touch_width];    ///< in the voxel
+  Real tangent[2][3][touch_width];     ///< at rest
+  std::int32_t plane[touch_width];     ///< of the voxel; -2: the lane is empty
+  Real inverse_spacing[3];             ///< of the grid [1/m]
 };
 
-/// Vertices in motion, component by component.
+/// Vertices in motion. Vectors that are gathered are records of four numbers; duals have a list for each component.
 template <class Real>
 struct MovedVertices
 {
-  Real* u[3];        ///< displacement [m]
-  Real* before[3];   ///< in the step before
-  Real* normal[3];   ///< unit vectors
-  Real* dual[2][3];  ///< to the tangents: the normal turns by minus their sum, each times normal . tangent's change
-};
+  static constexpr std::ptrdiff_t stride = 8;
 
-/// Forces on vertices and what belongs to their normals (physics::corner_turn()).
-template <class Real>
-struct VertexSums
-{
-  Real* force[3];  ///< [N]
-  Real* turn[3];   ///< [N m]
+  Real* dual[2][3];  ///< to the tangents: the normal turns by minus their sum, each times normal . tangent's change
+  Real* record;      ///< displacement [m] and normal
+  Real* change;      ///< of the displacement in the latest step, if there is friction [m]; else null
 };
 
 /// Pairs of a vertex and a triangle of another surface, one per lane (physics/surface_touch.hpp). Lanes beyond the last
@@ -55,11 +48,13 @@ struct PairBlock
   Real pressed[touch_width], along[touch_width], stretch[3][touch_width];
 };
 
+/// Forces of pairs on the triangle's corners [N], and what belongs to the corners' normals [N m]. That on the point is
+/// the opposite of the first three. The record of lane l begins at number record[l] of its list (TouchKernels).
 template <class Real>
 struct PairForceBlock
 {
-  Real point[3][touch_width], corner[3][3][touch_width], turn[3][3][touch_width];
-  Real stored[touch_width], lost[touch_width];
+  Real corner[3][4 * touch_width], turn[3][4 * touch_width];
+  Real stored[touch_width], lost[touch_width];  // [J]
 };
 
 /// Plain pointers, as for CpuKernel.
@@ -89,10 +84,11 @@ struct TouchKernels
                 const std::array<const Real*, 3>& u, std::int32_t first, std::int32_t last);
   /// Finds the forces of pairs in blocks [first, last) that are due.
   void (*touch)(const PairArguments<Real>& arguments, std::int32_t first, std::int32_t last);
-  /// Adds forces of a block's vertices to those of bound nodes in planes [first_plane, end_plane), x, y, z and an
-  /// unused number for each, and sets the sums to 0.
-  void (*spread)(const VertexBlock<Real>& block, const MovedVertices<Real>& vertices, const VertexSums<Real>& sums,
-                 std::int32_t first_vertex, Real* node_forces, std::int32_t first_plane, std::int32_t end_plane);
+  /// Adds forces of vertices of a block to those of bound nodes in planes [first_plane, end_plane), which are records.
+  /// `sums`: of each vertex, force and what belongs to its normal; they are set to 0.
+  void (*spread)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices, Real* sums, Real* node_forces,
+                 std::int32_t block, std::int32_t first_plane, std::int32_t end_plane);
+  std::array<std::int32_t, touch_width> record;
 };
 
 /// The kernels without SIMD, in any precision.

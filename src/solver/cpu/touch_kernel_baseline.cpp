@@ -1,13 +1,9 @@
-#include "solver/cpu/shell_lanes.hpp"
+#include "solver/cpu/record_lanes.hpp"
 #include "solver/cpu/touch_kernel_body.hpp"
 
 namespace frontalis
 {
 
-TouchKernels<float> touch_kernels_baseline()
-{
-  using Body = TouchKernelBody<ShellLanes<xsimd::default_arch>>;
-  return { Body::place, Body::touch, Body::spread };
-}
+TouchKernels<float> touch_kernels_baseline() { return TouchKernelBody<RecordLanes<xsimd::default_arch>>::kernels(); }
 
 }  // namespace frontalis

@@ -15,18 +15,13 @@ struct TouchKernelBody
   using Batch = typename Lanes::Batch;
   using Number = physics::Number<Batch>;
   using Vector = physics::Vec3<Batch>;
-  using Row = Real[touch_width];
+  using Moved = MovedVertices<Real>;
   static_assert(touch_width % Lanes::count == 0, "a block is a whole number of batches");
 
   template <class Pointers>
-  static FRONTALIS_LAW Vector load(const Pointers& p, int lane)
+  static FRONTALIS_LAW Vector load(const Pointers& p, std::ptrdiff_t lane)
   {
     return { Lanes::load(p[0] + lane), Lanes::load(p[1] + lane), Lanes::load(p[2] + lane) };
-  }
-  template <class Pointers>
-  static FRONTALIS_LAW Vector gather(const Pointers& p, const std::int32_t* index)
-  {
-    return { Lanes::gather(p[0], index), Lanes::gather(p[1], index), Lanes::gather(p[2], index) };
   }
   template <class Pointers>
   static FRONTALIS_LAW void store(const Vector& v, Pointers& p, std::ptrdiff_t lane)
@@ -36,49 +31,110 @@ struct TouchKernelBody
     Lanes::store(v.z, p[2] + lane);
   }
 
-  static void place(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices,
-                    const std::array<const Real*, 3>& u, std::int32_t first, std::int32_t last)
+  // Vectors of records that follow each other.
+  static FRONTALIS_LAW Vector consecutive(const Real* p, std::ptrdiff_t stride)
   {
-    const Batch none = Number::of(0);
+    std::int32_t index[Lanes::count];
+    for (int l = 0; l < Lanes::count; ++l)
+      index[l] = l;
+    return Lanes::gather_records(p, stride, index);
+  }
+  static FRONTALIS_LAW void store_as_records(const Vector& v, Real* p, std::ptrdiff_t stride)
+  {
+    alignas(64) Real records[4 * Lanes::count];
+    Lanes::store_records(v, records);
+    for (int l = 0; l < Lanes::count; ++l)
+      Lanes::copy_record(records + Lanes::record(l), p + l * stride);
+  }
+  static FRONTALIS_LAW Vector scaled(const Vector& v, const Real (&by)[3])
+  {
+    return { Batch(by[0]) * v.x, Batch(by[1]) * v.y, Batch(by[2]) * v.z };
+  }
+
+  // Weights of the lower and the upper side of the voxel along each axis.
+  struct Weights
+  {
+    FRONTALIS_LAW Weights(const VertexBlock<Real>& b, int lane)
+    {
+      Batch(*const axes[3])[2] = { &x, &y, &z };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        (*axes[axis])[1] = Lanes::load(b.coordinates[axis] + lane);
+        (*axes[axis])[0] = Number::of(1) - (*axes[axis])[1];
+      }
+    }
+    Batch x[2], y[2], z[2];
+  };
+
+  static void place(const VertexBlock<Real>* blocks, const Moved& vertices, const std::array<const Real*, 3>& u,
+                    std::int32_t first, std::int32_t last)
+  {
     for (auto block = first; block < last; ++block)
       for (int lane = 0; lane < touch_width; lane += Lanes::count)
-      {
-        const VertexBlock<Real>& b = blocks[block];
-        const std::ptrdiff_t at = std::ptrdiff_t{ block } * touch_width + lane;
-        // displacement, and the tangents
-        Vector sum{ none, none, none }, tangent[2] = { load(b.tangent[0], lane), load(b.tangent[1], lane) };
-        for (int corner = 0; corner < 8; ++corner)
-        {
-          const Vector moved = gather(u, b.node[corner] + lane);
-          sum = sum + Lanes::load(b.weight[corner] + lane) * moved;
-          for (int k = 0; k < 2; ++k)
-            tangent[k] = tangent[k] + Lanes::load(b.along[k][corner] + lane) * moved;
-        }
-        const Vector area = cross(tangent[0], tangent[1]);
-        const Batch scale = Number::of(1) / Number::max(norm(area), Number::of(1e-12));
-        const Vector normal = scale * area;
-        store(load(vertices.u, static_cast<int>(at)), vertices.before, at);
-        store(sum, vertices.u, at);
-        store(normal, vertices.normal, at);
-        store(scale * cross(tangent[1], normal), vertices.dual[0], at);
-        store(scale * cross(normal, tangent[0]), vertices.dual[1], at);
-      }
+        place(blocks[block], vertices, u, lane, std::ptrdiff_t{ block } * touch_width + lane);
+  }
+
+  static FRONTALIS_LAW void place(const VertexBlock<Real>& b, const Moved& vertices,
+                                  const std::array<const Real*, 3>& u, int lane, std::ptrdiff_t at)
+  {
+    const Batch none = Number::of(0);
+    const Weights w(b, lane);
+    // displacement, and its derivatives by the coordinates
+    Vector sum{ none, none, none }, by_x = sum, by_y = sum, by_z = sum;
+    for (int two = 0; two < 4; ++two)
+    {
+      Vector low, high;
+      Lanes::gather_two(u[0], b.node[two] + lane, low.x, high.x);
+      Lanes::gather_two(u[1], b.node[two] + lane, low.y, high.y);
+      Lanes::gather_two(u[2], b.node[two] + lane, low.z, high.z);
+      const int j = two & 1, k = two >> 1;
+      const Batch weight = w.y[j] * w.z[k];
+      const Vector change = high - low, moved = low + w.x[1] * change;
+      sum = sum + weight * moved;
+      by_x = by_x + weight * change;
+      by_y = j == 0 ? by_y - w.z[k] * moved : by_y + w.z[k] * moved;
+      by_z = k == 0 ? by_z - w.y[j] * moved : by_z + w.y[j] * moved;
+    }
+    Vector tangent[2];
+    for (int t = 0; t < 2; ++t)
+    {
+      const Vector along = scaled(load(b.tangent[t], lane), b.inverse_spacing);
+      tangent[t] = load(b.tangent[t], lane) + along.x * by_x + along.y * by_y + along.z * by_z;
+    }
+    const Vector area = cross(tangent[0], tangent[1]);
+    const Batch scale = Number::of(1) / Number::max(norm(area), Number::of(1e-12));
+    const Vector normal = scale * area;
+    store(scale * cross(tangent[1], normal), vertices.dual[0], at);
+    store(scale * cross(normal, tangent[0]), vertices.dual[1], at);
+    if (vertices.change != nullptr)
+      store_as_records(sum - consecutive(vertices.record + at * Moved::stride, Moved::stride), vertices.change + 4 * at,
+                       4);
+    store_as_records(sum, vertices.record + at * Moved::stride, Moved::stride);
+    store_as_records(normal, vertices.record + at * Moved::stride + 4, Moved::stride);
+  }
+
+  static FRONTALIS_LAW Vector moved(const Moved& vertices, const std::int32_t* index)
+  {
+    return Lanes::gather_records(vertices.record, Moved::stride, index);
+  }
+  static FRONTALIS_LAW Vector normal(const Moved& vertices, const std::int32_t* index)
+  {
+    return Lanes::gather_records(vertices.record + 4, Moved::stride, index);
   }
 
   // The triangle relative to its corner 0, which makes differences of places exact.
-  static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairBlock<Real>& b,
-                                                                const MovedVertices<Real>& vertices, int lane,
-                                                                Vector& point)
+  static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairBlock<Real>& b, const Moved& vertices,
+                                                                int lane, Vector& point)
   {
     const Batch none = Number::of(0);
     physics::SurfaceTriangle<Batch> out;
-    const Vector origin = gather(vertices.u, b.vertex[1] + lane);
+    const Vector origin = moved(vertices, b.vertex[1] + lane);
     out.corner[0] = { none, none, none };
-    point = load(b.rest[0], lane) + (gather(vertices.u, b.vertex[0] + lane) - origin);
+    point = load(b.rest[0], lane) + (moved(vertices, b.vertex[0] + lane) - origin);
     for (int i = 1; i < 3; ++i)
-      out.corner[i] = load(b.rest[i], lane) + (gather(vertices.u, b.vertex[i + 1] + lane) - origin);
+      out.corner[i] = load(b.rest[i], lane) + (moved(vertices, b.vertex[i + 1] + lane) - origin);
     for (int i = 0; i < 3; ++i)
-      out.normal[i] = gather(vertices.normal, b.vertex[i + 1] + lane);
+      out.normal[i] = normal(vertices, b.vertex[i + 1] + lane);
     return out;
   }
 
@@ -89,25 +145,30 @@ struct TouchKernelBody
     Batch beyond = Number::of(0);
     for (int i = 0; i < 3; ++i)
       beyond = Number::max(beyond, Lanes::load(b.inner[i] + lane) * (Number::of(-edge_error) - weight[i]));
+    if (!Lanes::any_positive(beyond))
+      return false;
     alignas(64) Real excess[Lanes::count];
     Lanes::store(beyond, excess);
-    Real any = 0;
     for (int l = 0; l < Lanes::count; ++l)
-      any = any > excess[l] ? any : excess[l];
-    for (int l = 0; l < Lanes::count && any > 0; ++l)
       if (excess[l] > 0 && b.triangle[lane + l] >= 0)
         g.go_on(g.context, block, lane + l);
-    return any > 0;
+    return true;
   }
 
-  static FRONTALIS_LAW Vector change(const MovedVertices<Real>& vertices, const std::int32_t* index)
+  static FRONTALIS_LAW Vector change(const Moved& vertices, const std::int32_t* index)
   {
-    return gather(vertices.u, index) - gather(vertices.before, index);
+    return Lanes::gather_records(vertices.change, 4, index);
   }
 
-  // Returns the way [m] after which the pairs are to be looked at again, in the lanes of `wait`.
+  // The result of a batch of pairs.
+  struct Result
+  {
+    Batch wait;  // the way after which they are to be looked at again [m]
+    bool touches;
+  };
+
   template <bool rubs>
-  static FRONTALIS_LAW void touch(const PairArguments<Real>& g, std::int32_t block, int lane, Real* wait)
+  static FRONTALIS_LAW Result touch(const PairArguments<Real>& g, std::int32_t block, int lane)
   {
     PairBlock<Real>& b = g.pairs[block];
     PairForceBlock<Real>& out = g.forces[block];
@@ -129,7 +190,7 @@ struct TouchKernelBody
       pair.inner[i] = Lanes::load(b.inner[i] + lane);
     }
     const Batch gap = foot.gap - pair.overlap;
-    const Batch whole = pair_stiffness(pair, foot, gather(g.vertices.normal, b.vertex[0] + lane));
+    const Batch whole = pair_stiffness(pair, foot, normal(g.vertices, b.vertex[0] + lane));
     const Batch stiffness =
         Number::select(gap < none, Number::select(gap > Number::of(-double(g.deepest)), whole, none), none);
     physics::PairGrip<Batch> grip{ Lanes::load(b.held + lane), none, none, { none, none, none } };
@@ -146,7 +207,7 @@ struct TouchKernelBody
     const auto force =
         physics::touch_pair<rubs>(pair, corners, foot, gap, stiffness, slip, Number::of(double(g.response)), grip);
     const Batch open = Number::select(gap > none, Number::of(0.5) * gap, Number::of(double(g.patience)));
-    Lanes::store(Number::select(stiffness > none, none, Number::select(grip.pressed > none, none, open)), wait + lane);
+    const Batch wait = Number::select(stiffness > none, none, Number::select(grip.pressed > none, none, open));
     Lanes::store(grip.stiffness, b.held + lane);
     if constexpr (rubs)
     {
@@ -155,13 +216,18 @@ struct TouchKernelBody
       store(grip.stretch, b.stretch, lane);
     }
     Lanes::store(force.stored, out.stored + lane);
-    Lanes::store(force.lost, out.lost + lane);
-    store(force.point, out.point, lane);
     for (int i = 0; i < 3; ++i)
     {
-      store(force.corner[i], out.corner[i], lane);
-      store(force.turn[i], out.turn[i], lane);
+      Lanes::store_records(force.corner[i], out.corner[i] + 4 * lane);
+      Lanes::store_records(force.turn[i], out.turn[i] + 4 * lane);
     }
+    bool touches = Lanes::any_positive(stiffness);
+    if constexpr (rubs)
+    {
+      Lanes::store(force.lost, out.lost + lane);
+      touches = touches || Lanes::any_positive(force.lost * force.lost);
+    }
+    return { wait, touches };
   }
 
   static void touch(const PairArguments<Real>& g, std::int32_t first, std::int32_t last)
@@ -170,50 +236,71 @@ struct TouchKernelBody
     {
       if (g.due[block] > g.way)
         continue;
-      alignas(64) Row wait;
+      Result all{ Number::of(1e30), false };
       for (int lane = 0; lane < touch_width; lane += Lanes::count)
-        if (g.rubs)
-          touch<true>(g, block, lane, wait);
-        else
-          touch<false>(g, block, lane, wait);
-      Real least = wait[0], touches = 0;
-      for (int l = 0; l < touch_width; ++l)
       {
-        least = least < wait[l] ? least : wait[l];
-        touches += g.pairs[block].held[l] + g.forces[block].lost[l];
+        const Result result = g.rubs ? touch<true>(g, block, lane) : touch<false>(g, block, lane);
+        all = { Number::min(all.wait, result.wait), all.touches || result.touches };
       }
+      alignas(64) Real wait[Lanes::count];
+      Lanes::store(all.wait, wait);
+      Real least = all.touches ? 0 : wait[0];
+      for (int l = 1; l < Lanes::count && !all.touches; ++l)
+        least = least < wait[l] ? least : wait[l];
       g.due[block] = g.way + double(least);
-      g.touches[block] = touches != 0 ? 1 : 0;
+      g.touches[block] = all.touches ? 1 : 0;
     }
   }
 
-  static void spread(const VertexBlock<Real>& b, const MovedVertices<Real>& vertices, const VertexSums<Real>& sums,
-                     std::int32_t first_vertex, Real* node_forces, std::int32_t first_plane, std::int32_t end_plane)
+  static void spread(const VertexBlock<Real>* blocks, const Moved& vertices, Real* sums, Real* node_forces,
+                     std::int32_t block, std::int32_t first_plane, std::int32_t end_plane)
   {
+    const VertexBlock<Real>& b = blocks[block];
+    const std::ptrdiff_t first = std::ptrdiff_t{ block } * touch_width;
     const Batch none = Number::of(0);
-    alignas(64) Real part[8][3][touch_width];
+    alignas(64) Real part[8][4 * Lanes::count];
     for (int lane = 0; lane < touch_width; lane += Lanes::count)
     {
-      const int at = first_vertex + lane;
-      const Vector force = load(sums.force, at), turn = load(sums.turn, at), normal = load(vertices.normal, at);
-      const Vector of_first = dot(turn, load(vertices.dual[0], at)) * normal;
-      const Vector of_second = dot(turn, load(vertices.dual[1], at)) * normal;
-      store({ none, none, none }, sums.force, at);
-      store({ none, none, none }, sums.turn, at);
+      const std::ptrdiff_t at = first + lane;
+      const Vector force = consecutive(sums + 8 * at, 8), turn = consecutive(sums + 8 * at + 4, 8);
+      const Vector direction = consecutive(vertices.record + Moved::stride * at + 4, Moved::stride);
+      for (int row = 0; row < 8; ++row)
+        Lanes::store(none, sums + 8 * at + row * Lanes::count);
+      // the normal turns with the derivatives of the displacement along the tangents
+      const Vector along = scaled(dot(turn, load(vertices.dual[0], at)) * load(b.tangent[0], lane) +
+                                      dot(turn, load(vertices.dual[1], at)) * load(b.tangent[1], lane),
+                                  b.inverse_spacing);
+      const Weights w(b, lane);
       for (int corner = 0; corner < 8; ++corner)
-        store(Lanes::load(b.weight[corner] + lane) * force - Lanes::load(b.along[0][corner] + lane) * of_first -
-                  Lanes::load(b.along[1][corner] + lane) * of_second,
-              part[corner], lane);
+      {
+        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+        const Batch by_x = w.y[j] * w.z[k] * along.x, by_y = w.z[k] * along.y, by_z = w.y[j] * along.z;
+        const Batch across = (j == 0 ? none - by_y : by_y) + (k == 0 ? none - by_z : by_z);
+        const Batch turned = w.x[i] * across + (i == 0 ? none - by_x : by_x);
+        Lanes::store_records((w.x[i] * w.y[j] * w.z[k]) * force - turned * direction, part[corner]);
+      }
+      for (int l = 0; l < Lanes::count; ++l)
+      {
+        // nodes in the lower plane of the voxel, then in the upper one
+        const std::int32_t plane = b.plane[lane + l];
+        const bool lower = plane >= first_plane && plane < end_plane;
+        const bool upper = plane + 1 >= first_plane && plane + 1 < end_plane;
+        for (int two = lower ? 0 : 2; two < (upper ? 4 : 2); ++two)
+        {
+          Real* const to = node_forces + 4 * std::ptrdiff_t{ b.bound[two][lane + l] };
+          Lanes::add_record(part[2 * two] + Lanes::record(l), to);
+          Lanes::add_record(part[2 * two + 1] + Lanes::record(l), to + 4);
+        }
+      }
     }
+  }
+
+  static TouchKernels<Real> kernels()
+  {
+    TouchKernels<Real> kernels{ place, touch, spread, {} };
     for (int l = 0; l < touch_width; ++l)
-    {
-      // nodes in the lower plane of the voxel, then in the upper one
-      const bool lower = b.plane[l] >= first_plane && b.plane[l] < end_plane;
-      const bool upper = b.plane[l] + 1 >= first_plane && b.plane[l] + 1 < end_plane;
-      for (int corner = lower ? 0 : 4; corner < (upper ? 8 : 4); ++corner)
-        for (int axis = 0; axis < 3; ++axis)
-          node_forces[4 * b.bound[corner][l] + axis] += part[corner][axis][l];
-    }
+      kernels.record[l] = 4 * (l / Lanes::count * Lanes::count) + Lanes::record(l % Lanes::count);
+    return kernels;
   }
 
 private:
