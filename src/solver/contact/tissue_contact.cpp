@@ -108,7 +108,7 @@ template <class Real>
 MovedVertices<Real> TissueContact<Real>::moved_in(std::vector<Real>& components) const
 {
   const auto at = [&](std::size_t component) { return components.data() + component * stride(); };
-  return { { { at(0), at(1), at(2) }, { at(3), at(4), at(5) } }, at(6), rubs_ ? at(6 + Moved::stride) : nullptr };
+  return { at(6), rubs_ ? at(6 + Moved::stride) : nullptr, at(0) };
 }
 
 template <class Real>
@@ -129,6 +129,7 @@ void TissueContact<Real>::reset()
   const std::size_t blocks = (most_pairs * count) / (touch_width - 1) + 1;
   moved_.assign((6 + Moved::stride + (rubs_ ? 4 : 0)) * stride(), 0);
   live_.assign(vertex_blocks_.size(), 1);
+  pair_vertices_.assign(blocks, {});
   pairs_.assign(blocks, {});
   forces_.assign(blocks, {});
   due_.assign(blocks, 0);
@@ -161,6 +162,7 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
     return;
   list.add_state(effect, "places", moved_);
   list.add_state(effect, "places", live_);
+  list.add_state(effect, "pairs", pair_vertices_);
   list.add_state(effect, "pairs", pairs_);
   list.add_state(effect, "pairs", found_);
   list.add_state(effect, "distances", due_);
@@ -237,9 +239,10 @@ void TissueContact<Real>::before_step(const NodeShare& share, const Real* const 
 template <class Real>
 void TissueContact<Real>::touch(Arena& arena, double way, double dt, std::int32_t first, std::int32_t last) const
 {
-  kernels_.touch({ arena.pairs.data(), arena.forces.data(), arena.due.data(), arena.touches.data(), arena.moved, way,
-                   static_cast<Real>(physics::friction_response(dt)), static_cast<Real>(deepest_held * surface_.edge),
-                   static_cast<Real>(patience * surface_.edge), rubs_, go_on, &arena },
+  kernels_.touch({ arena.pair_vertices.data(), arena.pairs.data(), arena.forces.data(), arena.due.data(),
+                   arena.touches.data(), arena.moved, way, static_cast<Real>(physics::friction_response(dt)),
+                   static_cast<Real>(deepest_held * surface_.edge), static_cast<Real>(patience * surface_.edge), rubs_,
+                   go_on, &arena },
                  first, last);
 }
 
@@ -260,19 +263,18 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
   for (std::int32_t b = 0; b < arena.blocks; ++b)
     for (int lane = 0; arena.touches[b] != 0 && lane < touch_width; ++lane)
     {
-      const PairBlock<Real>& block = arena.pairs[b];
+      const PairVertices& pairs = arena.pair_vertices[b];
       const PairForceBlock<Real>& force = arena.forces[b];
-      const std::int32_t p = block.vertex[0][lane];
       if (rubs_)
-        if (const auto plane = model_.voxels[surface_.vertices[p].voxel][2];
+        if (const auto plane = model_.voxels[surface_.vertices[pairs.vertex[0][lane]].voxel][2];
             plane >= share.first_plane && plane < share.end_plane)
           lost[plane] += double(force.lost[lane]);
-      if (!(block.held[lane] > 0))
+      if ((arena.touches[b] >> lane & 1) == 0)
         continue;
       const std::int32_t record = kernels_.record[lane];
       const auto sum = [&](int i) -> Real*
       {
-        const std::int32_t v = block.vertex[i][lane];
+        const std::int32_t v = pairs.vertex[i][lane];
         if (static_cast<std::uint32_t>(v) - begin >= count)
           return nullptr;
         summed[v / touch_width] = 1;
@@ -352,14 +354,15 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   double lost = std::accumulate(lost_.begin(), lost_.end(), 0.0), stored = 0;
   // The sums end at the start of the latest step. The rest is what the next step will add.
   std::vector<Real> components = moved_;
+  std::vector<PairVertices> pair_vertices = pair_vertices_;
   std::vector<PairBlock<Real>> pairs = pairs_;
   std::vector<PairForceBlock<Real>> pair_forces(pairs.size());
   std::vector<double> due(pairs.size(), 0), no_losses(lost_.size(), 0);
-  std::vector<std::uint8_t> touches(pairs.size(), 0);
+  std::vector<std::uint32_t> touches(pairs.size(), 0);
   const Moved moved = moved_in(components);
   kernels_.place(vertex_blocks_.data(), moved, { u[0], u[1], u[2] }, 0,
                  static_cast<std::int32_t>(vertex_blocks_.size()));
-  Arena copy{ pairs, pair_forces, due, touches, moved, this, clock_[0].blocks };
+  Arena copy{ pair_vertices, pairs, pair_forces, due, touches, moved, this, clock_[0].blocks };
   touch(copy, 0, clock_[0].dt, 0, copy.blocks);
   for (std::int32_t b = 0; b < copy.blocks; ++b)
     for (int lane = 0; lane < touch_width; ++lane)

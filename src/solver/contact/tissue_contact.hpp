@@ -82,10 +82,11 @@ private:
   // What finding the forces of pairs needs and changes.
   struct Arena
   {
+    std::vector<PairVertices>& pair_vertices;
     std::vector<PairBlock<Real>>& pairs;
     std::vector<PairForceBlock<Real>>& forces;
     std::vector<double>& due;
-    std::vector<std::uint8_t>& touches;
+    std::vector<std::uint32_t>& touches;
     Moved moved;
     const TissueContact* contact;
     std::int32_t blocks;
@@ -93,7 +94,10 @@ private:
 
   std::size_t stride() const { return vertex_blocks_.size() * touch_width; }
   Moved moved_in(std::vector<Real>& components) const;
-  Arena arena(std::int32_t blocks) { return { pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks }; }
+  Arena arena(std::int32_t blocks)
+  {
+    return { pair_vertices_, pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks };
+  }
   double way_now() const;
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
   Vector place(std::size_t v, const Moved& moved) const;
@@ -107,7 +111,7 @@ private:
   Found search(std::size_t p);
   Foot follow(std::int32_t& t, const Vector& x, const Moved& moved) const;
   static void go_on(void* arena, std::int32_t block, int lane);
-  void set_lane(PairBlock<Real>& block, int lane, const Pair& pair) const;
+  void set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const;
   void collect_pairs();
   void mark_live();
   void find_overlap_at_rest();
@@ -131,7 +135,7 @@ private:
   BoundNodeWay nodes_;
   // of the step under way
   std::vector<PairForceBlock<Real>> forces_;
-  std::vector<std::uint8_t> touches_;              // whether a pair of a block touches or has let go
+  std::vector<std::uint32_t> touches_;             // PairArguments::touches
   std::vector<std::vector<Real>> sums_;            // of forces and turns of vertices, one list per thread
   std::vector<std::vector<std::uint8_t>> summed_;  // whether a block of vertices has some, one list per thread
   std::vector<Real> node_forces_;                  // on bound nodes, four numbers each [N]
@@ -140,6 +144,7 @@ private:
   // state
   std::vector<Real> moved_;         // MovedVertices, at the start of the latest step in which they were needed
   std::vector<std::uint8_t> live_;  // whether a block of vertices is near one that it may touch
+  std::vector<PairVertices> pair_vertices_;
   std::vector<PairBlock<Real>> pairs_;
   std::vector<double> due_;  // Clock::way at which a block of pairs is looked at again
   std::vector<Found> found_;

@@ -101,39 +101,40 @@ void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
 {
   const Arena& in = *static_cast<const Arena*>(arena);
   const TissueContact& contact = *in.contact;
+  PairVertices& at = in.pair_vertices[block];
   PairBlock<Real>& b = in.pairs[block];
-  const std::int32_t p = b.vertex[0][lane];
+  const std::int32_t p = at.vertex[0][lane];
   Pair pair{ p,
-             b.triangle[lane],
+             at.triangle[lane],
              b.held[lane],
              b.pressed[lane],
              b.along[lane],
              { b.stretch[0][lane], b.stretch[1][lane], b.stretch[2][lane] } };
   contact.follow(pair.triangle, contact.place(p, in.moved), in.moved);
-  if (pair.triangle == b.triangle[lane])
+  if (pair.triangle == at.triangle[lane])
     return;
-  contact.set_lane(b, lane, pair);
+  contact.set_lane(at, b, lane, pair);
   for (const int other : { lane - 1, lane + 1 })
-    if (other >= 0 && other < touch_width && b.vertex[0][other] == p && b.triangle[other] == pair.triangle)
+    if (other >= 0 && other < touch_width && at.vertex[0][other] == p && at.triangle[other] == pair.triangle)
     {
       const int second = std::max(lane, other);
-      b.triangle[second] = -1;
+      at.triangle[second] = -1;
       b.stiffness[second] = b.held[second] = b.pressed[second] = b.along[second] = 0;
     }
 }
 
 template <class Real>
-void TissueContact<Real>::set_lane(PairBlock<Real>& block, int lane, const Pair& pair) const
+void TissueContact<Real>::set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const
 {
   const auto& triangle = surface_.triangles[pair.triangle];
   const auto p = pair.vertex;
-  block.vertex[0][lane] = p;
-  block.triangle[lane] = pair.triangle;
+  vertices.vertex[0][lane] = p;
+  vertices.triangle[lane] = pair.triangle;
   const Vector origin = surface_.vertices[triangle.vertex[0]].rest;
   for (std::size_t i = 0; i < 3; ++i)
   {
     const auto v = triangle.vertex[i];
-    block.vertex[i + 1][lane] = v;
+    vertices.vertex[i + 1][lane] = v;
     block.softer[i][lane] = static_cast<Real>(per_area_[v] / per_area_[p]);
     block.inner[i][lane] = triangle.neighbour[i] < 0 ? 0 : 1;
     const Vector way = surface_.vertices[i == 0 ? p : v].rest - origin;
@@ -236,8 +237,8 @@ void TissueContact<Real>::collect_pairs()
   for (std::int32_t b = 0; b < clock_[0].blocks; ++b)
     for (int l = 0; l < touch_width; ++l)
       if (const PairBlock<Real>& from = pairs_[b]; from.held[l] > 0 || from.pressed[l] > 0)
-        held.push_back({ from.vertex[0][l],
-                         from.triangle[l],
+        held.push_back({ pair_vertices_[b].vertex[0][l],
+                         pair_vertices_[b].triangle[l],
                          from.held[l],
                          from.pressed[l],
                          from.along[l],
@@ -264,15 +265,15 @@ void TissueContact<Real>::collect_pairs()
       // lanes that stay empty are copies of this pair without stiffness
       for (int l = 0; l < touch_width; ++l)
       {
-        set_lane(pairs_[blocks], l, { p, of_vertex[0].triangle, 0, 0, 0, {} });
+        set_lane(pair_vertices_[blocks], pairs_[blocks], l, { p, of_vertex[0].triangle, 0, 0, 0, {} });
         pairs_[blocks].stiffness[l] = 0;
-        pairs_[blocks].triangle[l] = -1;
+        pair_vertices_[blocks].triangle[l] = -1;
       }
       lanes = 0;
       due_[blocks++] = 0;
     }
     for (const Pair& pair : of_vertex)
-      set_lane(pairs_[blocks - 1], static_cast<int>(lanes++), pair);
+      set_lane(pair_vertices_[blocks - 1], pairs_[blocks - 1], static_cast<int>(lanes++), pair);
   }
   clock_[0].blocks = blocks;
   mark_live();
@@ -292,10 +293,10 @@ void TissueContact<Real>::mark_live()
   };
   for (std::int32_t b = 0; b < clock_[0].blocks; ++b)
     for (int l = 0; l < touch_width; ++l)
-      if (pairs_[b].triangle[l] >= 0)
+      if (const PairVertices& pairs = pair_vertices_[b]; pairs.triangle[l] >= 0)
       {
-        live_[pairs_[b].vertex[0][l] / touch_width] = 1;
-        mark(mark, pairs_[b].triangle[l], rings);
+        live_[pairs.vertex[0][l] / touch_width] = 1;
+        mark(mark, pairs.triangle[l], rings);
       }
 }
 

@@ -21,6 +21,8 @@ struct OneLane
   static FRONTALIS_LAW void store(Number x, Number* p) { *p = x; }
   static FRONTALIS_LAW bool any_positive(Number x) { return x > 0; }
 
+  static FRONTALIS_LAW std::uint32_t positive(Number x) { return x > 0 ? 1 : 0; }
+
   // as RecordLanes
   static FRONTALIS_LAW void gather_two(const Number* p, const std::int32_t* index, Number& first, Number& second)
   {

@@ -21,6 +21,17 @@ struct RecordLanes
   static FRONTALIS_LAW void store(const Batch& x, float* p) { x.store_unaligned(p); }
   static FRONTALIS_LAW bool any_positive(const Batch& x) { return xsimd::any(x > Batch(0.0f)); }
 
+  /// A bit for each lane.
+  static FRONTALIS_LAW std::uint32_t positive(const Batch& x)
+  {
+    alignas(64) float lane[count];
+    store(x, lane);
+    std::uint32_t bits = 0;
+    for (int l = 0; l < count; ++l)
+      bits |= lane[l] > 0 ? 1U << l : 0U;
+    return bits;
+  }
+
   /// Gathers p[index] and p[index + 1].
   static FRONTALIS_LAW void gather_two(const float* p, const std::int32_t* index, Batch& first, Batch& second)
   {

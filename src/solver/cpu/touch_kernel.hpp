@@ -22,25 +22,29 @@ struct VertexBlock
   Real inverse_spacing[3];             ///< of the grid [1/m]
 };
 
-/// Vertices in motion. Vectors that are gathered are records of four numbers; duals have a list for each component.
+/// Vertices in motion. Vectors that are gathered are records of four numbers.
 template <class Real>
 struct MovedVertices
 {
   static constexpr std::ptrdiff_t stride = 8;
 
-  Real* dual[2][3];  ///< to the tangents: the normal turns by minus their sum, each times normal . tangent's change
-  Real* record;      ///< displacement [m] and normal
-  Real* change;      ///< of the displacement in the latest step, if there is friction [m]; else null
+  Real* record;  ///< displacement [m] and normal
+  Real* change;  ///< of the displacement in the latest step, if there is friction [m]; else null
+  /// To the tangents: the normal turns by minus their sum, each times normal . tangent's change. [block][6][lane]
+  Real* dual;
 };
 
 /// Pairs of a vertex and a triangle of another surface, one per lane (physics/surface_touch.hpp). Lanes beyond the last
 /// pair are copies of the first one without stiffness.
-template <class Real>
-struct PairBlock
+struct PairVertices
 {
   std::int32_t vertex[4][touch_width];  ///< the point, and the triangle's corners
   std::int32_t triangle[touch_width];   ///< -1: none
-  Real rest[3][3][touch_width];         ///< at rest, from corner 0: the point, corners 1 and 2 [m]
+};
+template <class Real>
+struct PairBlock
+{
+  Real rest[3][3][touch_width];  ///< at rest, from corner 0: the point, corners 1 and 2 [m]
   Real stiffness[touch_width], softer[3][touch_width], inner[3][touch_width];
   Real overlap[touch_width], friction[touch_width];
   // state
@@ -61,10 +65,11 @@ struct PairForceBlock
 template <class Real>
 struct PairArguments
 {
+  const PairVertices* pair_vertices;
   PairBlock<Real>* pairs;
   PairForceBlock<Real>* forces;
-  double* due;            ///< of each block: way at which its pairs are looked at again [m]
-  std::uint8_t* touches;  ///< whether a pair of the block touches or has let go in this step
+  double* due;             ///< of each block: way at which its pairs are looked at again [m]
+  std::uint32_t* touches;  ///< bits of the lanes that touch, and bit touch_width if friction has lost energy
   MovedVertices<Real> vertices;
   double way;  ///< by which a vertex and a triangle can have come closer to each other [m]
   Real response;

@@ -24,11 +24,18 @@ struct TouchKernelBody
     return { Lanes::load(p[0] + lane), Lanes::load(p[1] + lane), Lanes::load(p[2] + lane) };
   }
   template <class Pointers>
-  static FRONTALIS_LAW void store(const Vector& v, Pointers& p, std::ptrdiff_t lane)
+  static FRONTALIS_LAW void store(const Vector& v, Pointers&& p, std::ptrdiff_t lane)
   {
     Lanes::store(v.x, p[0] + lane);
     Lanes::store(v.y, p[1] + lane);
     Lanes::store(v.z, p[2] + lane);
+  }
+
+  // Components of the dual of tangent t of vertices from `at` on.
+  static FRONTALIS_LAW std::array<Real*, 3> dual(const Moved& vertices, std::ptrdiff_t at, int t)
+  {
+    Real* const first = vertices.dual + (6 * (at / touch_width) + 3 * t) * touch_width + at % touch_width;
+    return { first, first + touch_width, first + 2 * touch_width };
   }
 
   // Vectors of records that follow each other.
@@ -104,8 +111,8 @@ struct TouchKernelBody
     const Vector area = cross(tangent[0], tangent[1]);
     const Batch scale = Number::of(1) / Number::max(norm(area), Number::of(1e-12));
     const Vector normal = scale * area;
-    store(scale * cross(tangent[1], normal), vertices.dual[0], at);
-    store(scale * cross(normal, tangent[0]), vertices.dual[1], at);
+    store(scale * cross(tangent[1], normal), dual(vertices, at, 0), 0);
+    store(scale * cross(normal, tangent[0]), dual(vertices, at, 1), 0);
     if (vertices.change != nullptr)
       store_as_records(sum - consecutive(vertices.record + at * Moved::stride, Moved::stride), vertices.change + 4 * at,
                        4);
@@ -123,18 +130,18 @@ struct TouchKernelBody
   }
 
   // The triangle relative to its corner 0, which makes differences of places exact.
-  static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairBlock<Real>& b, const Moved& vertices,
-                                                                int lane, Vector& point)
+  static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairVertices& at, const PairBlock<Real>& b,
+                                                                const Moved& vertices, int lane, Vector& point)
   {
     const Batch none = Number::of(0);
     physics::SurfaceTriangle<Batch> out;
-    const Vector origin = moved(vertices, b.vertex[1] + lane);
+    const Vector origin = moved(vertices, at.vertex[1] + lane);
     out.corner[0] = { none, none, none };
-    point = load(b.rest[0], lane) + (moved(vertices, b.vertex[0] + lane) - origin);
+    point = load(b.rest[0], lane) + (moved(vertices, at.vertex[0] + lane) - origin);
     for (int i = 1; i < 3; ++i)
-      out.corner[i] = load(b.rest[i], lane) + (moved(vertices, b.vertex[i + 1] + lane) - origin);
+      out.corner[i] = load(b.rest[i], lane) + (moved(vertices, at.vertex[i + 1] + lane) - origin);
     for (int i = 0; i < 3; ++i)
-      out.normal[i] = normal(vertices, b.vertex[i + 1] + lane);
+      out.normal[i] = normal(vertices, at.vertex[i + 1] + lane);
     return out;
   }
 
@@ -150,7 +157,7 @@ struct TouchKernelBody
     alignas(64) Real excess[Lanes::count];
     Lanes::store(beyond, excess);
     for (int l = 0; l < Lanes::count; ++l)
-      if (excess[l] > 0 && b.triangle[lane + l] >= 0)
+      if (excess[l] > 0 && g.pair_vertices[block].triangle[lane + l] >= 0)
         g.go_on(g.context, block, lane + l);
     return true;
   }
@@ -163,22 +170,24 @@ struct TouchKernelBody
   // The result of a batch of pairs.
   struct Result
   {
-    Batch wait;  // the way after which they are to be looked at again [m]
-    bool touches;
+    Batch wait;             // the way after which they are to be looked at again [m]
+    std::uint32_t touches;  // bits of the lanes that do
+    bool loses;             // energy to friction
   };
 
   template <bool rubs>
   static FRONTALIS_LAW Result touch(const PairArguments<Real>& g, std::int32_t block, int lane)
   {
+    const PairVertices& at = g.pair_vertices[block];
     PairBlock<Real>& b = g.pairs[block];
     PairForceBlock<Real>& out = g.forces[block];
     const Batch none = Number::of(0);
     Vector point;
-    auto corners = triangle(b, g.vertices, lane, point);
+    auto corners = triangle(at, b, g.vertices, lane, point);
     auto foot = physics::surface_foot(corners, point);
     if (go_on(g, block, lane, foot.weight))
     {
-      corners = triangle(b, g.vertices, lane, point);
+      corners = triangle(at, b, g.vertices, lane, point);
       foot = physics::surface_foot(corners, point);
     }
     physics::TouchingPair<Batch> pair{
@@ -190,7 +199,7 @@ struct TouchKernelBody
       pair.inner[i] = Lanes::load(b.inner[i] + lane);
     }
     const Batch gap = foot.gap - pair.overlap;
-    const Batch whole = pair_stiffness(pair, foot, normal(g.vertices, b.vertex[0] + lane));
+    const Batch whole = pair_stiffness(pair, foot, normal(g.vertices, at.vertex[0] + lane));
     const Batch stiffness =
         Number::select(gap < none, Number::select(gap > Number::of(-double(g.deepest)), whole, none), none);
     physics::PairGrip<Batch> grip{ Lanes::load(b.held + lane), none, none, { none, none, none } };
@@ -200,9 +209,9 @@ struct TouchKernelBody
       grip.pressed = Lanes::load(b.pressed + lane);
       grip.along = Lanes::load(b.along + lane);
       grip.stretch = load(b.stretch, lane);
-      slip = change(g.vertices, b.vertex[0] + lane);
+      slip = change(g.vertices, at.vertex[0] + lane);
       for (int i = 0; i < 3; ++i)
-        slip = slip - carried(foot, i, change(g.vertices, b.vertex[i + 1] + lane));
+        slip = slip - carried(foot, i, change(g.vertices, at.vertex[i + 1] + lane));
     }
     const auto force =
         physics::touch_pair<rubs>(pair, corners, foot, gap, stiffness, slip, Number::of(double(g.response)), grip);
@@ -221,13 +230,13 @@ struct TouchKernelBody
       Lanes::store_records(force.corner[i], out.corner[i] + 4 * lane);
       Lanes::store_records(force.turn[i], out.turn[i] + 4 * lane);
     }
-    bool touches = Lanes::any_positive(stiffness);
+    bool loses = false;
     if constexpr (rubs)
     {
       Lanes::store(force.lost, out.lost + lane);
-      touches = touches || Lanes::any_positive(force.lost * force.lost);
+      loses = Lanes::any_positive(force.lost * force.lost);
     }
-    return { wait, touches };
+    return { wait, Lanes::positive(stiffness), loses };
   }
 
   static void touch(const PairArguments<Real>& g, std::int32_t first, std::int32_t last)
@@ -236,19 +245,21 @@ struct TouchKernelBody
     {
       if (g.due[block] > g.way)
         continue;
-      Result all{ Number::of(1e30), false };
+      Batch all = Number::of(1e30);
+      std::uint32_t touches = 0;
       for (int lane = 0; lane < touch_width; lane += Lanes::count)
       {
         const Result result = g.rubs ? touch<true>(g, block, lane) : touch<false>(g, block, lane);
-        all = { Number::min(all.wait, result.wait), all.touches || result.touches };
+        all = Number::min(all, result.wait);
+        touches |= result.touches << lane | (result.loses ? 1U << touch_width : 0U);
       }
       alignas(64) Real wait[Lanes::count];
-      Lanes::store(all.wait, wait);
-      Real least = all.touches ? 0 : wait[0];
-      for (int l = 1; l < Lanes::count && !all.touches; ++l)
+      Lanes::store(all, wait);
+      Real least = touches != 0 ? 0 : wait[0];
+      for (int l = 1; l < Lanes::count && touches == 0; ++l)
         least = least < wait[l] ? least : wait[l];
       g.due[block] = g.way + double(least);
-      g.touches[block] = all.touches ? 1 : 0;
+      g.touches[block] = touches;
     }
   }
 
@@ -267,8 +278,8 @@ struct TouchKernelBody
       for (int row = 0; row < 8; ++row)
         Lanes::store(none, sums + 8 * at + row * Lanes::count);
       // the normal turns with the derivatives of the displacement along the tangents
-      const Vector along = scaled(dot(turn, load(vertices.dual[0], at)) * load(b.tangent[0], lane) +
-                                      dot(turn, load(vertices.dual[1], at)) * load(b.tangent[1], lane),
+      const Vector along = scaled(dot(turn, load(dual(vertices, at, 0), 0)) * load(b.tangent[0], lane) +
+                                      dot(turn, load(dual(vertices, at, 1), 0)) * load(b.tangent[1], lane),
                                   b.inverse_spacing);
       const Weights w(b, lane);
       for (int corner = 0; corner < 8; ++corner)
