@@ -292,15 +292,22 @@ struct TouchKernelBody
       }
       for (int l = 0; l < Lanes::count; ++l)
       {
-        // nodes in the lower plane of the voxel, then in the upper one
         const std::int32_t plane = b.plane[lane + l];
-        const bool lower = plane >= first_plane && plane < end_plane;
-        const bool upper = plane + 1 >= first_plane && plane + 1 < end_plane;
-        for (int two = lower ? 0 : 2; two < (upper ? 4 : 2); ++two)
+        const auto add = [&](int two)
         {
           Real* const to = node_forces + 4 * std::ptrdiff_t{ b.bound[two][lane + l] };
           Lanes::add_record(part[2 * two] + Lanes::record(l), to);
           Lanes::add_record(part[2 * two + 1] + Lanes::record(l), to + 4);
+        };
+        if (plane >= first_plane && plane < end_plane)  // nodes in the lower plane of the voxel
+        {
+          add(0);
+          add(1);
+        }
+        if (plane + 1 >= first_plane && plane + 1 < end_plane)
+        {
+          add(2);
+          add(3);
         }
       }
     }
