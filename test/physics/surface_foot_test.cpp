@@ -114,7 +114,7 @@ TEST(SurfaceFoot, ForcesAreOppositeInSumAndInMoment)
     Vector sum = force, moment = cross(x, force);
     for (int c = 0; c < 3; ++c)
     {
-      const Vector part = corner_force(triangle, foot, c, pressed, across);
+      const Vector part = corner_force(triangle, foot, c, pressed) + corner_drag(foot, c, across);
       sum = sum + part;
       moment =
           moment + cross(triangle.corner[c], part) + cross(triangle.normal[c], corner_turn(triangle, foot, c, pressed));
@@ -137,7 +137,7 @@ TEST(SurfaceFoot, ATriangleCarriesAPointAlong)
   {
     const Vector moved = cross(turn, triangle.corner[c]);
     way = way + carried(foot, c, moved);
-    work += dot(corner_force(triangle, foot, c, 0.0, along), moved);
+    work += dot(corner_drag(foot, c, along), moved);
   }
   EXPECT_LT(norm(way - cross(turn, x)), 1e-13);
   EXPECT_NEAR(work, -dot(along, way), 1e-13);
@@ -156,8 +156,7 @@ TEST(SurfaceFoot, ForcesAreTheGradientOfTheEnergy)
     const double step = 1e-6;
     for (int c = 0; c < 3; ++c)
     {
-      const Vector force = corner_force(triangle, foot, c, 1.0, { 0, 0, 0 }),
-                   turn = corner_turn(triangle, foot, c, 1.0);
+      const Vector force = corner_force(triangle, foot, c, 1.0), turn = corner_turn(triangle, foot, c, 1.0);
       for (const Vector& way : { Vector{ 1, 0, 0 }, Vector{ 0, 1, 0 }, Vector{ 0, 0, 1 } })
       {
         const auto change = [&](Vector& what, const Vector& by)

@@ -50,7 +50,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const Vec3<T>* const a = triangle.corner;
   const Vec3<T>* const n = triangle.normal;
   const Vec3<T> ab = a[1] - a[0], ac = a[2] - a[0], area = cross(ab, ac), ax = x - a[0];
-  const T squared = N::max(dot(area, area), N::of(1e-60)), inverse = T(1) / squared, above = dot(ax, area);
+  const T squared = N::max(dot(area, area), N::of(1e-30)), inverse = T(1) / squared, above = dot(ax, area);
   SurfaceFoot<T> foot;
   foot.slope[1] = inverse * cross(ac, area);
   foot.slope[2] = inverse * cross(area, ab);
@@ -110,19 +110,25 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   return foot;
 }
 
-/// The force on a corner of the triangle [N] that belongs to forces on the point: `pressed` times the gradient of the
-/// gap, and `along` perpendicular to it. Together with corner_turn() those on the three corners are opposite to the two
-/// on the point, in sum and in moment, to rounding: the first are gradients of the gap, which depends on relative
-/// places alone, and the couple of the second, which acts at the height of the point, is taken up by forces normal to
-/// the triangle.
+/// The force on a corner of the triangle [N] that belongs to `pressed` times the gradient of the gap on the point.
+/// Together with corner_turn() those on the three corners are opposite to that on the point, in sum and in moment, to
+/// rounding: they are gradients of the gap, which depends on relative places alone.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
-                                   const T& pressed, const Vec3<T>& along)
+                                   const T& pressed)
+{
+  const T bulging = Number<T>::of(-0.5) * pressed * foot.inside[corner];
+  return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
+}
+
+/// The force on a corner that belongs to the force `along` the surface on the point. Those on the three corners are
+/// opposite to it in sum and in moment, because forces normal to the triangle take up the couple of `along`, which acts
+/// at the height of the point.
+template <class T>
+FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {
   const T couple = foot.height * dot(foot.slope[corner], along);
-  const T bulging = Number<T>::of(0.5) * pressed * foot.inside[corner];
-  return couple * foot.facet_normal - foot.below[corner] * along - (foot.weight[corner] * pressed) * foot.gradient -
-         bulging * (triangle.normal[corner] - foot.mean_normal);
+  return couple * foot.facet_normal - foot.below[corner] * along;
 }
 
 /// What belongs to the normal of a corner as corner_force() to its place [N m]: the gap depends on both, and these are
@@ -136,7 +142,7 @@ FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const Surf
 }
 
 /// What a corner's displacement [m] contributes to that of the triangle at the place of the point. It is zero, less the
-/// point's own, in a small rigid motion of both, and the adjoint of corner_force(..., along).
+/// point's own, in a small rigid motion of both, and the adjoint of corner_drag().
 template <class T>
 FRONTALIS_LAW Vec3<T> carried(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& displacement)
 {

@@ -1,12 +1,10 @@
 #include "solver/contact/tissue_contact.hpp"
 
 #include "frontalis/physics/sliding.hpp"
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/contact/contact_stiffness.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -26,20 +24,23 @@ constexpr double patience = 0.02;
 // Share of the reach that vertices may move before the search is repeated.
 constexpr double renewal_share = 0.8;
 
-// The force on a vertex sets in over these ranges: of the cosine between its own inward normal and the normal of the
-// surface that it touches, of that between this normal and the triangle's, and, beyond the rim of a surface, of the
-// height of the rim's triangle.
-constexpr double opposed = 0.25;
-constexpr double least_upright = 0.2, upright = 0.4;
-constexpr double rim_begin = 0.1, rim_end = 0.3;
-
-double ramp(double x) { return std::clamp(x, 0.0, 1.0); }
+// The thread's part of a number of blocks.
+std::pair<std::int32_t, std::int32_t> part_of(std::size_t blocks, const NodeShare& share)
+{
+  return { static_cast<std::int32_t>(blocks * share.thread / share.threads),
+           static_cast<std::int32_t>(blocks * (share.thread + 1) / share.threads) };
+}
 
 }  // namespace
 
 template <class Real>
-TissueContact<Real>::TissueContact(const Model& model, const Discretisation& discretisation)
-    : model_(model), surface_(model), reach_(reach_share * surface_.edge), nodes_(model, surface_.binding())
+TissueContact<Real>::TissueContact(const Model& model, const Discretisation& discretisation,
+                                   const TouchKernels<Real>& kernels)
+    : model_(model),
+      kernels_(kernels),
+      surface_(model),
+      reach_(reach_share * surface_.edge),
+      nodes_(model, surface_.binding())
 {
   if (surface_.vertices.empty())
     return;
@@ -47,7 +48,10 @@ TissueContact<Real>::TissueContact(const Model& model, const Discretisation& dis
   plane_points_.assign(static_cast<std::size_t>(model.size[2]) + 2, 0);
   std::vector<std::vector<double>> areas;
   for (const SelfContact& contact : model.self_contacts)
+  {
     areas.push_back(vertex_areas(contact.surface));
+    rubs_ = rubs_ || contact.friction > 0;
+  }
   for (const auto& vertex : surface_.vertices)
   {
     ++plane_points_[model.voxels[vertex.voxel][2] + 1];
@@ -56,8 +60,55 @@ TissueContact<Real>::TissueContact(const Model& model, const Discretisation& dis
     stiffness_.push_back(static_cast<float>(0.5 * whole * double(vertex.area_share)));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
+  make_vertex_blocks();
+  overlap_.assign(surface_.vertices.size(), 0);
   reset();
   find_overlap_at_rest();
+}
+
+template <class Real>
+void TissueContact<Real>::make_vertex_blocks()
+{
+  const std::size_t count = surface_.vertices.size();
+  for (const auto& vertex : surface_.vertices)
+    for (const auto node : model_.voxel_nodes[vertex.voxel])
+      bound_nodes_.push_back(node);
+  std::sort(bound_nodes_.begin(), bound_nodes_.end());
+  bound_nodes_.erase(std::unique(bound_nodes_.begin(), bound_nodes_.end()), bound_nodes_.end());
+  node_forces_.assign(4 * bound_nodes_.size(), 0);
+  vertex_blocks_.resize((count + touch_width - 1) / touch_width);
+  for (std::size_t v = 0; v < stride(); ++v)
+  {
+    const std::size_t lane = v % touch_width;
+    const auto& vertex = surface_.vertices[v < count ? v : v - lane];
+    VertexBlock<Real>& block = vertex_blocks_[v / touch_width];
+    for (std::size_t two = 0; two < 4; ++two)
+    {
+      const auto node = model_.voxel_nodes[vertex.voxel][2 * two];
+      block.node[two][lane] = node;
+      block.bound[two][lane] = static_cast<std::int32_t>(
+          std::lower_bound(bound_nodes_.begin(), bound_nodes_.end(), node) - bound_nodes_.begin());
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      block.coordinates[axis][lane] = Real(vertex.coordinates[axis]);
+      block.inverse_spacing[axis] = static_cast<Real>(1 / model_.spacing[axis]);
+    }
+    for (std::size_t k = 0; k < 2; ++k)
+    {
+      block.tangent[k][0][lane] = static_cast<Real>(vertex.tangent[k].x);
+      block.tangent[k][1][lane] = static_cast<Real>(vertex.tangent[k].y);
+      block.tangent[k][2][lane] = static_cast<Real>(vertex.tangent[k].z);
+    }
+    block.plane[lane] = v < count ? model_.voxels[vertex.voxel][2] : -2;
+  }
+}
+
+template <class Real>
+MovedVertices<Real> TissueContact<Real>::moved_in(std::vector<Real>& components) const
+{
+  const auto at = [&](std::size_t component) { return components.data() + component * stride(); };
+  return { at(6), rubs_ ? at(6 + Moved::stride) : nullptr, at(0) };
 }
 
 template <class Real>
@@ -74,18 +125,16 @@ void TissueContact<Real>::reset()
   const std::size_t count = surface_.vertices.size(), planes = static_cast<std::size_t>(model_.size[2]);
   if (count == 0)
     return;
-  placed_.clear();
-  for (const auto& vertex : surface_.vertices)
-    placed_.push_back({ vertex.rest,
-                        vertex.normal,
-                        vertex.rest,
-                        { { cross(vertex.tangent[1], vertex.normal), cross(vertex.normal, vertex.tangent[0]) } } });
-  overlap_.resize(count, 0);
-  live_.assign(count, 1);
-  tracks_.assign(count * most_tracks, {});
-  pairs_.assign(count * most_tracks, {});
-  due_.assign(count, 0);
-  chunks_.assign((count + chunk_size - 1) / chunk_size, {});
+  // the pairs of a vertex are in one block, so that each may lose a lane
+  const std::size_t blocks = (most_pairs * count) / (touch_width - 1) + 1;
+  moved_.assign((6 + Moved::stride + (rubs_ ? 4 : 0)) * stride(), 0);
+  live_.assign(vertex_blocks_.size(), 1);
+  pair_vertices_.assign(blocks, {});
+  pairs_.assign(blocks, {});
+  forces_.assign(blocks, {});
+  due_.assign(blocks, 0);
+  touches_.assign(blocks, 0);
+  found_.assign(count, {});
   clock_.assign(1, {});
   node_way_.assign(planes + 1, 0);
   lost_.assign(planes, 0);
@@ -102,17 +151,21 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
   list.add(effect, "vertices", stiffness_);
   list.add(effect, "vertices", per_area_);
   list.add(effect, "vertices", overlap_);
+  list.add(effect, "vertices", vertex_blocks_);
   list.add(effect, "vertices", plane_points_);
-  list.add(effect, "forces", pairs_);
-  for (const VertexForces& forces : forces_)
-    list.add(effect, "forces", forces.force);
+  list.add(effect, "bound nodes", bound_nodes_);
+  list.add(effect, "forces", forces_);
+  list.add(effect, "forces", node_forces_);
+  for (const auto& sums : sums_)
+    list.add(effect, "forces", sums);
   if (surface_.vertices.empty())
     return;
-  list.add_state(effect, "places", placed_);
+  list.add_state(effect, "places", moved_);
   list.add_state(effect, "places", live_);
-  list.add_state(effect, "tracks", tracks_);
+  list.add_state(effect, "pairs", pair_vertices_);
+  list.add_state(effect, "pairs", pairs_);
+  list.add_state(effect, "pairs", found_);
   list.add_state(effect, "distances", due_);
-  list.add_state(effect, "distances", chunks_);
   list.add_state(effect, "distances", clock_);
   list.add_state(effect, "distances", node_way_);
   list.add_state(effect, "sums", lost_);
@@ -129,24 +182,27 @@ double TissueContact<Real>::way_now() const
 template <class Real>
 void TissueContact<Real>::prepare_step(const NodeShare& share, const Real* const u[3])
 {
-  if (share.thread == 0 && forces_.size() < static_cast<std::size_t>(share.threads))
+  if (share.thread == 0 && sums_.size() < static_cast<std::size_t>(share.threads))
   {
-    const std::vector<Vector> none(placed_.size(), { 0, 0, 0 });
-    forces_.resize(share.threads, { none, none, std::vector<std::uint8_t>(placed_.size(), 0), {} });
+    sums_.resize(share.threads, std::vector<Real>(8 * stride(), 0));
+    summed_.resize(share.threads, std::vector<std::uint8_t>(vertex_blocks_.size(), 0));
   }
+  const Stage stage = clock_[0].stage;
+  if (share.thread == 0 && stage == Stage::collect)
+    collect_pairs();
   if (rests())
     return;
-  const bool all = clock_[0].stage != Stage::hold;
-  const auto [begin, end] = chunks_of(share);
-  for (std::size_t v = begin * chunk_size; v < std::min(end * chunk_size, placed_.size()); ++v)
-    if (all || live_[v] != 0)
-      surface_.place(v, u, placed_[v]);
+  const Moved moved = moved_in(moved_);
+  const auto [begin, end] = part_of(vertex_blocks_.size(), share);
+  for (auto b = begin; b < end; ++b)
+    if (stage != Stage::hold || live_[b] != 0)
+      kernels_.place(vertex_blocks_.data(), moved, { u[0], u[1], u[2] }, b, b + 1);
 }
 
 template <class Real>
 void TissueContact<Real>::before_step(const NodeShare& share, const Real* const /*u*/[3], const ConstraintStep& step)
 {
-  const double way = way_now(), response = physics::friction_response(step.dt);
+  const double way = way_now();
   const Stage stage = clock_[0].stage;
   if (share.thread == 0)
   {
@@ -162,180 +218,123 @@ void TissueContact<Real>::before_step(const NodeShare& share, const Real* const 
     }
     if (stage == Stage::search)
     {
-      next_.stage = Stage::hold;
+      next_.stage = Stage::collect;
       next_.renewal = way + renewal_share * reach_;
     }
+    if (stage == Stage::collect)
+      next_.stage = Stage::hold;
   }
   if (rests())
     return;
-  const auto [begin, end] = chunks_of(share);
-  for (std::size_t c = begin; c < end; ++c)
-  {
-    Chunk& chunk = chunks_[c];
-    if (stage != Stage::search && chunk.due > way)
-      continue;
-    chunk = { std::numeric_limits<double>::max(), 0 };
-    for (std::size_t p = c * chunk_size; p < end_of(c); ++p)
-    {
-      if (stage == Stage::search)
-        search(p);
-      if (!(due_[p] > way))
-        voxel_readings(p, way, response);
-      chunk.due = std::min(chunk.due, due_[p]);
-      for (std::size_t k = 0; k < most_tracks; ++k)
-        chunk.touches |= tracks_[p * most_tracks + k].touches != Touching::no ? 1 : 0;
-    }
-  }
-}
-
-// Of a vertex in contact [N/m]; 0 where there is none: beyond a rim, or if the surfaces do not face each other.
-template <class Real>
-double TissueContact<Real>::stiffness(std::size_t p, std::int32_t t, const Foot& foot,
-                                      const std::vector<Placed>& placed) const
-{
-  const auto& triangle = surface_.triangles[t];
-  double share = ramp(-dot(foot.normal, placed[p].normal) / opposed) *
-                 ramp((dot(foot.normal, foot.facet_normal) - least_upright) / (upright - least_upright));
-  double per_area = 0, inside = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-  {
-    if (foot.weight[i] < 0 && triangle.neighbour[i] < 0)
-      share *= ramp((foot.weight[i] + rim_end) / (rim_end - rim_begin));
-    const double weight = std::max(foot.weight[i], 0.0);
-    per_area += weight * double(per_area_[triangle.vertex[i]]);
-    inside += weight;
-  }
-  // the softer of the two sides
-  return share * double(stiffness_[p]) * std::min(1.0, per_area / (inside * double(per_area_[p])));
+  const auto [first, last] = part_of(static_cast<std::size_t>(clock_[0].blocks), share);
+  Arena in = arena(clock_[0].blocks);
+  touch(in, way, step.dt, first, last);
+  if (stage != Stage::search)
+    return;
+  const std::size_t count = surface_.vertices.size();
+  for (std::size_t p = count * share.thread / share.threads; p < count * (share.thread + 1) / share.threads; ++p)
+    found_[p] = search(p);
 }
 
 template <class Real>
-typename TissueContact<Real>::PairForce TissueContact<Real>::touch(std::size_t p, Track& track,
-                                                                   const std::vector<Placed>& placed, double response,
-                                                                   double& gap) const
+void TissueContact<Real>::touch(Arena& arena, double way, double dt, std::int32_t first, std::int32_t last) const
 {
-  const Foot foot = follow(track.triangle, placed[p].place, placed);
-  gap = foot.gap - double(overlap_[p]);
-  const double stiff = gap < 0 && gap > -deepest_held * surface_.edge ? stiffness(p, track.triangle, foot, placed) : 0;
-  const double friction = model_.self_contacts[surface_.vertices[p].contact].friction;
-  PairForce pair;
-  physics::Grip<double> grip{ { 0, 0, 0 }, track.pressed, track.along };
-  if (!(stiff > 0))
-  {
-    if (track.along > 0)
-      pair.lost = physics::let_go<double>(grip, track.stiffness, response);
-    else
-      grip.normal -= response * grip.normal;
-    if (friction == 0 || grip.normal <= double(stiffness_[p]) * physics::forgotten_depth)
-      grip.normal = 0;
-    const Touching now = track.touches == Touching::yes ? Touching::let_go : Touching::no;
-    track = { track.triangle, now, 0, grip.normal, 0, { 0, 0, 0 } };
-    return pair;
-  }
-  Vector way{ 0, 0, 0 };
-  const auto& corners = surface_.triangles[track.triangle].vertex;
-  if (track.touches == Touching::yes && friction > 0)
-  {
-    way = track.stretch + (placed[p].place - placed[p].before);
-    for (int i = 0; i < 3; ++i)
-      way = way - physics::carried(foot, i, placed[corners[i]].place - placed[corners[i]].before);
-  }
-  const auto held = physics::touch<double>({ gap, foot.gradient, 0, 0 }, way, grip, stiff, friction, response);
-  const double pressed = -stiff * gap;
-  const Vector along = held.force - pressed * foot.gradient;
-  pair.point = held.force;
-  const physics::SurfaceTriangle<double> triangle = surface_.triangle(track.triangle, placed);
-  for (int i = 0; i < 3; ++i)
-  {
-    pair.corner[i] = physics::corner_force(triangle, foot, i, pressed, along);
-    pair.turn[i] = physics::corner_turn(triangle, foot, i, pressed);
-  }
-  pair.stored = held.stored;
-  pair.lost = held.lost;
-  track = { track.triangle,   Touching::yes,   stiff,
-            held.grip.normal, held.grip.along, (-1 / (physics::sticking_stiffness * stiff)) * along };
-  return pair;
+  kernels_.touch({ arena.pair_vertices.data(), arena.pairs.data(), arena.forces.data(), arena.due.data(),
+                   arena.touches.data(), arena.moved, way, static_cast<Real>(physics::friction_response(dt)),
+                   static_cast<Real>(deepest_held * surface_.edge), static_cast<Real>(patience * surface_.edge), rubs_,
+                   go_on, &arena },
+                 first, last);
 }
 
+// Adds up the forces on vertices whose voxels have nodes in the share, in the order of the pairs.
 template <class Real>
-void TissueContact<Real>::voxel_readings(std::size_t p, double way, double response)
+void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std::vector<Real>& sums,
+                                 std::vector<std::uint8_t>& summed, std::vector<double>& lost) const
 {
-  due_[p] = std::numeric_limits<double>::max();
-  for (std::size_t k = p * most_tracks; k < (p + 1) * most_tracks; ++k)
+  const auto begin = static_cast<std::uint32_t>(plane_points_[std::max(share.first_plane - 1, 0)]);
+  const auto count = static_cast<std::uint32_t>(plane_points_[share.end_plane]) - begin;
+  // all numbers of a record are read first, so that compilers can take them as one
+  const auto add = [](Real sign, const Real* from, Real* to)
   {
-    Track& track = tracks_[k];
-    if (track.triangle < 0)
-      continue;
-    double gap;
-    pairs_[k] = touch(p, track, placed_, response, gap);
-    // two may come to the same triangle
-    if (k % most_tracks > 0 && track.triangle == tracks_[k - 1].triangle)
-    {
-      pairs_[k] = {};
-      track = {};
-      continue;
-    }
-    const bool holds = track.touches != Touching::no || track.pressed > 0;
-    due_[p] = std::min(due_[p], holds ? way : way + (gap > 0 ? 0.5 * gap : patience * surface_.edge));
-  }
-}
-
-// Adds up the forces on the vertices [begin, end), in the order of the vertices that touch.
-template <class Real>
-void TissueContact<Real>::add_vertex_forces(VertexForces& sum, const NodeShare& share, std::int32_t begin,
-                                            std::int32_t end)
-{
-  const auto add = [&](std::int32_t v, const Vector& force, const Vector& turn)
-  {
-    if (v < begin || v >= end)
-      return;
-    sum.force[v] = sum.force[v] + force;
-    sum.turn[v] = sum.turn[v] + turn;
-    if (sum.touches[v] == 0)
-      sum.touching.push_back(v);
-    sum.touches[v] = 1;
+    const Real record[4] = { to[0] + sign * from[0], to[1] + sign * from[1], to[2] + sign * from[2],
+                             to[3] + sign * from[3] };
+    std::copy(record, record + 4, to);
   };
-  for (std::size_t c = 0; c < chunks_.size(); ++c)
-    for (std::size_t k = c * chunk_size * most_tracks; chunks_[c].touches != 0 && k < end_of(c) * most_tracks; ++k)
+  for (std::int32_t b = 0; b < arena.blocks; ++b)
+    for (int lane = 0; arena.touches[b] != 0 && lane < touch_width; ++lane)
     {
-      const Track& track = tracks_[k];
-      if (track.touches == Touching::no)
+      const PairVertices& pairs = arena.pair_vertices[b];
+      const PairForceBlock<Real>& force = arena.forces[b];
+      if (rubs_)
+        if (const auto plane = model_.voxels[surface_.vertices[pairs.vertex[0][lane]].voxel][2];
+            plane >= share.first_plane && plane < share.end_plane)
+          lost[plane] += double(force.lost[lane]);
+      if ((arena.touches[b] >> lane & 1) == 0)
         continue;
-      const auto p = static_cast<std::int32_t>(k / most_tracks);
-      if (const auto plane = model_.voxels[surface_.vertices[p].voxel][2];
-          plane >= share.first_plane && plane < share.end_plane)
-        lost_[plane] += pairs_[k].lost;
-      if (track.touches == Touching::let_go)
-        continue;
-      add(p, pairs_[k].point, { 0, 0, 0 });
-      for (std::size_t i = 0; i < 3; ++i)
-        add(surface_.triangles[track.triangle].vertex[i], pairs_[k].corner[i], pairs_[k].turn[i]);
+      const std::int32_t record = kernels_.record[lane];
+      const auto sum = [&](int i) -> Real*
+      {
+        const std::int32_t v = pairs.vertex[i][lane];
+        if (static_cast<std::uint32_t>(v) - begin >= count)
+          return nullptr;
+        summed[v / touch_width] = 1;
+        return sums.data() + 8 * std::ptrdiff_t{ v };
+      };
+      Real* const of_point = sum(0);
+      for (int i = 0; i < 3; ++i)
+      {
+        if (of_point != nullptr)
+          add(-1, force.corner[i] + record, of_point);
+        Real* const of_corner = sum(i + 1);
+        if (of_corner == nullptr)
+          continue;
+        add(1, force.corner[i] + record, of_corner);
+        add(1, force.turn[i] + record, of_corner + 4);
+      }
     }
+}
+
+// Calls sink(node, force) for nodes of the share on which the forces of add_up() act.
+template <class Real>
+template <class Sink>
+void TissueContact<Real>::push(const NodeShare& share, const Moved& moved, std::vector<Real>& sums,
+                               std::vector<std::uint8_t>& summed, std::vector<Real>& node_forces,
+                               const Sink& sink) const
+{
+  bool any = false;
+  for (std::size_t b = 0; b < summed.size(); ++b)
+    if (summed[b] != 0)
+    {
+      kernels_.spread(vertex_blocks_.data(), moved, sums.data(), node_forces.data(), static_cast<std::int32_t>(b),
+                      share.first_plane, share.end_plane);
+      summed[b] = 0;
+      any = true;
+    }
+  if (!any)
+    return;
+  const auto begin =
+      std::lower_bound(bound_nodes_.begin(), bound_nodes_.end(), share.first_node) - bound_nodes_.begin();
+  const auto end = std::lower_bound(bound_nodes_.begin(), bound_nodes_.end(), share.end_node) - bound_nodes_.begin();
+  for (auto n = begin; n < end; ++n)
+  {
+    Real* const f = node_forces.data() + 4 * n;
+    if (f[0] == 0 && f[1] == 0 && f[2] == 0)
+      continue;
+    sink(bound_nodes_[n], { { double(f[0]), double(f[1]), double(f[2]) } });
+    f[0] = f[1] = f[2] = 0;
+  }
 }
 
 template <class Real>
 void TissueContact<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
 {
-  const std::int32_t first = plane_points_[std::max(share.first_plane - 1, 0)], end = plane_points_[share.end_plane];
-  VertexForces& sum = forces_[share.thread];
-  add_vertex_forces(sum, share, first, end);
-  for (const auto v : sum.touching)
-  {
-    push(v, sum.force[v], sum.turn[v], placed_[v], share,
-         [&](std::int32_t node, const Vector& part) {
-           sink(node, { { part.x, part.y, part.z } });
-         });
-    sum.force[v] = sum.turn[v] = { 0, 0, 0 };
-    sum.touches[v] = 0;
-  }
-  sum.touching.clear();
+  add_up(arena(next_.blocks), share, sums_[share.thread], summed_[share.thread], lost_);
+  push(share, moved_in(moved_), sums_[share.thread], summed_[share.thread], node_forces_, sink);
   if (share.thread != 0)
     return;
-  if (clock_[0].stage == Stage::search)
-    mark_live();
   next_.earliest = std::numeric_limits<double>::max();
-  for (const Chunk& chunk : chunks_)
-    next_.earliest = std::min(next_.earliest, chunk.due);
+  for (std::int32_t b = 0; b < next_.blocks; ++b)
+    next_.earliest = std::min(next_.earliest, due_[b]);
   clock_[0] = next_;
 }
 
@@ -354,29 +353,31 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
     return;
   double lost = std::accumulate(lost_.begin(), lost_.end(), 0.0), stored = 0;
   // The sums end at the start of the latest step. The rest is what the next step will add.
-  std::vector<Placed> placed = placed_;
-  for (std::size_t v = 0; v < placed.size(); ++v)
-    surface_.place(v, u, placed[v]);
-  const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
-  const auto add = [&](std::size_t v, const Vector& force, const Vector& turn)
+  std::vector<Real> components = moved_;
+  std::vector<PairVertices> pair_vertices = pair_vertices_;
+  std::vector<PairBlock<Real>> pairs = pairs_;
+  std::vector<PairForceBlock<Real>> pair_forces(pairs.size());
+  std::vector<double> due(pairs.size(), 0), no_losses(lost_.size(), 0);
+  std::vector<std::uint32_t> touches(pairs.size(), 0);
+  const Moved moved = moved_in(components);
+  kernels_.place(vertex_blocks_.data(), moved, { u[0], u[1], u[2] }, 0,
+                 static_cast<std::int32_t>(vertex_blocks_.size()));
+  Arena copy{ pair_vertices, pairs, pair_forces, due, touches, moved, this, clock_[0].blocks };
+  touch(copy, 0, clock_[0].dt, 0, copy.blocks);
+  for (std::int32_t b = 0; b < copy.blocks; ++b)
+    for (int lane = 0; lane < touch_width; ++lane)
+    {
+      stored += double(pair_forces[b].stored[lane]);
+      lost += double(pair_forces[b].lost[lane]);
+    }
+  if (!forces.empty())
   {
-    push(v, force, turn, placed[v], all,
-         [&](std::int32_t node, const Vector& part) { add_vector(forces[node], part); });
-  };
-  for (std::size_t k = 0; k < tracks_.size(); ++k)
-  {
-    Track track = tracks_[k];
-    if (track.triangle < 0)
-      continue;
-    double gap;
-    const PairForce pair = touch(k / most_tracks, track, placed, physics::friction_response(clock_[0].dt), gap);
-    stored += pair.stored;
-    lost += pair.lost;
-    if (track.touches != Touching::yes || forces.empty())
-      continue;
-    add(k / most_tracks, pair.point, { 0, 0, 0 });
-    for (std::size_t i = 0; i < 3; ++i)
-      add(surface_.triangles[track.triangle].vertex[i], pair.corner[i], pair.turn[i]);
+    const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
+    std::vector<Real> sums(8 * stride(), 0), node_forces(node_forces_.size(), 0);
+    std::vector<std::uint8_t> summed(vertex_blocks_.size(), 0);
+    add_up(copy, all, sums, summed, no_losses);
+    push(all, moved, sums, summed, node_forces,
+         [&](std::int32_t node, const std::array<double, 3>& part) { add_vector(forces[node], vector(part)); });
   }
   if (open)
     opened_[0] = lost;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "frontalis/physics/contact.hpp"
-#include "frontalis/physics/trilinear.hpp"
+#include "frontalis/physics/surface_foot.hpp"
 #include "solver/contact/bound_node_way.hpp"
 #include "solver/contact/touching_surface.hpp"
 #include "solver/contact/triangle_grid.hpp"
+#include "solver/cpu/touch_kernel.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <array>
@@ -14,22 +14,23 @@ namespace frontalis
 {
 
 /// Contact of the tissue's surfaces with each other and with themselves. Each vertex of a surface is pushed out of the
-/// triangles of others, and the corners of the triangle in the opposite direction. Each side has half of the stiffness,
-/// because both are pushed out of the other.
+/// triangles of others, and the corners of the triangle in the opposite direction (physics/surface_touch.hpp). Each
+/// side has half of the stiffness, because both are pushed out of the other.
 ///
-/// A vertex holds on to at most `most_tracks` triangles that face it and follows the surface from one to the next.
-/// Which they are is found with a grid, in two steps: in the first all triangles are sorted into cells, in the second
-/// each vertex looks at those near it. This is renewed when nodes have moved by so much that a vertex and a triangle
-/// that were farther apart than the search reaches could touch. Between two renewals a vertex that is `d` from its
-/// triangles is not looked at before vertices have moved by that much.
+/// A vertex forms pairs with at most `most_pairs` triangles that face it and follows the surface from one triangle to
+/// the next. They are found with a grid, in three steps: in the first all triangles are sorted into cells, in the
+/// second each vertex looks at those near it, in the third the pairs are put into blocks. This is renewed when nodes
+/// have moved by so much that a vertex and a triangle that were farther apart than the search reaches could touch.
+/// Between two renewals the pairs of a block that are `d` apart are not looked at before vertices have moved by that
+/// much, and vertices far from all pairs are not placed.
 ///
-/// Threads first place the vertices: prepare_step(). Each then finds the forces of its part of them: before_step(), and
-/// adds those on nodes of its planes in the order of the vertices: add_forces().
+/// Threads first place the vertices: prepare_step(). Each then finds the forces of its part of the pairs:
+/// before_step(), and adds those on nodes of its planes in the order of the pairs: add_forces().
 template <class Real>
 class TissueContact : public NodePart<Real>
 {
 public:
-  TissueContact(const Model& model, const Discretisation& discretisation);
+  TissueContact(const Model& model, const Discretisation& discretisation, const TouchKernels<Real>& kernels);
 
   void run(EffectSet running) override;
   void reset() override;
@@ -46,116 +47,107 @@ public:
 
 private:
   using Vector = physics::Vec3<double>;
-  using Placed = TouchingSurface::Placed;
   using Foot = physics::SurfaceFoot<double>;
+  using Moved = MovedVertices<Real>;
 
-  static constexpr std::int32_t most_tracks = 2, chunk_size = 64;
+  static constexpr std::size_t most_pairs = 2;
 
-  // A triangle that a vertex holds on to, and what friction knows of the two.
-  enum class Touching : std::int32_t
-  {
-    no,
-    yes,
-    let_go  // in this step
-  };
-  struct Track
-  {
-    std::int32_t triangle = -1;  // -1: none
-    Touching touches = Touching::no;
-    double stiffness = 0;           // when it touched last [N/m]
-    double pressed = 0, along = 0;  // physics::Grip
-    Vector stretch{ 0, 0, 0 };      // along the surface, of the stiffness that makes it stick [m]
-  };
-  struct PairForce
-  {
-    Vector point{ 0, 0, 0 };         // [N]
-    std::array<Vector, 3> corner{};  // [N]
-    std::array<Vector, 3> turn{};    // of the corners' normals [N m]
-    double stored = 0, lost = 0;     // [J]
-  };
-  struct Chunk
-  {
-    double due = 0;            // the earliest of its vertices
-    std::int64_t touches = 0;  // whether one does, or let go in this step
-  };
   enum class Stage : std::int32_t
   {
-    sort,    // triangles, in the next step
-    search,  // among them, in the step after that
+    sort,     // triangles, in the next step
+    search,   // among them, in the step after that
+    collect,  // the pairs that were found, at the start of the step after that
     hold
   };
   struct Clock
   {
     double way = 0;       // by which a vertex and a triangle can have come closer to each other [m]
-    double earliest = 0;  // due of all chunks
+    double earliest = 0;  // due_ of all blocks
     double renewal = 0;   // way at which the search is repeated
     double dt = 0;        // of the latest step [s]; 0: there was none
     Stage stage = Stage::sort;
-    std::int32_t unused = 0;
+    std::int32_t blocks = 0;  // of pairs
+  };
+  struct Found
+  {
+    std::array<std::int32_t, most_pairs> triangle{ { -1, -1 } };  // -1: none
+    std::array<double, most_pairs> away{};                        // [m]
+  };
+  // A pair and what friction knows of it.
+  struct Pair
+  {
+    std::int32_t vertex, triangle;
+    Real held, pressed, along, stretch[3];
+  };
+  // What finding the forces of pairs needs and changes.
+  struct Arena
+  {
+    std::vector<PairVertices>& pair_vertices;
+    std::vector<PairBlock<Real>>& pairs;
+    std::vector<PairForceBlock<Real>>& forces;
+    std::vector<double>& due;
+    std::vector<std::uint32_t>& touches;
+    Moved moved;
+    const TissueContact* contact;
+    std::int32_t blocks;
   };
 
-  struct VertexForces
+  std::size_t stride() const { return vertex_blocks_.size() * touch_width; }
+  Moved moved_in(std::vector<Real>& components) const;
+  Arena arena(std::int32_t blocks)
   {
-    std::vector<Vector> force, turn;  // of vertices that touch [N], [N m]
-    std::vector<std::uint8_t> touches;
-    std::vector<std::int32_t> touching;
-  };
-
-  std::pair<std::size_t, std::size_t> chunks_of(const NodeShare& share) const
-  {
-    return { chunks_.size() * share.thread / share.threads, chunks_.size() * (share.thread + 1) / share.threads };
+    return { pair_vertices_, pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks };
   }
-  std::size_t end_of(std::size_t chunk) const { return std::min((chunk + 1) * chunk_size, surface_.vertices.size()); }
   double way_now() const;
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
+  Vector place(std::size_t v, const Moved& moved) const;
+  Vector normal(std::size_t v, const Moved& moved) const;
+  physics::SurfaceTriangle<double> triangle(std::int32_t t, const Moved& moved) const;
+  void make_vertex_blocks();
+  void touch(Arena& arena, double way, double dt, std::int32_t first, std::int32_t last) const;
   void sort_triangles();
-  void search(std::size_t p);
-  bool meets(std::size_t p, std::int32_t t, double& gap) const;
-  Foot follow(std::int32_t& t, const Vector& x, const std::vector<Placed>& placed) const;
-  double stiffness(std::size_t p, std::int32_t t, const Foot& foot, const std::vector<Placed>& placed) const;
-  PairForce touch(std::size_t p, Track& track, const std::vector<Placed>& placed, double response, double& gap) const;
-  void voxel_readings(std::size_t p, double way, double response);
+  bool meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const;
+  bool adjoin(std::int32_t t, std::int32_t s) const;
+  Found search(std::size_t p);
+  Foot follow(std::int32_t& t, const Vector& x, const Moved& moved) const;
+  static void go_on(void* arena, std::int32_t block, int lane);
+  void set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const;
+  void collect_pairs();
   void mark_live();
   void find_overlap_at_rest();
-  void add_vertex_forces(VertexForces& sum, const NodeShare& share, std::int32_t begin, std::int32_t end);
-  /// Calls push(node, force) for the forces on nodes in a share that belong to a vertex's force and to the turn of its
-  /// normal.
-  template <class Push>
-  void push(std::size_t p, const Vector& force, const Vector& turn, const Placed& placed, const NodeShare& share,
-            const Push& push) const
-  {
-    const auto& vertex = surface_.vertices[p];
-    const auto& nodes = model_.voxel_nodes[vertex.voxel];
-    double weight[8];
-    physics::trilinear_weights<double>(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
-    const double first = dot(turn, placed.dual[0]), second = dot(turn, placed.dual[1]);
-    const std::int32_t plane = model_.voxels[vertex.voxel][2];
-    for (int b = 0; b < 8; ++b)
-      if (plane + (b >> 2) >= share.first_plane && plane + (b >> 2) < share.end_plane)
-        push(nodes[b], weight[b] * force -
-                           (first * double(vertex.along[0][b]) + second * double(vertex.along[1][b])) * placed.normal);
-  }
+  void add_up(const Arena& arena, const NodeShare& share, std::vector<Real>& sums, std::vector<std::uint8_t>& summed,
+              std::vector<double>& lost) const;
+  template <class Sink>
+  void push(const NodeShare& share, const Moved& moved, std::vector<Real>& sums, std::vector<std::uint8_t>& summed,
+            std::vector<Real>& node_forces, const Sink& sink) const;
 
   const Model& model_;
+  TouchKernels<Real> kernels_;
   TouchingSurface surface_;
-  bool runs_ = true;
-  double reach_;                            // how far from a triangle a vertex finds it [m]
-  std::vector<float> stiffness_;            // of each vertex [N/m]
-  std::vector<float> per_area_;             // the same over its area [N/m3]
-  std::vector<float> overlap_;              // of each vertex at rest, from which its depth counts; not positive [m]
+  bool runs_ = true, rubs_ = false;
+  double reach_;                  // how far from a triangle a vertex finds it [m]
+  std::vector<float> stiffness_;  // of each vertex [N/m]
+  std::vector<float> per_area_;   // the same over its area [N/m3]
+  std::vector<float> overlap_;    // of each vertex at rest, from which its depth counts; not positive [m]
+  std::vector<VertexBlock<Real>> vertex_blocks_;
+  std::vector<std::int32_t> bound_nodes_;   // ascending
   std::vector<std::int32_t> plane_points_;  // first vertex in each plane of voxels, twice more their number
   BoundNodeWay nodes_;
   // of the step under way
-  std::vector<PairForce> pairs_;      // of tracks that touch
-  std::vector<VertexForces> forces_;  // one per thread
+  std::vector<PairForceBlock<Real>> forces_;
+  std::vector<std::uint32_t> touches_;             // PairArguments::touches
+  std::vector<std::vector<Real>> sums_;            // of forces and turns of vertices, one list per thread
+  std::vector<std::vector<std::uint8_t>> summed_;  // whether a block of vertices has some, one list per thread
+  std::vector<Real> node_forces_;                  // on bound nodes, four numbers each [N]
   Clock next_;
 
   // state
-  std::vector<Placed> placed_;      // vertices at the start of the latest step in which they were needed
-  std::vector<std::uint8_t> live_;  // whether a vertex is near one that it may touch
-  std::vector<Track> tracks_;       // `most_tracks` of each vertex
-  std::vector<double> due_;         // Clock::way at which a vertex is looked at again
-  std::vector<Chunk> chunks_;
+  std::vector<Real> moved_;         // MovedVertices, at the start of the latest step in which they were needed
+  std::vector<std::uint8_t> live_;  // whether a block of vertices is near one that it may touch
+  std::vector<PairVertices> pair_vertices_;
+  std::vector<PairBlock<Real>> pairs_;
+  std::vector<double> due_;  // Clock::way at which a block of pairs is looked at again
+  std::vector<Found> found_;
   std::vector<Clock> clock_;      // one entry
   std::vector<double> node_way_;  // longest way of a bound node in the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // to friction, one per plane of voxels [J]

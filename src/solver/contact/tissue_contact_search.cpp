@@ -25,20 +25,52 @@ constexpr double same_way = 0.5;
 // Way of a vertex over the surface between two steps, in triangles.
 constexpr int most_hops = 16;
 
-// Triangles around one that a vertex holds on to, whose corners are placed in each step.
+// Triangles around one of a pair, whose corners are placed in each step.
 constexpr int rings = 3;
 
 // Motion between the sorting of triangles and the search, over the reach.
 constexpr double margin = 1.1;
 
+template <class Real>
+Vector record(const Real* records, std::size_t v)
+{
+  const Real* const r = records + v * MovedVertices<Real>::stride;
+  return { double(r[0]), double(r[1]), double(r[2]) };
+}
+
 }  // namespace
+
+template <class Real>
+physics::Vec3<double> TissueContact<Real>::place(std::size_t v, const Moved& moved) const
+{
+  return surface_.vertices[v].rest + record(moved.record, v);
+}
+
+template <class Real>
+physics::Vec3<double> TissueContact<Real>::normal(std::size_t v, const Moved& moved) const
+{
+  return record(moved.record + 4, v);
+}
+
+template <class Real>
+physics::SurfaceTriangle<double> TissueContact<Real>::triangle(std::int32_t t, const Moved& moved) const
+{
+  physics::SurfaceTriangle<double> out;
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const auto v = surface_.triangles[t].vertex[i];
+    out.corner[i] = place(v, moved);
+    out.normal[i] = normal(v, moved);
+  }
+  return out;
+}
 
 // The surface's triangle under x, from one near it. Triangles whose corners are not placed are not entered.
 template <class Real>
 typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, const Vector& x,
-                                                               const std::vector<Placed>& placed) const
+                                                               const Moved& moved) const
 {
-  Foot foot = physics::surface_foot(surface_.triangle(t, placed), x);
+  Foot foot = physics::surface_foot(triangle(t, moved), x);
   for (int hop = 0; hop < most_hops; ++hop)
   {
     std::int32_t to = -1;
@@ -49,7 +81,7 @@ typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, 
       if (across < 0 || foot.weight[i] >= least)
         continue;
       const auto& corners = surface_.triangles[across].vertex;
-      if (!std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) { return live_[v] != 0; }))
+      if (!std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) { return live_[v / touch_width] != 0; }))
         continue;
       least = foot.weight[i];
       to = across;
@@ -57,20 +89,79 @@ typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, 
     if (to < 0)
       break;
     t = to;
-    foot = physics::surface_foot(surface_.triangle(t, placed), x);
+    foot = physics::surface_foot(triangle(t, moved), x);
   }
   return foot;
+}
+
+// Called by the kernel. Pairs of a vertex are neighbours in a block; where both come to the same triangle, the second
+// ends.
+template <class Real>
+void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
+{
+  const Arena& in = *static_cast<const Arena*>(arena);
+  const TissueContact& contact = *in.contact;
+  PairVertices& at = in.pair_vertices[block];
+  PairBlock<Real>& b = in.pairs[block];
+  const std::int32_t p = at.vertex[0][lane];
+  Pair pair{ p,
+             at.triangle[lane],
+             b.held[lane],
+             b.pressed[lane],
+             b.along[lane],
+             { b.stretch[0][lane], b.stretch[1][lane], b.stretch[2][lane] } };
+  contact.follow(pair.triangle, contact.place(p, in.moved), in.moved);
+  if (pair.triangle == at.triangle[lane])
+    return;
+  contact.set_lane(at, b, lane, pair);
+  for (const int other : { lane - 1, lane + 1 })
+    if (other >= 0 && other < touch_width && at.vertex[0][other] == p && at.triangle[other] == pair.triangle)
+    {
+      const int second = std::max(lane, other);
+      at.triangle[second] = -1;
+      b.stiffness[second] = b.held[second] = b.pressed[second] = b.along[second] = 0;
+    }
+}
+
+template <class Real>
+void TissueContact<Real>::set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const
+{
+  const auto& triangle = surface_.triangles[pair.triangle];
+  const auto p = pair.vertex;
+  vertices.vertex[0][lane] = p;
+  vertices.triangle[lane] = pair.triangle;
+  const Vector origin = surface_.vertices[triangle.vertex[0]].rest;
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const auto v = triangle.vertex[i];
+    vertices.vertex[i + 1][lane] = v;
+    block.softer[i][lane] = static_cast<Real>(per_area_[v] / per_area_[p]);
+    block.inner[i][lane] = triangle.neighbour[i] < 0 ? 0 : 1;
+    const Vector way = surface_.vertices[i == 0 ? p : v].rest - origin;
+    block.rest[i][0][lane] = static_cast<Real>(way.x);
+    block.rest[i][1][lane] = static_cast<Real>(way.y);
+    block.rest[i][2][lane] = static_cast<Real>(way.z);
+    block.stretch[i][lane] = pair.stretch[i];
+  }
+  block.stiffness[lane] = stiffness_[p];
+  block.overlap[lane] = overlap_[p];
+  block.friction[lane] = static_cast<Real>(model_.self_contacts[surface_.vertices[p].contact].friction);
+  block.held[lane] = pair.held;
+  block.pressed[lane] = pair.pressed;
+  block.along[lane] = pair.along;
 }
 
 template <class Real>
 void TissueContact<Real>::sort_triangles()
 {
+  const Moved moved = moved_in(moved_);
   std::vector<Vector> centres;
+  centres.reserve(surface_.triangles.size());
   double largest = 0;
   for (const auto& triangle : surface_.triangles)
   {
-    const Vector &a = placed_[triangle.vertex[0]].place, &b = placed_[triangle.vertex[1]].place,
-                 &c = placed_[triangle.vertex[2]].place;
+    const Vector a = place(triangle.vertex[0], moved), b = place(triangle.vertex[1], moved),
+                 c = place(triangle.vertex[2], moved);
     centres.push_back((1.0 / 3) * (a + b + c));
     for (const Vector* const corner : { &a, &b, &c })
     {
@@ -83,63 +174,109 @@ void TissueContact<Real>::sort_triangles()
 
 // Whether a vertex has a triangle of a facing surface in front of it within the reach, or just behind.
 template <class Real>
-bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, double& gap) const
+bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const
 {
-  const auto& triangle = surface_.triangles[t];
-  const Placed &point = placed_[p], &a = placed_[triangle.vertex[0]];
-  const Vector way = point.place - a.place;
+  const auto& corners = surface_.triangles[t];
+  const Vector point = place(p, moved), inward = normal(p, moved), way = point - place(corners.vertex[0], moved);
   const double farthest = 2 * grid_.reach() - margin * reach_;
-  if (dot(way, way) > farthest * farthest || dot(point.normal, a.normal) > same_way ||
-      surface_.vertices[p].contact != surface_.vertices[triangle.vertex[0]].contact)
+  if (dot(way, way) > farthest * farthest || dot(inward, normal(corners.vertex[0], moved)) > same_way ||
+      surface_.vertices[p].contact != surface_.vertices[corners.vertex[0]].contact)
     return false;
-  const Foot foot = physics::surface_foot(surface_.triangle(t, placed_), point.place);
+  const Foot foot = physics::surface_foot(triangle(t, moved), point);
   gap = foot.gap - double(overlap_[p]);
-  if (gap > reach_ || gap < -deepest_found * surface_.edge || dot(foot.normal, point.normal) > 0)
+  if (gap > reach_ || gap < -deepest_found * surface_.edge || dot(foot.normal, inward) > 0)
     return false;
   for (std::size_t i = 0; i < 3; ++i)
   {
-    const double beyond = triangle.neighbour[i] < 0 ? reach_ * norm(foot.slope[i]) : foot_error;
+    const double beyond = corners.neighbour[i] < 0 ? reach_ * norm(foot.slope[i]) : foot_error;
     if (foot.weight[i] < -beyond)
       return false;
   }
   return !surface_.inseparable(p, t);
 }
 
+// Whether triangles have a corner in common.
 template <class Real>
-void TissueContact<Real>::search(std::size_t p)
+bool TissueContact<Real>::adjoin(std::int32_t t, std::int32_t s) const
 {
-  Track* const tracks = tracks_.data() + p * most_tracks;
-  std::array<double, most_tracks> away;
-  for (std::size_t k = 0; k < most_tracks; ++k)
-  {
-    // what touches is held in any case
-    const bool held = tracks[k].touches != Touching::no || tracks[k].pressed > 0;
-    if (!held)
-      tracks[k] = {};
-    away[k] = held ? -1 : 2 * reach_;
-  }
-  const auto adjoin = [&](std::int32_t t, std::int32_t s)
-  {
-    const auto &a = surface_.triangles[t].vertex, &b = surface_.triangles[s].vertex;
-    return std::any_of(a.begin(), a.end(), [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
-  };
-  grid_.near(placed_[p].place,
+  const auto &a = surface_.triangles[t].vertex, &b = surface_.triangles[s].vertex;
+  return std::any_of(a.begin(), a.end(), [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+}
+
+// The nearest triangles that a vertex may touch, one of each surface there.
+template <class Real>
+typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
+{
+  const Moved moved = moved_in(moved_);
+  Found found;
+  found.away.fill(2 * reach_);
+  grid_.near(place(p, moved),
              [&](std::int32_t t)
              {
                double gap;
-               if (!meets(p, t, gap))
+               if (!meets(p, t, moved, gap))
                  return;
                // it replaces the triangle of the same surface there, or the farthest
-               std::size_t k = away[0] > away[1] ? 0 : 1;
-               for (std::size_t same = 0; same < most_tracks; ++same)
-                 if (tracks[same].triangle >= 0 && adjoin(t, tracks[same].triangle))
+               std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
+               for (std::size_t same = 0; same < most_pairs; ++same)
+                 if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))
                    k = same;
-               if (std::abs(gap) >= away[k])
+               if (std::abs(gap) >= found.away[k])
                  return;
-               away[k] = std::abs(gap);
-               tracks[k].triangle = t;
+               found.away[k] = std::abs(gap);
+               found.triangle[k] = t;
              });
-  due_[p] = 0;
+  return found;
+}
+
+// Forms blocks of the pairs that touch, and of those that the search has found.
+template <class Real>
+void TissueContact<Real>::collect_pairs()
+{
+  std::vector<Pair> held;
+  for (std::int32_t b = 0; b < clock_[0].blocks; ++b)
+    for (int l = 0; l < touch_width; ++l)
+      if (const PairBlock<Real>& from = pairs_[b]; from.held[l] > 0 || from.pressed[l] > 0)
+        held.push_back({ pair_vertices_[b].vertex[0][l],
+                         pair_vertices_[b].triangle[l],
+                         from.held[l],
+                         from.pressed[l],
+                         from.along[l],
+                         { from.stretch[0][l], from.stretch[1][l], from.stretch[2][l] } });
+  std::int32_t blocks = 0;
+  std::size_t lanes = touch_width;  // of the last block
+  auto next = held.begin();
+  for (std::int32_t p = 0; p < static_cast<std::int32_t>(found_.size()); ++p)
+  {
+    std::vector<Pair> of_vertex;
+    while (next != held.end() && next->vertex == p)
+      of_vertex.push_back(*next++);
+    const Found& found = found_[p];
+    const std::size_t nearest = found.away[0] <= found.away[1] ? 0 : 1;
+    for (const std::size_t k : { nearest, 1 - nearest })
+      if (const auto t = found.triangle[k];
+          t >= 0 && of_vertex.size() < most_pairs &&
+          std::none_of(of_vertex.begin(), of_vertex.end(), [&](const Pair& pair) { return adjoin(pair.triangle, t); }))
+        of_vertex.push_back({ p, t, 0, 0, 0, {} });
+    if (of_vertex.empty())
+      continue;
+    if (lanes + of_vertex.size() > touch_width)
+    {
+      // lanes that stay empty are copies of this pair without stiffness
+      for (int l = 0; l < touch_width; ++l)
+      {
+        set_lane(pair_vertices_[blocks], pairs_[blocks], l, { p, of_vertex[0].triangle, 0, 0, 0, {} });
+        pairs_[blocks].stiffness[l] = 0;
+        pair_vertices_[blocks].triangle[l] = -1;
+      }
+      lanes = 0;
+      due_[blocks++] = 0;
+    }
+    for (const Pair& pair : of_vertex)
+      set_lane(pair_vertices_[blocks - 1], pairs_[blocks - 1], static_cast<int>(lanes++), pair);
+  }
+  clock_[0].blocks = blocks;
+  mark_live();
 }
 
 template <class Real>
@@ -149,43 +286,43 @@ void TissueContact<Real>::mark_live()
   const auto mark = [&](const auto& self, std::int32_t t, int left) -> void
   {
     for (const auto v : surface_.triangles[t].vertex)
-      live_[v] = 1;
+      live_[v / touch_width] = 1;
     for (const auto across : surface_.triangles[t].neighbour)
       if (left > 0 && across >= 0)
         self(self, across, left - 1);
   };
-  for (std::size_t k = 0; k < tracks_.size(); ++k)
-    if (tracks_[k].triangle >= 0)
-    {
-      live_[k / most_tracks] = 1;
-      mark(mark, tracks_[k].triangle, rings);
-    }
+  for (std::int32_t b = 0; b < clock_[0].blocks; ++b)
+    for (int l = 0; l < touch_width; ++l)
+      if (const PairVertices& pairs = pair_vertices_[b]; pairs.triangle[l] >= 0)
+      {
+        live_[pairs.vertex[0][l] / touch_width] = 1;
+        mark(mark, pairs.triangle[l], rings);
+      }
 }
 
 // Surfaces that meet at rest, such as closed lips, may overlap by as much as their triangles err.
 template <class Real>
 void TissueContact<Real>::find_overlap_at_rest()
 {
+  const std::vector<Real> still(model_.nodes.size(), 0);
+  const Moved moved = moved_in(moved_);
+  kernels_.place(vertex_blocks_.data(), moved, { still.data(), still.data(), still.data() }, 0,
+                 static_cast<std::int32_t>(vertex_blocks_.size()));
   sort_triangles();
   std::vector<float> overlap(overlap_.size(), 0);
   for (std::size_t p = 0; p < overlap.size(); ++p)
-  {
-    search(p);
-    for (std::size_t k = p * most_tracks; k < (p + 1) * most_tracks; ++k)
-      if (tracks_[k].triangle >= 0)
-        overlap[p] =
-            std::min(overlap[p], static_cast<float>(follow(tracks_[k].triangle, placed_[p].place, placed_).gap));
-  }
+    for (auto t : search(p).triangle)
+      if (t >= 0)
+        overlap[p] = std::min(overlap[p], static_cast<float>(follow(t, place(p, moved), moved).gap));
   reset();
   overlap_ = overlap;
 }
 
-#define FRONTALIS_TISSUE_CONTACT_SEARCH(Real)                                                       \
-  template TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t&, const Vector&,      \
-                                                                 const std::vector<Placed>&) const; \
-  template void TissueContact<Real>::sort_triangles();                                              \
-  template void TissueContact<Real>::search(std::size_t);                                           \
-  template void TissueContact<Real>::mark_live();                                                   \
+#define FRONTALIS_TISSUE_CONTACT_SEARCH(Real)                                            \
+  template void TissueContact<Real>::go_on(void*, std::int32_t, int);                    \
+  template void TissueContact<Real>::sort_triangles();                                   \
+  template typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t); \
+  template void TissueContact<Real>::collect_pairs();                                    \
   template void TissueContact<Real>::find_overlap_at_rest();
 FRONTALIS_TISSUE_CONTACT_SEARCH(float)
 FRONTALIS_TISSUE_CONTACT_SEARCH(double)

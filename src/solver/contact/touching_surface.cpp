@@ -1,6 +1,5 @@
 #include "solver/contact/touching_surface.hpp"
 
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 
 #include <algorithm>
@@ -74,32 +73,13 @@ std::vector<std::array<std::int32_t, 3>> smooth_neighbours(const TriangleMesh& m
   return neighbours;
 }
 
-void set_frame(TouchingSurface::Vertex& v, const std::array<double, 3>& spacing)
+void set_frame(TouchingSurface::Vertex& v)
 {
   const Vector& n = v.normal;
   const Vector axis = std::abs(n.x) < 0.7 ? Vector{ 1, 0, 0 } : Vector{ 0, 1, 0 };
   const Vector first = cross(axis, n);
   v.tangent[0] = (1 / norm(first)) * first;
   v.tangent[1] = cross(n, v.tangent[0]);
-  const double c[3] = { double(v.coordinates[0]), double(v.coordinates[1]), double(v.coordinates[2]) };
-  for (std::size_t k = 0; k < 2; ++k)
-  {
-    const Vector& t = v.tangent[k];
-    const double direction[3] = { t.x / spacing[0], t.y / spacing[1], t.z / spacing[2] };
-    for (int b = 0; b < 8; ++b)
-    {
-      double sum = 0;
-      for (int axis_of = 0; axis_of < 3; ++axis_of)
-      {
-        double product = ((b >> axis_of) & 1) != 0 ? direction[axis_of] : -direction[axis_of];
-        for (int other = 0; other < 3; ++other)
-          if (other != axis_of)
-            product *= ((b >> other) & 1) != 0 ? c[other] : 1 - c[other];
-        sum += product;
-      }
-      v.along[k][b] = static_cast<float>(sum);
-    }
-  }
 }
 
 }  // namespace
@@ -165,7 +145,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
       v.area_share = static_cast<float>(area / std::max(areas[source], 1e-30));
       v.rest = vector(mesh.vertices[source]);
       v.normal = (1 / std::max(norm(normal), 1e-30)) * normal;
-      set_frame(v, model_.spacing);
+      set_frame(v);
       vertices.push_back(v);
     }
   join(mesh, first_source, joined_within * *std::max_element(model_.spacing.begin(), model_.spacing.end()));
@@ -269,38 +249,5 @@ bool TouchingSurface::inseparable(std::size_t v, std::int32_t t) const
   return length < thickest_sheet * edge &&
          dot(way, normal) < -std::max(overlap_at_rest * edge, across_sheet * length) * norm(normal);
 }
-
-template <class Real>
-void TouchingSurface::place(std::size_t v, const Real* const u[3], Placed& at) const
-{
-  const Vertex& vertex = vertices[v];
-  const auto& nodes = model_.voxel_nodes[vertex.voxel];
-  const auto& c = vertex.coordinates;
-  Real weight[8];
-  physics::trilinear_weights<Real>(Real(c[0]), Real(c[1]), Real(c[2]), weight);
-  // displacement, and its derivatives along the tangents; rows of four, which compilers turn into vectors
-  Real sum[3][4] = {};
-  for (std::size_t b = 0; b < 8; ++b)
-  {
-    const Real moved[4] = { u[0][nodes[b]], u[1][nodes[b]], u[2][nodes[b]], 0 };
-    for (std::size_t axis = 0; axis < 4; ++axis)
-    {
-      sum[0][axis] += weight[b] * moved[axis];
-      sum[1][axis] += Real(vertex.along[0][b]) * moved[axis];
-      sum[2][axis] += Real(vertex.along[1][b]) * moved[axis];
-    }
-  }
-  const auto row = [&](std::size_t k) { return Vector{ double(sum[k][0]), double(sum[k][1]), double(sum[k][2]) }; };
-  const Vector place = vertex.rest + row(0), first = vertex.tangent[0] + row(1), second = vertex.tangent[1] + row(2);
-  const Vector area = cross(first, second);
-  at.before = at.place;
-  at.place = place;
-  const double scale = 1 / std::max(norm(area), 1e-12);
-  at.normal = scale * area;
-  at.dual = { { scale * cross(second, at.normal), scale * cross(at.normal, first) } };
-}
-
-template void TouchingSurface::place(std::size_t, const float* const[3], Placed&) const;
-template void TouchingSurface::place(std::size_t, const double* const[3], Placed&) const;
 
 }  // namespace frontalis

@@ -27,8 +27,6 @@ public:
     Vector rest;
     Vector normal;                  // at rest, unit vector
     std::array<Vector, 2> tangent;  // their cross product is the normal
-    // weights of the voxel's nodes for the derivatives of the displacement along the tangents [1/m]
-    std::array<std::array<float, 8>, 2> along;
   };
   struct Triangle
   {
@@ -36,30 +34,8 @@ public:
     /// Triangle across the edge opposite to each corner; -1: the surface ends there or has a crease.
     std::array<std::int32_t, 3> neighbour;
   };
-  /// A vertex in motion.
-  struct Placed
-  {
-    Vector place, normal;
-    Vector before;  // its place in the step before
-    std::array<Vector, 2>
-        dual;  // to the tangents: the normal turns by minus their sum, each times normal . tangent's change
-  };
-
   explicit TouchingSurface(const Model& model);
 
-  template <class Real>
-  void place(std::size_t v, const Real* const u[3], Placed& at) const;
-  physics::SurfaceTriangle<double> triangle(std::int32_t t, const std::vector<Placed>& placed) const
-  {
-    physics::SurfaceTriangle<double> out;
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-      const Placed& corner = placed[triangles[t].vertex[i]];
-      out.corner[i] = corner.place;
-      out.normal[i] = corner.normal;
-    }
-    return out;
-  }
   /// Whether a vertex and a triangle never touch: they are joined along the surface by less than `joined_within`, or
   /// are two sides of one sheet of tissue.
   bool inseparable(std::size_t v, std::int32_t t) const;

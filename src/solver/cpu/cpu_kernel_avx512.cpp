@@ -6,13 +6,14 @@ namespace frontalis
 
 void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_t);
 ShellKernels<float> shell_kernels_avx512();
+TouchKernels<float> touch_kernels_avx512();
 void attach_kernel_avx512(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
   return { CpuKernelBody<xsimd::avx512bw, float>::run,
            CpuKernelBody<xsimd::avx512bw, double>::run,
-           { slide_kernel_avx512, attach_kernel_avx512, shell_kernels_avx512() },
+           { slide_kernel_avx512, attach_kernel_avx512, shell_kernels_avx512(), touch_kernels_avx512() },
            CpuMonitor<xsimd::avx512bw>::run,
            name };
 }

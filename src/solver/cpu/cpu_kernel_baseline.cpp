@@ -6,13 +6,14 @@ namespace frontalis
 
 void slide_kernel_baseline(const SlideArguments<float>&, std::int32_t, std::int32_t);
 ShellKernels<float> shell_kernels_baseline();
+TouchKernels<float> touch_kernels_baseline();
 void attach_kernel_baseline(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
 {
   return { CpuKernelBody<xsimd::default_arch, float>::run,
            CpuKernelBody<xsimd::default_arch, double>::run,
-           { slide_kernel_baseline, attach_kernel_baseline, shell_kernels_baseline() },
+           { slide_kernel_baseline, attach_kernel_baseline, shell_kernels_baseline(), touch_kernels_baseline() },
            CpuMonitor<xsimd::default_arch>::run,
            name };
 }

@@ -3,6 +3,7 @@
 #include "solver/cpu/attach_kernel.hpp"
 #include "solver/cpu/shell_kernel.hpp"
 #include "solver/cpu/slide_kernel.hpp"
+#include "solver/cpu/touch_kernel.hpp"
 
 namespace frontalis
 {
@@ -14,6 +15,7 @@ struct PartKernels
   SlideKernel<Real> slide = slide_plainly<Real>;
   AttachKernel<Real> attach = attach_plainly<Real>;
   ShellKernels<Real> shell = plain_shell_kernels<Real>();
+  TouchKernels<Real> touch = plain_touch_kernels<Real>();
 };
 
 }  // namespace frontalis

@@ -1,25 +1,10 @@
+#include "solver/cpu/one_lane.hpp"
 #include "solver/cpu/shell_kernel_body.hpp"
 
 #include <algorithm>
 
 namespace frontalis
 {
-namespace
-{
-
-template <class Number>
-struct OneLane
-{
-  using Real = Number;
-  using Batch = Number;
-  static constexpr int count = 1;
-
-  static FRONTALIS_LAW Number load(const Number* p) { return *p; }
-  static FRONTALIS_LAW Number gather(const Number* p, const std::int32_t* index) { return p[*index]; }
-  static FRONTALIS_LAW void store(Number x, Number* p) { *p = x; }
-};
-
-}  // namespace
 
 template <class Real>
 WeightedSums<Real>::WeightedSums(const std::vector<Terms>& sums)

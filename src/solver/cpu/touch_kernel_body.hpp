@@ -1,0 +1,330 @@
+#pragma once
+
+#include "frontalis/physics/surface_touch.hpp"
+#include "solver/cpu/touch_kernel.hpp"
+
+namespace frontalis
+{
+
+/// The kernels, for lanes of a kind that loads, gathers and stores them. The kind is part of every type, so that
+/// instruction sets share no template instantiation.
+template <class Lanes>
+struct TouchKernelBody
+{
+  using Real = typename Lanes::Real;
+  using Batch = typename Lanes::Batch;
+  using Number = physics::Number<Batch>;
+  using Vector = physics::Vec3<Batch>;
+  using Moved = MovedVertices<Real>;
+  static_assert(touch_width % Lanes::count == 0, "a block is a whole number of batches");
+
+  template <class Pointers>
+  static FRONTALIS_LAW Vector load(const Pointers& p, std::ptrdiff_t lane)
+  {
+    return { Lanes::load(p[0] + lane), Lanes::load(p[1] + lane), Lanes::load(p[2] + lane) };
+  }
+  template <class Pointers>
+  static FRONTALIS_LAW void store(const Vector& v, Pointers&& p, std::ptrdiff_t lane)
+  {
+    Lanes::store(v.x, p[0] + lane);
+    Lanes::store(v.y, p[1] + lane);
+    Lanes::store(v.z, p[2] + lane);
+  }
+
+  // Components of the dual of tangent t of vertices from `at` on.
+  static FRONTALIS_LAW std::array<Real*, 3> dual(const Moved& vertices, std::ptrdiff_t at, int t)
+  {
+    Real* const first = vertices.dual + (6 * (at / touch_width) + 3 * t) * touch_width + at % touch_width;
+    return { first, first + touch_width, first + 2 * touch_width };
+  }
+
+  // Vectors of records that follow each other.
+  static FRONTALIS_LAW Vector consecutive(const Real* p, std::ptrdiff_t stride)
+  {
+    std::int32_t index[Lanes::count];
+    for (int l = 0; l < Lanes::count; ++l)
+      index[l] = l;
+    return Lanes::gather_records(p, stride, index);
+  }
+  static FRONTALIS_LAW void store_as_records(const Vector& v, Real* p, std::ptrdiff_t stride)
+  {
+    alignas(64) Real records[4 * Lanes::count];
+    Lanes::store_records(v, records);
+    for (int l = 0; l < Lanes::count; ++l)
+      Lanes::copy_record(records + Lanes::record(l), p + l * stride);
+  }
+  static FRONTALIS_LAW Vector scaled(const Vector& v, const Real (&by)[3])
+  {
+    return { Batch(by[0]) * v.x, Batch(by[1]) * v.y, Batch(by[2]) * v.z };
+  }
+
+  // Weights of the lower and the upper side of the voxel along each axis.
+  struct Weights
+  {
+    FRONTALIS_LAW Weights(const VertexBlock<Real>& b, int lane)
+    {
+      Batch(*const axes[3])[2] = { &x, &y, &z };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        (*axes[axis])[1] = Lanes::load(b.coordinates[axis] + lane);
+        (*axes[axis])[0] = Number::of(1) - (*axes[axis])[1];
+      }
+    }
+    Batch x[2], y[2], z[2];
+  };
+
+  static void place(const VertexBlock<Real>* blocks, const Moved& vertices, const std::array<const Real*, 3>& u,
+                    std::int32_t first, std::int32_t last)
+  {
+    for (auto block = first; block < last; ++block)
+      for (int lane = 0; lane < touch_width; lane += Lanes::count)
+        place(blocks[block], vertices, u, lane, std::ptrdiff_t{ block } * touch_width + lane);
+  }
+
+  static FRONTALIS_LAW void place(const VertexBlock<Real>& b, const Moved& vertices,
+                                  const std::array<const Real*, 3>& u, int lane, std::ptrdiff_t at)
+  {
+    const Batch none = Number::of(0);
+    const Weights w(b, lane);
+    // displacement, and its derivatives by the coordinates
+    Vector sum{ none, none, none }, by_x = sum, by_y = sum, by_z = sum;
+    for (int two = 0; two < 4; ++two)
+    {
+      Vector low, high;
+      Lanes::gather_two(u[0], b.node[two] + lane, low.x, high.x);
+      Lanes::gather_two(u[1], b.node[two] + lane, low.y, high.y);
+      Lanes::gather_two(u[2], b.node[two] + lane, low.z, high.z);
+      const int j = two & 1, k = two >> 1;
+      const Batch weight = w.y[j] * w.z[k];
+      const Vector change = high - low, moved = low + w.x[1] * change;
+      sum = sum + weight * moved;
+      by_x = by_x + weight * change;
+      by_y = j == 0 ? by_y - w.z[k] * moved : by_y + w.z[k] * moved;
+      by_z = k == 0 ? by_z - w.y[j] * moved : by_z + w.y[j] * moved;
+    }
+    Vector tangent[2];
+    for (int t = 0; t < 2; ++t)
+    {
+      const Vector along = scaled(load(b.tangent[t], lane), b.inverse_spacing);
+      tangent[t] = load(b.tangent[t], lane) + along.x * by_x + along.y * by_y + along.z * by_z;
+    }
+    const Vector area = cross(tangent[0], tangent[1]);
+    const Batch scale = Number::of(1) / Number::max(norm(area), Number::of(1e-12));
+    const Vector normal = scale * area;
+    store(scale * cross(tangent[1], normal), dual(vertices, at, 0), 0);
+    store(scale * cross(normal, tangent[0]), dual(vertices, at, 1), 0);
+    if (vertices.change != nullptr)
+      store_as_records(sum - consecutive(vertices.record + at * Moved::stride, Moved::stride), vertices.change + 4 * at,
+                       4);
+    store_as_records(sum, vertices.record + at * Moved::stride, Moved::stride);
+    store_as_records(normal, vertices.record + at * Moved::stride + 4, Moved::stride);
+  }
+
+  static FRONTALIS_LAW Vector moved(const Moved& vertices, const std::int32_t* index)
+  {
+    return Lanes::gather_records(vertices.record, Moved::stride, index);
+  }
+  static FRONTALIS_LAW Vector normal(const Moved& vertices, const std::int32_t* index)
+  {
+    return Lanes::gather_records(vertices.record + 4, Moved::stride, index);
+  }
+
+  // The triangle relative to its corner 0, which makes differences of places exact.
+  static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairVertices& at, const PairBlock<Real>& b,
+                                                                const Moved& vertices, int lane, Vector& point)
+  {
+    const Batch none = Number::of(0);
+    physics::SurfaceTriangle<Batch> out;
+    const Vector origin = moved(vertices, at.vertex[1] + lane);
+    out.corner[0] = { none, none, none };
+    point = load(b.rest[0], lane) + (moved(vertices, at.vertex[0] + lane) - origin);
+    for (int i = 1; i < 3; ++i)
+      out.corner[i] = load(b.rest[i], lane) + (moved(vertices, at.vertex[i + 1] + lane) - origin);
+    for (int i = 0; i < 3; ++i)
+      out.normal[i] = normal(vertices, at.vertex[i + 1] + lane);
+    return out;
+  }
+
+  // Lets pairs go on whose foot is farther beyond an edge than rounding errors. Returns whether one did.
+  static bool go_on(const PairArguments<Real>& g, std::int32_t block, int lane, const Batch (&weight)[3])
+  {
+    PairBlock<Real>& b = g.pairs[block];
+    Batch beyond = Number::of(0);
+    for (int i = 0; i < 3; ++i)
+      beyond = Number::max(beyond, Lanes::load(b.inner[i] + lane) * (Number::of(-edge_error) - weight[i]));
+    if (!Lanes::any_positive(beyond))
+      return false;
+    alignas(64) Real excess[Lanes::count];
+    Lanes::store(beyond, excess);
+    for (int l = 0; l < Lanes::count; ++l)
+      if (excess[l] > 0 && g.pair_vertices[block].triangle[lane + l] >= 0)
+        g.go_on(g.context, block, lane + l);
+    return true;
+  }
+
+  static FRONTALIS_LAW Vector change(const Moved& vertices, const std::int32_t* index)
+  {
+    return Lanes::gather_records(vertices.change, 4, index);
+  }
+
+  // The result of a batch of pairs.
+  struct Result
+  {
+    Batch wait;             // the way after which they are to be looked at again [m]
+    std::uint32_t touches;  // bits of the lanes that do
+    bool loses;             // energy to friction
+  };
+
+  template <bool rubs>
+  static FRONTALIS_LAW Result touch(const PairArguments<Real>& g, std::int32_t block, int lane)
+  {
+    const PairVertices& at = g.pair_vertices[block];
+    PairBlock<Real>& b = g.pairs[block];
+    PairForceBlock<Real>& out = g.forces[block];
+    const Batch none = Number::of(0);
+    Vector point;
+    auto corners = triangle(at, b, g.vertices, lane, point);
+    auto foot = physics::surface_foot(corners, point);
+    if (go_on(g, block, lane, foot.weight))
+    {
+      corners = triangle(at, b, g.vertices, lane, point);
+      foot = physics::surface_foot(corners, point);
+    }
+    physics::TouchingPair<Batch> pair{
+      Lanes::load(b.stiffness + lane), {}, {}, Lanes::load(b.overlap + lane), Lanes::load(b.friction + lane)
+    };
+    for (int i = 0; i < 3; ++i)
+    {
+      pair.softer[i] = Lanes::load(b.softer[i] + lane);
+      pair.inner[i] = Lanes::load(b.inner[i] + lane);
+    }
+    const Batch gap = foot.gap - pair.overlap;
+    const Batch whole = pair_stiffness(pair, foot, normal(g.vertices, at.vertex[0] + lane));
+    const Batch stiffness =
+        Number::select(gap < none, Number::select(gap > Number::of(-double(g.deepest)), whole, none), none);
+    physics::PairGrip<Batch> grip{ Lanes::load(b.held + lane), none, none, { none, none, none } };
+    Vector slip{ none, none, none };
+    if constexpr (rubs)
+    {
+      grip.pressed = Lanes::load(b.pressed + lane);
+      grip.along = Lanes::load(b.along + lane);
+      grip.stretch = load(b.stretch, lane);
+      slip = change(g.vertices, at.vertex[0] + lane);
+      for (int i = 0; i < 3; ++i)
+        slip = slip - carried(foot, i, change(g.vertices, at.vertex[i + 1] + lane));
+    }
+    const auto force =
+        physics::touch_pair<rubs>(pair, corners, foot, gap, stiffness, slip, Number::of(double(g.response)), grip);
+    const Batch open = Number::select(gap > none, Number::of(0.5) * gap, Number::of(double(g.patience)));
+    const Batch wait = Number::select(stiffness > none, none, Number::select(grip.pressed > none, none, open));
+    Lanes::store(grip.stiffness, b.held + lane);
+    if constexpr (rubs)
+    {
+      Lanes::store(grip.pressed, b.pressed + lane);
+      Lanes::store(grip.along, b.along + lane);
+      store(grip.stretch, b.stretch, lane);
+    }
+    Lanes::store(force.stored, out.stored + lane);
+    for (int i = 0; i < 3; ++i)
+    {
+      Lanes::store_records(force.corner[i], out.corner[i] + 4 * lane);
+      Lanes::store_records(force.turn[i], out.turn[i] + 4 * lane);
+    }
+    bool loses = false;
+    if constexpr (rubs)
+    {
+      Lanes::store(force.lost, out.lost + lane);
+      loses = Lanes::any_positive(force.lost * force.lost);
+    }
+    return { wait, Lanes::positive(stiffness), loses };
+  }
+
+  static void touch(const PairArguments<Real>& g, std::int32_t first, std::int32_t last)
+  {
+    for (auto block = first; block < last; ++block)
+    {
+      if (g.due[block] > g.way)
+        continue;
+      Batch all = Number::of(1e30);
+      std::uint32_t touches = 0;
+      for (int lane = 0; lane < touch_width; lane += Lanes::count)
+      {
+        const Result result = g.rubs ? touch<true>(g, block, lane) : touch<false>(g, block, lane);
+        all = Number::min(all, result.wait);
+        touches |= result.touches << lane | (result.loses ? 1U << touch_width : 0U);
+      }
+      alignas(64) Real wait[Lanes::count];
+      Lanes::store(all, wait);
+      Real least = touches != 0 ? 0 : wait[0];
+      for (int l = 1; l < Lanes::count && touches == 0; ++l)
+        least = least < wait[l] ? least : wait[l];
+      g.due[block] = g.way + double(least);
+      g.touches[block] = touches;
+    }
+  }
+
+  static void spread(const VertexBlock<Real>* blocks, const Moved& vertices, Real* sums, Real* node_forces,
+                     std::int32_t block, std::int32_t first_plane, std::int32_t end_plane)
+  {
+    const VertexBlock<Real>& b = blocks[block];
+    const std::ptrdiff_t first = std::ptrdiff_t{ block } * touch_width;
+    const Batch none = Number::of(0);
+    alignas(64) Real part[8][4 * Lanes::count];
+    for (int lane = 0; lane < touch_width; lane += Lanes::count)
+    {
+      const std::ptrdiff_t at = first + lane;
+      const Vector force = consecutive(sums + 8 * at, 8), turn = consecutive(sums + 8 * at + 4, 8);
+      const Vector direction = consecutive(vertices.record + Moved::stride * at + 4, Moved::stride);
+      for (int row = 0; row < 8; ++row)
+        Lanes::store(none, sums + 8 * at + row * Lanes::count);
+      // the normal turns with the derivatives of the displacement along the tangents
+      const Vector along = scaled(dot(turn, load(dual(vertices, at, 0), 0)) * load(b.tangent[0], lane) +
+                                      dot(turn, load(dual(vertices, at, 1), 0)) * load(b.tangent[1], lane),
+                                  b.inverse_spacing);
+      const Weights w(b, lane);
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+        const Batch by_x = w.y[j] * w.z[k] * along.x, by_y = w.z[k] * along.y, by_z = w.y[j] * along.z;
+        const Batch across = (j == 0 ? none - by_y : by_y) + (k == 0 ? none - by_z : by_z);
+        const Batch turned = w.x[i] * across + (i == 0 ? none - by_x : by_x);
+        Lanes::store_records((w.x[i] * w.y[j] * w.z[k]) * force - turned * direction, part[corner]);
+      }
+      for (int l = 0; l < Lanes::count; ++l)
+      {
+        const std::int32_t plane = b.plane[lane + l];
+        const auto add = [&](int two)
+        {
+          Real* const to = node_forces + 4 * std::ptrdiff_t{ b.bound[two][lane + l] };
+          Lanes::add_record(part[2 * two] + Lanes::record(l), to);
+          Lanes::add_record(part[2 * two + 1] + Lanes::record(l), to + 4);
+        };
+        if (plane >= first_plane && plane < end_plane)  // nodes in the lower plane of the voxel
+        {
+          add(0);
+          add(1);
+        }
+        if (plane + 1 >= first_plane && plane + 1 < end_plane)
+        {
+          add(2);
+          add(3);
+        }
+      }
+    }
+  }
+
+  static TouchKernels<Real> kernels()
+  {
+    TouchKernels<Real> kernels{ place, touch, spread, {} };
+    for (int l = 0; l < touch_width; ++l)
+      kernels.record[l] = 4 * (l / Lanes::count * Lanes::count) + Lanes::record(l % Lanes::count);
+    return kernels;
+  }
+
+private:
+  // In barycentric coordinates; more than the rounding errors of a foot, so that points on an edge do not go to and
+  // fro.
+  static constexpr double edge_error = 3e-5;
+};
+
+}  // namespace frontalis
