@@ -137,6 +137,33 @@ Controls action_unit_controls(const Model& model, const std::map<std::string, do
   return limited(controls);
 }
 
+Controls value_controls(const Model& model, const std::map<std::string, double>& values)
+{
+  static const std::array<std::string, 6> axes{ { "x", "y", "z", "rx", "ry", "rz" } };
+  constexpr double millimetre = 1e-3, degree = 3.14159265358979323846 / 180;
+  Controls controls = rest_controls(model);
+  std::map<std::string, double> activation;
+  std::map<std::string, std::array<double, 6>> motions;
+  for (const auto& [name, value] : values)
+  {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos)
+    {
+      activation[name] = value;
+      continue;
+    }
+    const auto axis = std::find(axes.begin(), axes.end(), name.substr(dot + 1));
+    if (axis == axes.end())
+      throw Error("'" + name + "' is no muscle, nor a bone's .x, .y, .z, .rx, .ry or .rz");
+    const auto index = static_cast<std::size_t>(axis - axes.begin());
+    motions[name.substr(0, dot)][index] = value * (index < 3 ? millimetre : degree);
+  }
+  set_activations(model, activation, controls.activation);
+  for (const auto& [bone, m] : motions)
+    set_bone_motion(model, bone, rigid_motion({ { m[3], m[4], m[5] } }, { { m[0], m[1], m[2] } }), controls.bone);
+  return controls;
+}
+
 void take_pose(const Model& model, const Controls& pose, Controls& controls)
 {
   controls.activation = pose.activation;
