@@ -9,6 +9,8 @@
 
 #include <memory>
 
+#include <unistd.h>
+
 namespace frontalis
 {
 namespace
@@ -32,9 +34,11 @@ std::string in_millimetres(const std::vector<double>& metres)
 
 void show_progress(FitSettings& settings, Progress& progress)
 {
-  settings.watch = [&progress](const std::string& stage, double done)
+  // without a terminal there is one line per stage: name the percentage there
+  const bool lines = isatty(STDERR_FILENO) == 0;
+  settings.watch = [&progress, lines](const std::string& stage, double done)
   {
-    progress.update(stage, done);
+    progress.update(lines ? fmt::format("{} {:.0f} %", stage, 100 * done) : stage, done);
     if (interrupt_requested())
       throw Interrupted();
   };

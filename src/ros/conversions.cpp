@@ -167,10 +167,7 @@ void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, g
   }
 }
 
-std::string body_frame(const std::string& face_frame, const BodyShape& shape)
-{
-  return face_frame + "/body/" + shape.name;
-}
+std::string body_frame(const std::string& face_frame, const BodyShape& shape) { return face_frame + "/" + shape.frame; }
 
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
 {
@@ -237,16 +234,20 @@ void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::
                    std::vector<geometry_msgs::TransformStamped>& out)
 {
   const SkinState& skin = frame.skin;
-  const std::vector<BodyShape> shapes = body_shapes(model);
-  out.resize(skin.landmarks.size() + frame.bodies.size());
-  for (std::size_t body = 0; body < frame.bodies.size(); ++body)
+  out.resize(skin.landmarks.size());
+  const auto add = [&](const std::vector<BodyShape>& shapes, const std::vector<BodyFrame>& bodies)
   {
-    auto& transform = out[skin.landmarks.size() + body];
-    transform.header.stamp = stamp;
-    transform.header.frame_id = face_frame;
-    transform.child_frame_id = body_frame(face_frame, shapes[body]);
-    transform.transform = to_transform(model, shapes[body], frame.bodies[body].pose);
-  }
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+    {
+      auto& transform = out.emplace_back();
+      transform.header.stamp = stamp;
+      transform.header.frame_id = face_frame;
+      transform.child_frame_id = body_frame(face_frame, shapes[body]);
+      transform.transform = to_transform(model, shapes[body], bodies[body].pose);
+    }
+  };
+  add(body_shapes(model), frame.bodies);
+  add(bone_shapes(model), frame.bones);
   for (std::size_t landmark = 0; landmark < skin.landmarks.size(); ++landmark)
   {
     auto& transform = out[landmark];

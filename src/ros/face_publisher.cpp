@@ -63,9 +63,17 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   landmark_vertices_ = landmark_vertices(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
   shapes_ = body_shapes(*model_);
+  const std::vector<BodyShape> bones = bone_shapes(*model_);
   wrenches_.clear();
   for (const BodyShape& shape : shapes_)
-    wrenches_.emplace_back(handle_, "wrench/" + shape.name);
+  {
+    const bool named_like_bone =
+        std::any_of(bones.begin(), bones.end(), [&](const BodyShape& bone) { return bone.name == shape.name; });
+    wrenches_.emplace_back(handle_, "wrench/" + shape.name + (named_like_bone ? "_contact" : ""));
+  }
+  for (const BodyShape& bone : bones)
+    wrenches_.emplace_back(handle_, "wrench/" + bone.name);
+  shapes_.insert(shapes_.end(), bones.begin(), bones.end());
   if (!parent_frame.empty())
   {
     geometry_msgs::TransformStamped transform;
@@ -151,12 +159,20 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                    state.paused = paused;
                    state.backend = backend_;
                  });
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+  const auto publish_wrench = [&](std::size_t entry, const BodyFrame& body)
   {
-    const BodyShape& shape = shapes_[b];
-    wrenches_[b].publish(body_frame(face_frame_, shape), stamp,
-                         [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, frame.bodies[b]); });
-  }
+    const BodyShape& shape = shapes_[entry];
+    wrenches_[entry].publish(body_frame(face_frame_, shape), stamp,
+                             [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, body); });
+  };
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+    publish_wrench(b, frame.bodies[b]);
+  const std::size_t first_bone = wrenches_.size() - frame.bones.size();
+  bone_listeners_ = std::any_of(wrenches_.begin() + static_cast<std::ptrdiff_t>(first_bone), wrenches_.end(),
+                                [](const auto& topic) { return topic.publisher.getNumSubscribers() > 0; });
+  // a frame that was made before there were subscribers has no forces on bones
+  for (std::size_t b = 0; frame.has_bone_forces && b < frame.bones.size(); ++b)
+    publish_wrench(first_bone + b, frame.bones[b]);
   to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);
   return true;

@@ -168,6 +168,18 @@ bool FaceNode::on_probe(Probe::Request& request, Probe::Response& response)
                 });
 }
 
+FitAction::Face FaceNode::fitted_face() const
+{
+  std::string reason;
+  if (!runner(&reason))
+    throw Error(reason);
+  const std::lock_guard<std::mutex> lock(runner_mutex_);
+  const SolverSettings& solver = parameters_.runner.solver;
+  return { parameters_.bake,
+           parameters_.model,
+           { "--backend", solver.backend, "--threads", std::to_string(solver.threads) } };
+}
+
 void FaceNode::on_config(FaceConfig& config, std::uint32_t)
 {
   const auto running = runner();
