@@ -71,7 +71,7 @@ TEST_P(BoneForces, balance_those_on_a_finger)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, BoneForces, testing::Values("reference", "cpu"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& backend) { return backend.param; });
 
 }  // namespace
 }  // namespace frontalis
