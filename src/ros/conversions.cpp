@@ -143,6 +143,21 @@ std::vector<std::size_t> landmark_vertices(const Model& model)
   return out;
 }
 
+std::vector<std::size_t> standard_landmarks(const Model& model)
+{
+  constexpr int count = 68;
+  std::vector<std::size_t> out;
+  out.reserve(count);
+  for (int number = 1; number <= count; ++number)
+  {
+    const auto found = std::find(model.landmarks.begin(), model.landmarks.end(), fmt::format("ibug_{}", number));
+    if (found == model.landmarks.end())
+      return {};
+    out.push_back(static_cast<std::size_t>(found - model.landmarks.begin()));
+  }
+  return out;
+}
+
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out)
 {
   out.poses.resize(skin.landmarks.size());

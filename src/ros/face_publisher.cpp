@@ -42,6 +42,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       points_(private_handle, "skin_points"),
       field_(private_handle, "skin_field"),
       landmarks_(private_handle, "landmarks"),
+      landmarks_68_(private_handle, "landmarks_68"),
       state_(private_handle, "state"),
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
@@ -61,6 +62,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_));
   landmark_vertices_ = landmark_vertices(*model_);
+  standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
   shapes_ = body_shapes(*model_);
   const std::vector<BodyShape> bones = bone_shapes(*model_);
@@ -141,6 +143,14 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   geometry_msgs::PoseArray poses;
   to_poses(skin, landmark_vertices_, poses);
   landmarks_.publish(face_frame_, stamp, [&](auto& message) { message.poses = poses.poses; });
+  if (!standard_landmarks_.empty())
+    landmarks_68_.publish(face_frame_, stamp,
+                          [&](auto& message)
+                          {
+                            message.poses.clear();
+                            for (const std::size_t landmark : standard_landmarks_)
+                              message.poses.push_back(poses.poses[landmark]);
+                          });
   if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
   {
     visualization_msgs::MarkerArray muscles;

@@ -2,6 +2,8 @@
 """The action ~fit_activation: finds the activation of a pose, is applied, refuses, and can be cancelled."""
 
 import math
+import subprocess
+import tempfile
 import unittest
 
 import actionlib
@@ -66,6 +68,17 @@ class Fit(unittest.TestCase):
             self.assertEqual(self.outcome(), GoalStatus.ABORTED, fault)
             self.assertIn(fault, self.client.get_goal_status_text())
         self.assertEqual(self.face.target(), {"lift": 0})
+
+    def test_a_table_is_played_as_a_trajectory(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            table.write("time,lift,jaw.x\n0,0,1\n0.2,0.6,1\n0.4,0.3,1\n")
+            table.flush()
+            played = subprocess.run(
+                ["rosrun", "frontalis", "play_track.py", table.name, "/face"], capture_output=True, check=True, text=True
+            )
+        self.assertIn("left out: jaw.x", played.stderr)
+        self.face.step(0.4)
+        wait(lambda: abs(self.face.target()["lift"] - 0.3) < 1e-6, "the end of the table")
 
     def test_can_be_cancelled(self):
         self.send(landmark=["tip"], target=[Vector3(0, 0, 1e-3)], runs=-1, apply=True)

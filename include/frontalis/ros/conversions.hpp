@@ -46,6 +46,9 @@ void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, 
 /// The skin vertex that is closest at rest to each landmark.
 std::vector<std::size_t> landmark_vertices(const Model& model);
 
+/// The 68 points of the iBUG 300-W annotation, landmarks ibug_1 to ibug_68, in this order; empty if one is missing.
+std::vector<std::size_t> standard_landmarks(const Model& model);
+
 /// One pose per landmark, in the order of the model: x along the outward normal of the skin at its vertex, z along the
 /// skin upwards. Fills all but the header.
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out);

@@ -79,7 +79,7 @@ private:
 
   Topic<visualization_msgs::Marker> skin_;
   Topic<sensor_msgs::PointCloud2> points_, field_;
-  Topic<geometry_msgs::PoseArray> landmarks_;
+  Topic<geometry_msgs::PoseArray> landmarks_, landmarks_68_;
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
@@ -94,6 +94,7 @@ private:
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
   std::vector<std::size_t> landmark_vertices_;
+  std::vector<std::size_t> standard_landmarks_;
   std::unique_ptr<MuscleLines> lines_;
   std::atomic<SkinColour> colour_{ SkinColour::skin };
   std::atomic<SkinField> shown_field_{ SkinField::strain };
