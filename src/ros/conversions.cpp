@@ -171,7 +171,7 @@ void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, g
       const auto& n = skin.normals[vertices[landmark]];
       outwards = tf2::Vector3(n[0], n[1], n[2]);
     }
-    // where the normal points up or down, the back of the face's x axis lies along the skin upwards
+    // Where the normal points straight up, z lies along the skin to the back of the face; straight down, to its front.
     const tf2::Vector3 up = std::abs(outwards.z()) < 0.99 ? tf2::Vector3(0, 0, 1) : tf2::Vector3(-outwards.z(), 0, 0);
     const tf2::Vector3 left = up.cross(outwards).normalized(), upwards = outwards.cross(left);
     tf2::Quaternion rotation;
@@ -215,7 +215,7 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  // those of the scene before
+  // The first marker removes the bodies of the scene that was shown before.
   out.markers.emplace_back().action = visualization_msgs::Marker::DELETEALL;
   for (const BodyShape& shape : body_shapes(model))
   {

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// values with the last colour
+// values that are drawn in the last colour of the scale
 constexpr double displacement_range = 10e-3;  // [m]
 constexpr double strain_range = 0.3;
 constexpr double stress_range = 20e3;  // [Pa]
@@ -101,7 +101,7 @@ std::optional<SkinField> FacePublisher::wanted_field() const
   return wanted ? std::make_optional(shown_field_.load()) : std::nullopt;
 }
 
-// the values that the colours show, as fractions of the value with the last colour
+// The values that the colours show, divided by the value that has the last colour.
 std::vector<float> FacePublisher::shown_values(const Frame& frame) const
 {
   std::vector<float> values;
@@ -130,14 +130,14 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     shading_->colours(skin, shown_values(frame), colours_);
   else
     colours_.clear();
-  // a subscriber that has come since then waits for the next frame
+  // A subscriber that came after the colours were decided waits for the next frame.
   if (!colours_.empty())
   {
     skin_.publish(face_frame_, stamp, [&](auto& marker) { to_marker(*model_, colours_, skin, marker); });
     points_.publish(face_frame_, stamp,
                     [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), colours_, cloud); });
   }
-  // a frame that was made before there were subscribers has no field
+  // A frame that was made before the topic had subscribers has no field.
   if (frame.field.size() == skin.vertices.size())
     field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, {}, cloud); });
   geometry_msgs::PoseArray poses;
@@ -180,7 +180,7 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   const std::size_t first_bone = wrenches_.size() - frame.bones.size();
   bone_listeners_ = std::any_of(wrenches_.begin() + static_cast<std::ptrdiff_t>(first_bone), wrenches_.end(),
                                 [](const auto& topic) { return topic.publisher.getNumSubscribers() > 0; });
-  // a frame that was made before there were subscribers has no forces on bones
+  // A frame that was made before these topics had subscribers has no forces on bones.
   for (std::size_t b = 0; frame.has_bone_forces && b < frame.bones.size(); ++b)
     publish_wrench(first_bone + b, frame.bones[b]);
   to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);

@@ -110,8 +110,10 @@ FitAction::~FitAction()
 
 void FitAction::execute(const FitActivationGoalConstPtr& goal)
 {
-  // a goal may have been cancelled before it began
-  cancelled_ = stopping_ || server_.isPreemptRequested();
+  // the order matters: a goal may have been cancelled before it began, or may be at this moment
+  cancelled_ = false;
+  if (stopping_ || server_.isPreemptRequested())
+    cancelled_ = true;
   try
   {
     const FitActivationResult result = answer(*goal);

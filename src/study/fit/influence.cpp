@@ -154,16 +154,23 @@ VectorXd ForwardRuns::settle(const std::map<std::string, double>& values)
     watch_(stage_, done_);
     return now.seconds < shortest_relaxation || now.residual * largest_motion(start, skin()) > sufficient_motion;
   };
-  const Equilibrium found =
-      guard_.settle(value_controls(*model_, values), tolerance, longest_relaxation / model_->time_scaling, moves);
-  if (!found.reached && moves(found))
+  std::string of;
+  for (const auto& [name, value] : values)
+    of += fmt::format(" {} {:g}", name, value);
+  if (of.empty())
+    of = " all at rest";
+  Equilibrium found;
+  try
   {
-    std::string of;
-    for (const auto& [name, value] : values)
-      of += fmt::format(" {} {:g}", name, value);
-    throw Error(fmt::format("no equilibrium with{}: {:.2g} of the displacement is left after {:g} s of relaxation",
-                            of.empty() ? " all at rest" : of, found.residual, found.seconds));
+    found = guard_.settle(value_controls(*model_, values), tolerance, longest_relaxation / model_->time_scaling, moves);
   }
+  catch (const Unstable& error)
+  {
+    throw Error(fmt::format("with{}: {}", of, error.what()));
+  }
+  if (!found.reached && moves(found))
+    throw Error(fmt::format("no equilibrium with{}: {:.2g} of the displacement is left after {:g} s of relaxation", of,
+                            found.residual, found.seconds));
   return places_of(skin());
 }
 
