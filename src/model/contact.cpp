@@ -135,6 +135,7 @@ std::vector<BodyShape> body_shapes(const Model& model)
 std::vector<BodyShape> bone_shapes(const Model& model)
 {
   std::vector<BodyShape> shapes;
+  shapes.reserve(model.bones.size());
   for (std::size_t b = 0; b < model.bones.size(); ++b)
   {
     BodyShape& shape = shapes.emplace_back(BodyShape{ model.bones[b], "bone/" + model.bones[b], {} });

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace frontalis
 {
@@ -125,8 +126,8 @@ std::vector<Unknown> checked_unknowns(const Model& model, const std::vector<Unkn
 {
   std::vector<Unknown> out = unknowns;
   if (out.empty())
-    for (const auto& muscle : model.muscles)
-      out.push_back({ muscle.name });
+    std::transform(model.muscles.begin(), model.muscles.end(), std::back_inserter(out),
+                   [](const Muscle& muscle) { return Unknown{ muscle.name }; });
   if (out.empty())
     throw Error("nothing to fit: the model has no muscles, and no bone is named as unknown, such as BONE.x: [-5, 5]");
   std::map<std::string, double> seen;
@@ -190,6 +191,7 @@ FitResult fit(const std::shared_ptr<const Model>& model, const FitRequest& reque
 
   const Eigen::MatrixXd covariance = problem.covariance(values);
   result.unknowns = fitted_unknowns(unknowns, values, covariance);
+  result.covariance.reserve(unknowns.size());
   for (Index i = 0; i < covariance.rows(); ++i)
     result.covariance.emplace_back(covariance.row(i).begin(), covariance.row(i).end());
   result.landmarks = fitted_landmarks(*model, request, targets, expected, reached);

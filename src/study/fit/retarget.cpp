@@ -124,6 +124,7 @@ LandmarkTrack read_landmark_track(const std::string& path)
     throw Error(path + ": cannot be read, or is empty");
   const auto header = fields_of(line);
   std::vector<std::size_t> columns;
+  columns.reserve(wanted.size());
   for (const std::string& name : wanted)
   {
     const auto found = std::find(header.begin(), header.end(), name);
@@ -182,6 +183,8 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
 
   LandmarkFit problem(*model, influence, unknowns, request.deviation);
   std::vector<VectorXd> values, expected, best;
+  values.reserve(targets.size());
+  expected.reserve(targets.size());
   VectorXd begin = problem.rest_values();
   for (const VectorXd& moment : targets)
   {
@@ -218,9 +221,11 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
       values[t] = moment.solve(values[t]);
     }
   }
+  result.names.reserve(unknowns.size());
   for (const Unknown& unknown : unknowns)
     result.names.push_back(unknown.name);
   result.time = track.time;
+  result.values.reserve(best.size());
   for (const VectorXd& moment : best)
     result.values.emplace_back(moment.begin(), moment.end());
   return result;
