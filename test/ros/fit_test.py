@@ -2,6 +2,7 @@
 """The action ~fit_activation: finds the activation of a pose, is applied, refuses, and can be cancelled."""
 
 import math
+import os
 import subprocess
 import tempfile
 import unittest
@@ -14,6 +15,8 @@ from frontalis.msg import FitActivationAction, FitActivationGoal
 from geometry_msgs.msg import Vector3
 
 from face import Face, LIMIT, wait
+
+PLAYER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../src/ros/play_track.py")
 
 
 class Fit(unittest.TestCase):
@@ -73,9 +76,7 @@ class Fit(unittest.TestCase):
         with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
             table.write("time,lift,jaw.x\n0,0,1\n0.2,0.6,1\n0.4,0.3,1\n")
             table.flush()
-            played = subprocess.run(
-                ["rosrun", "frontalis", "play_track.py", table.name, "/face"], capture_output=True, check=True, text=True
-            )
+            played = subprocess.run([PLAYER, table.name, "/face"], capture_output=True, check=True, text=True)
         self.assertIn("left out: jaw.x", played.stderr)
         self.face.step(0.4)
         wait(lambda: abs(self.face.target()["lift"] - 0.3) < 1e-6, "the end of the table")
