@@ -41,6 +41,8 @@ void add_bake_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_effects_command(CLI::App& app);
 void add_faces_command(CLI::App& app);
+void add_fit_command(CLI::App& app);
+void add_retarget_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
 void add_verify_command(CLI::App& app);

@@ -50,31 +50,13 @@ RigidTransform pose_from(const std::array<double, 6>& values)
 Controls row_controls(const Model& model, const std::vector<std::string>& header, const std::vector<double>& row,
                       const std::string& place)
 {
-  static const std::array<std::string, 6> axes{ { "x", "y", "z", "rx", "ry", "rz" } };
-  std::map<std::string, double> activation;
-  std::map<std::string, std::array<double, 6>> poses;
-  std::set<std::string> given;
+  std::map<std::string, double> values;
   for (std::size_t c = 1; c < header.size(); ++c)
-  {
-    if (!given.insert(header[c]).second)
+    if (!values.emplace(header[c], row[c]).second)
       throw Error(place + "'" + header[c] + "' is there twice; must be there once");
-    const std::size_t dot = header[c].find('.');
-    if (dot == std::string::npos)
-    {
-      activation[header[c]] = row[c];
-      continue;
-    }
-    const auto axis = std::find(axes.begin(), axes.end(), header[c].substr(dot + 1));
-    if (axis == axes.end())
-      throw Error(place + "'" + header[c] + "' is no muscle, nor a bone's .x, .y, .z, .rx, .ry or .rz");
-    poses[header[c].substr(0, dot)][axis - axes.begin()] = row[c];
-  }
   try
   {
-    Controls controls = target_controls(model, {}, activation);
-    for (const auto& [bone, values] : poses)
-      set_bone_motion(model, bone, pose_from(values), controls.bone);
-    return controls;
+    return value_controls(model, values);
   }
   catch (const Error& error)
   {

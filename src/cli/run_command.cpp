@@ -40,6 +40,7 @@ struct RunOptions
   double seconds = 1;
   bool seconds_given = false;
   std::string frames, plot;
+  bool vtp = false;
   double frame_rate = 0;  ///< [1/s]; 0: the model's
   SolverSettings solver;
   int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
@@ -174,6 +175,8 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--demo goes with none of --activate, --expression, --activations, --bone, --to-equilibrium");
   if (!options.plot.empty() && options.to_equilibrium)
     throw WrongUsage("--plot: there is no time on the way to equilibrium");
+  if (options.vtp && options.frames.empty())
+    throw WrongUsage("--vtp goes with --frames, which names the folder");
   plot_path(options.plot);
   if (options.to_equilibrium && options.solver.ledger)
     throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
@@ -234,7 +237,7 @@ void simulate(RunOptions& options)
   ControlCurve curve = options.demo ? demo_of(options, *model) : curve_of(options, *model);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
-    folder.emplace(options.frames, *model);
+    folder.emplace(options.frames, *model, options.vtp);
 
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
@@ -315,6 +318,8 @@ void add_run_command(CLI::App& app)
   command->add_option("--frames", options->frames,
                       "folder for skin_NNNN.ply, landmarks.csv, reactions.csv (of bodies that tissue touches) and "
                       "run.json; files of an earlier run are replaced");
+  command->add_flag("--vtp", options->vtp,
+                    "write the frames also as skin_NNNN.vtp, with displacements, and skin.pvd for ParaView");
   command->add_option("--plot", options->plot,
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
   add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");

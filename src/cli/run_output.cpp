@@ -81,6 +81,42 @@ std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int3
   return bytes;
 }
 
+// VTK's XML format of a surface: the numbers follow the text, each array after its size in bytes
+std::string vtp_of(const SkinState& skin, const SkinState& first,
+                   const std::vector<std::array<std::int32_t, 3>>& triangles)
+{
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<PolyData><Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n",
+      skin.vertices.size(), triangles.size());
+  std::string bytes;
+  const auto add = [&](const char* type, const char* name, int components, const auto& numbers)
+  {
+    text += fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
+        name, components, bytes.size());
+    append(bytes, std::array<std::uint64_t, 1>{ { numbers.size() * sizeof numbers[0] } });
+    append(bytes, numbers);
+  };
+  std::vector<std::array<float, 3>> displacements(skin.vertices);
+  for (std::size_t v = 0; v < displacements.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      displacements[v][axis] -= first.vertices[v][axis];
+  std::vector<std::int32_t> ends(triangles.size());
+  for (std::size_t t = 0; t < ends.size(); ++t)
+    ends[t] = static_cast<std::int32_t>(3 * (t + 1));
+  text += "<PointData Normals=\"normals\" Vectors=\"displacement\">\n";
+  add("Float32", "normals", 3, skin.normals);
+  add("Float32", "displacement", 3, displacements);
+  text += "</PointData>\n<Points>\n";
+  add("Float32", "points", 3, skin.vertices);
+  text += "</Points>\n<Polys>\n";
+  add("Int32", "connectivity", 1, triangles);
+  add("Int32", "offsets", 1, ends);
+  return text + "</Polys>\n</Piece></PolyData>\n<AppendedData encoding=\"raw\">_" + bytes +
+         "</AppendedData>\n</VTKFile>\n";
+}
+
 }  // namespace
 
 void print_set_up(const Model& model, const RunSummary& summary)
@@ -185,11 +221,14 @@ std::string json_of(const Model& model, const RunSummary& summary)
   return json_text(json);
 }
 
-FrameFolder::FrameFolder(std::string path, const Model& model)
-    : path_(std::move(path)), model_(model), table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
+FrameFolder::FrameFolder(std::string path, const Model& model, bool vtp)
+    : path_(std::move(path)),
+      model_(model),
+      vtp_(vtp),
+      table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
 {
   make_folder(path_);
-  const std::regex ours(R"((skin_[0-9]{4,}\.ply|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
+  const std::regex ours(R"((skin_[0-9]{4,}\.(ply|vtp)|skin\.pvd|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
   std::vector<std::filesystem::path> earlier;
   for (const auto& entry : std::filesystem::directory_iterator(path_))
     if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
@@ -203,6 +242,12 @@ void FrameFolder::add(double time, const SkinState& skin, const std::vector<Body
   if (frames_ == 0)
     first_ = skin;
   write_text(fmt::format("{}/skin_{:04}.ply", path_, frames_), ply_of(skin, model_.skin.triangles, time));
+  if (vtp_)
+  {
+    const std::string name = fmt::format("skin_{:04}.vtp", frames_);
+    write_text(path_ + "/" + name, vtp_of(skin, first_, model_.skin.triangles));
+    series_ += fmt::format("<DataSet timestep=\"{:.6f}\" file=\"{}\"/>\n", time, name);
+  }
   for (std::size_t l = 0; l < skin.landmarks.size(); ++l)
   {
     const std::array<float, 3>& now = skin.landmarks[l];
@@ -220,6 +265,9 @@ void FrameFolder::finish(const std::string& summary)
   write_text(path_ + "/landmarks.csv", table_);
   if (!touched_bodies(model_).empty())
     write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
+  if (vtp_)
+    write_text(path_ + "/skin.pvd", "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n<Collection>\n" + series_ +
+                                        "</Collection>\n</VTKFile>\n");
   write_text(path_ + "/run.json", summary);
 }
 

@@ -42,15 +42,16 @@ void print_result(const Model& model, const RunSummary& summary);
 /// The same as JSON.
 std::string json_of(const Model& model, const RunSummary& summary);
 
-/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. Every file is written whole or
-/// not at all.
+/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json; with `vtp` also skin_0000.vtp,
+/// ... and skin.pvd, which lists them with their times for ParaView. Every file is written whole or not at all.
 class FrameFolder
 {
 public:
   /// Makes the folder if it is missing and removes the files of an earlier run from it. Throws Error.
-  FrameFolder(std::string path, const Model& model);
+  FrameFolder(std::string path, const Model& model, bool vtp);
 
-  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles.
+  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles. VTP has
+  /// the displacement from the first frame [m] too.
   void add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies);
   /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
   /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
@@ -59,9 +60,10 @@ public:
 private:
   std::string path_;
   const Model& model_;
+  bool vtp_;
   int frames_ = 0;
   SkinState first_;
-  std::string table_, reactions_;
+  std::string table_, reactions_, series_;
 };
 
 }  // namespace frontalis

@@ -128,7 +128,27 @@ std::vector<BodyShape> body_shapes(const Model& model)
 {
   std::vector<BodyShape> shapes;
   for (const Contact& contact : model.contacts)
-    shapes.push_back({ contact.name, contact.centre, &contact.shape });
+    shapes.push_back({ contact.name, "body/" + contact.name, contact.centre, &contact.shape });
+  return shapes;
+}
+
+std::vector<BodyShape> bone_shapes(const Model& model)
+{
+  std::vector<BodyShape> shapes;
+  shapes.reserve(model.bones.size());
+  for (std::size_t b = 0; b < model.bones.size(); ++b)
+  {
+    BodyShape& shape = shapes.emplace_back(BodyShape{ model.bones[b], "bone/" + model.bones[b], {} });
+    double held = 0;
+    for (const RigidNode& rigid : model.rigid)
+      if (rigid.bone == static_cast<std::int32_t>(b))
+      {
+        const auto place = rest_position(model, static_cast<std::size_t>(rigid.node));
+        ++held;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          shape.centre[axis] += (place[axis] - shape.centre[axis]) / held;
+      }
+  }
   return shapes;
 }
 

@@ -143,6 +143,21 @@ std::vector<std::size_t> landmark_vertices(const Model& model)
   return out;
 }
 
+std::vector<std::size_t> standard_landmarks(const Model& model)
+{
+  constexpr int count = 68;
+  std::vector<std::size_t> out;
+  out.reserve(count);
+  for (int number = 1; number <= count; ++number)
+  {
+    const auto found = std::find(model.landmarks.begin(), model.landmarks.end(), fmt::format("ibug_{}", number));
+    if (found == model.landmarks.end())
+      return {};
+    out.push_back(static_cast<std::size_t>(found - model.landmarks.begin()));
+  }
+  return out;
+}
+
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out)
 {
   out.poses.resize(skin.landmarks.size());
@@ -156,7 +171,7 @@ void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, g
       const auto& n = skin.normals[vertices[landmark]];
       outwards = tf2::Vector3(n[0], n[1], n[2]);
     }
-    // where the normal points up or down, the back of the face's x axis lies along the skin upwards
+    // Where the normal points straight up, z lies along the skin to the back of the face; straight down, to its front.
     const tf2::Vector3 up = std::abs(outwards.z()) < 0.99 ? tf2::Vector3(0, 0, 1) : tf2::Vector3(-outwards.z(), 0, 0);
     const tf2::Vector3 left = up.cross(outwards).normalized(), upwards = outwards.cross(left);
     tf2::Quaternion rotation;
@@ -167,10 +182,7 @@ void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, g
   }
 }
 
-std::string body_frame(const std::string& face_frame, const BodyShape& shape)
-{
-  return face_frame + "/body/" + shape.name;
-}
+std::string body_frame(const std::string& face_frame, const BodyShape& shape) { return face_frame + "/" + shape.frame; }
 
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
 {
@@ -203,7 +215,7 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  // those of the scene before
+  // The first marker removes the bodies of the scene that was shown before.
   out.markers.emplace_back().action = visualization_msgs::Marker::DELETEALL;
   for (const BodyShape& shape : body_shapes(model))
   {
@@ -237,16 +249,20 @@ void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::
                    std::vector<geometry_msgs::TransformStamped>& out)
 {
   const SkinState& skin = frame.skin;
-  const std::vector<BodyShape> shapes = body_shapes(model);
-  out.resize(skin.landmarks.size() + frame.bodies.size());
-  for (std::size_t body = 0; body < frame.bodies.size(); ++body)
+  out.resize(skin.landmarks.size());
+  const auto add = [&](const std::vector<BodyShape>& shapes, const std::vector<BodyFrame>& bodies)
   {
-    auto& transform = out[skin.landmarks.size() + body];
-    transform.header.stamp = stamp;
-    transform.header.frame_id = face_frame;
-    transform.child_frame_id = body_frame(face_frame, shapes[body]);
-    transform.transform = to_transform(model, shapes[body], frame.bodies[body].pose);
-  }
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+    {
+      auto& transform = out.emplace_back();
+      transform.header.stamp = stamp;
+      transform.header.frame_id = face_frame;
+      transform.child_frame_id = body_frame(face_frame, shapes[body]);
+      transform.transform = to_transform(model, shapes[body], bodies[body].pose);
+    }
+  };
+  add(body_shapes(model), frame.bodies);
+  add(bone_shapes(model), frame.bones);
   for (std::size_t landmark = 0; landmark < skin.landmarks.size(); ++landmark)
   {
     auto& transform = out[landmark];

@@ -80,7 +80,7 @@ void FaceInputs::play(Runner& running, double time)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (&running.model() != model_.get())
-    return;  // another scene is being loaded
+    return;  // this runner is about to be replaced by that of another scene
   if (demo_playing_)
   {
     running.set_activation(demo_->activation(time));

@@ -50,6 +50,10 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   loading_handle.setCallbackQueue(&loading_queue_);
   serve(loading_handle, "load_scene", &FaceNode::on_load_scene);
   loading_spinner_.start();
+  fit_ = std::make_unique<FitAction>(
+      private_handle_, [this] { return fitted_face(); },
+      [this](const auto& muscles, const auto& activations)
+      { inputs_.set("fit_activation", ros::Time(), muscles, activations); });
 
   frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(play_period),
                                                  [this](const ros::WallTimerEvent&) { repeat_frame_and_play(); });
@@ -65,6 +69,7 @@ FaceNode::~FaceNode()
   stopping_ = true;
   frame_timer_.stop();
   diagnostics_timer_.stop();
+  fit_.reset();
   inputs_.shutdown();
   if (const auto running = runner())
     running->cancel_step();
@@ -114,6 +119,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   RunnerSettings settings = parameters.runner;
   settings.wanted_field = [this] { return publisher_.wanted_field(); };
   settings.wants_displacements = [this] { return publisher_.shows_muscles(); };
+  settings.wants_bone_forces = [this] { return publisher_.shows_bone_forces(); };
   const auto made =
       std::make_shared<Runner>(model, settings, [this, face](const Frame& frame) { on_frame(frame, face); });
   const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// values with the last colour
+// values that are drawn in the last colour of the scale
 constexpr double displacement_range = 10e-3;  // [m]
 constexpr double strain_range = 0.3;
 constexpr double stress_range = 20e3;  // [Pa]
@@ -42,6 +42,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       points_(private_handle, "skin_points"),
       field_(private_handle, "skin_field"),
       landmarks_(private_handle, "landmarks"),
+      landmarks_68_(private_handle, "landmarks_68"),
       state_(private_handle, "state"),
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
@@ -61,11 +62,20 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_));
   landmark_vertices_ = landmark_vertices(*model_);
+  standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
   shapes_ = body_shapes(*model_);
+  const std::vector<BodyShape> bones = bone_shapes(*model_);
   wrenches_.clear();
   for (const BodyShape& shape : shapes_)
-    wrenches_.emplace_back(handle_, "wrench/" + shape.name);
+  {
+    const bool named_like_bone =
+        std::any_of(bones.begin(), bones.end(), [&](const BodyShape& bone) { return bone.name == shape.name; });
+    wrenches_.emplace_back(handle_, "wrench/" + shape.name + (named_like_bone ? "_contact" : ""));
+  }
+  for (const BodyShape& bone : bones)
+    wrenches_.emplace_back(handle_, "wrench/" + bone.name);
+  shapes_.insert(shapes_.end(), bones.begin(), bones.end());
   if (!parent_frame.empty())
   {
     geometry_msgs::TransformStamped transform;
@@ -91,7 +101,7 @@ std::optional<SkinField> FacePublisher::wanted_field() const
   return wanted ? std::make_optional(shown_field_.load()) : std::nullopt;
 }
 
-// the values that the colours show, as fractions of the value with the last colour
+// The values that the colours show, divided by the value that has the last colour.
 std::vector<float> FacePublisher::shown_values(const Frame& frame) const
 {
   std::vector<float> values;
@@ -120,19 +130,27 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     shading_->colours(skin, shown_values(frame), colours_);
   else
     colours_.clear();
-  // a subscriber that has come since then waits for the next frame
+  // A subscriber that came after the colours were decided waits for the next frame.
   if (!colours_.empty())
   {
     skin_.publish(face_frame_, stamp, [&](auto& marker) { to_marker(*model_, colours_, skin, marker); });
     points_.publish(face_frame_, stamp,
                     [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), colours_, cloud); });
   }
-  // a frame that was made before there were subscribers has no field
+  // A frame that was made before the topic had subscribers has no field.
   if (frame.field.size() == skin.vertices.size())
     field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, {}, cloud); });
   geometry_msgs::PoseArray poses;
   to_poses(skin, landmark_vertices_, poses);
   landmarks_.publish(face_frame_, stamp, [&](auto& message) { message.poses = poses.poses; });
+  if (!standard_landmarks_.empty())
+    landmarks_68_.publish(face_frame_, stamp,
+                          [&](auto& message)
+                          {
+                            message.poses.clear();
+                            for (const std::size_t landmark : standard_landmarks_)
+                              message.poses.push_back(poses.poses[landmark]);
+                          });
   if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
   {
     visualization_msgs::MarkerArray muscles;
@@ -151,12 +169,20 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                    state.paused = paused;
                    state.backend = backend_;
                  });
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+  const auto publish_wrench = [&](std::size_t entry, const BodyFrame& body)
   {
-    const BodyShape& shape = shapes_[b];
-    wrenches_[b].publish(body_frame(face_frame_, shape), stamp,
-                         [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, frame.bodies[b]); });
-  }
+    const BodyShape& shape = shapes_[entry];
+    wrenches_[entry].publish(body_frame(face_frame_, shape), stamp,
+                             [&](auto& wrench) { wrench.wrench = to_wrench(*model_, shape, body); });
+  };
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+    publish_wrench(b, frame.bodies[b]);
+  const std::size_t first_bone = wrenches_.size() - frame.bones.size();
+  bone_listeners_ = std::any_of(wrenches_.begin() + static_cast<std::ptrdiff_t>(first_bone), wrenches_.end(),
+                                [](const auto& topic) { return topic.publisher.getNumSubscribers() > 0; });
+  // A frame that was made before these topics had subscribers has no forces on bones.
+  for (std::size_t b = 0; frame.has_bone_forces && b < frame.bones.size(); ++b)
+    publish_wrench(first_bone + b, frame.bones[b]);
   to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);
   return true;

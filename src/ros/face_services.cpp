@@ -168,6 +168,18 @@ bool FaceNode::on_probe(Probe::Request& request, Probe::Response& response)
                 });
 }
 
+FitAction::Face FaceNode::fitted_face() const
+{
+  std::string reason;
+  if (!runner(&reason))
+    throw Error(reason);
+  const std::lock_guard<std::mutex> lock(runner_mutex_);
+  const SolverSettings& solver = parameters_.runner.solver;
+  return { parameters_.bake,
+           parameters_.model,
+           { "--backend", solver.backend, "--threads", std::to_string(solver.threads) } };
+}
+
 void FaceNode::on_config(FaceConfig& config, std::uint32_t)
 {
   const auto running = runner();
@@ -181,7 +193,7 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
   catch (const Error& error)
   {
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
-    // also takes back what was applied before the fault
+    // Applying the old configuration also undoes what was applied before the fault was found.
     config = config_;
     apply_config(*running, config_);
   }
@@ -196,7 +208,7 @@ void FaceNode::apply_config(Runner& running, const FaceConfig& config)
   for (std::string word; words >> word;)
     off.insert(name_of(effect_from_name(word)));
   running.set_frame_rate(config.frame_rate);
-  // only what the configuration changes: ~switch_effect may have switched others
+  // Effects that this configuration does not change are left alone: ~switch_effect may have switched them.
   for (const Effect effect : every_effect())
     if (!effects_of(running.model()).has(effect))
       continue;

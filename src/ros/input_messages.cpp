@@ -49,7 +49,7 @@ std::set<std::string> bones_of_poses(const Model& model)
 
 void FaceInputs::check_stamp(const ros::Time& stamp) const
 {
-  // a message without a stamp is of now; a simulated clock that has not begun tells nothing
+  // A message without a stamp counts as sent now. A simulated clock that has not begun cannot be compared with.
   if (stamp.isZero() || ros::Time::now().isZero())
     return;
   const double age = (ros::Time::now() - stamp).toSec();
@@ -98,7 +98,7 @@ void FaceInputs::end_demo(const char* topic)
 void FaceInputs::command(const char* topic, Runner& running, double now,
                          const std::map<std::string, MuscleCommands::Course>& courses, double begin)
 {
-  // muscles that this message does not name stay where the demo has them
+  // The message ends the demo. Muscles that it does not name stay where the demo has them.
   if (demo_playing_)
     commands_->set(demo_->activation(now), now);
   commands_->follow(courses, begin, now);
@@ -135,7 +135,7 @@ void FaceInputs::on_joint_states(const sensor_msgs::JointState& message)
 void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& message)
 {
   const char* const topic = "joint_trajectory";
-  // its stamp is the time at which it begins, so that it may be in the future
+  // The stamp says when the trajectory begins and may be in the future: the age of the message is not checked.
   take(topic, ros::Time(),
        [&](Runner& running, double now)
        {
@@ -208,7 +208,7 @@ void FaceInputs::on_action_units(const ActionUnits& message)
   take(topic, message.header.stamp,
        [&](Runner& running, double now)
        {
-         // each unit and its halves
+         // A message may name each unit, its left half and its right half.
          check_lengths(message.name.size(), message.intensity.size(), 3 * model_->action_units.size());
          std::map<std::string, double> intensities;
          for (std::size_t entry = 0; entry < message.name.size(); ++entry)

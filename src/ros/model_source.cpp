@@ -48,21 +48,6 @@ bool is_program(const fs::path& path)
   return fs::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
 }
 
-/// Makes a folder in the system's temporary folder. It is removed, with all that it contains, with the last owner of
-/// its path.
-std::shared_ptr<const fs::path> temporary_folder()
-{
-  std::string pattern = (fs::temp_directory_path() / "frontalis-XXXXXX").string();
-  if (!mkdtemp(pattern.data()))
-    throw Error(fmt::format("{}: cannot make a temporary folder: {}", pattern, std::strerror(errno)));
-  return { new fs::path(pattern), [](const fs::path* path)
-           {
-             std::error_code ignored;
-             fs::remove_all(*path, ignored);
-             delete path;
-           } };
-}
-
 /// Reads a pipe to its end and hands on each line. A carriage return ends a line too, as programs that rewrite a line
 /// of progress print it instead of a newline.
 class LineReader
@@ -135,45 +120,6 @@ bp::child start(const std::string& program, const std::vector<std::string>& argu
   }
 }
 
-/// Runs a program to its end. Throws an Error if it is cancelled, crashes or does not exit with 0.
-void run(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
-         const std::atomic<bool>& cancelled)
-{
-  static std::mutex starting;  // held until the program runs, so that no other bake inherits these pipes
-  std::unique_lock<std::mutex> lock(starting);
-  asio::io_context context;
-  std::string said;
-  LineReader output(context, log);
-  LineReader errors(context,
-                    [&](const std::string& line)
-                    {
-                      said += (said.empty() ? "" : "\n") + line;
-                      log(line);
-                    });
-  bp::child child = start(program, arguments, output, errors);
-  lock.unlock();
-
-  output.read();
-  errors.read();
-  while (!context.stopped() && !cancelled)  // the context stops when both streams have ended
-    context.run_for(cancellation_period);
-  // child.terminate() would leave a zombie process, since it does not wait
-  if (cancelled)
-    kill(child.id(), SIGKILL);
-  std::error_code fault;
-  child.wait(fault);
-  if (cancelled)
-    throw Error("the bake was interrupted");
-  if (fault)
-    throw Error(fmt::format("{}: its exit status cannot be read: {}", program, fault.message()));
-  const int status = child.native_exit_code();
-  if (WIFSIGNALED(status))
-    throw Error(fmt::format("{} bake: ended by signal {} ({}){}{}", program, WTERMSIG(status),
-                            strsignal(WTERMSIG(status)), said.empty() ? "" : "\n", said));
-  if (child.exit_code() != 0)
-    throw Error(said.empty() ? fmt::format("{} bake: ended with exit status {}", program, child.exit_code()) : said);
-}
-
 }  // namespace
 
 std::string find_program(const std::string& wanted)
@@ -214,17 +160,74 @@ std::string default_cache()
   return home != nullptr ? std::string(home) + "/.ros/frontalis" : "";
 }
 
-Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled)
+std::shared_ptr<const fs::path> temporary_folder()
 {
-  const auto folder = temporary_folder();
-  const std::string file = (*folder / "model.vtkhdf").string();
-  std::vector<std::string> arguments{ "bake", request.scene, "-o", file };
+  std::string pattern = (fs::temp_directory_path() / "frontalis-XXXXXX").string();
+  if (!mkdtemp(pattern.data()))
+    throw Error(fmt::format("{}: cannot make a temporary folder: {}", pattern, std::strerror(errno)));
+  return { new fs::path(pattern), [](const fs::path* path)
+           {
+             std::error_code ignored;
+             fs::remove_all(*path, ignored);
+             delete path;
+           } };
+}
+
+void run_program(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
+                 const std::atomic<bool>& cancelled)
+{
+  const std::string command = program + " " + arguments.front();
+  static std::mutex starting;  // held until the program runs, so that no other program inherits these pipes
+  std::unique_lock<std::mutex> lock(starting);
+  asio::io_context context;
+  std::string said;
+  LineReader output(context, log);
+  LineReader errors(context,
+                    [&](const std::string& line)
+                    {
+                      said += (said.empty() ? "" : "\n") + line;
+                      log(line);
+                    });
+  bp::child child = start(program, arguments, output, errors);
+  lock.unlock();
+
+  output.read();
+  errors.read();
+  while (!context.stopped() && !cancelled)  // the context stops when both streams have ended
+    context.run_for(cancellation_period);
+  // child.terminate() would leave a zombie process, since it does not wait
+  if (cancelled)
+    kill(child.id(), SIGKILL);
+  std::error_code fault;
+  child.wait(fault);
+  if (cancelled)
+    throw Error(command + " was interrupted");
+  if (fault)
+    throw Error(fmt::format("{}: its exit status cannot be read: {}", program, fault.message()));
+  const int status = child.native_exit_code();
+  if (WIFSIGNALED(status))
+    throw Error(fmt::format("{}: ended by signal {} ({}){}{}", command, WTERMSIG(status), strsignal(WTERMSIG(status)),
+                            said.empty() ? "" : "\n", said));
+  if (child.exit_code() != 0)
+    throw Error(said.empty() ? fmt::format("{}: ended with exit status {}", command, child.exit_code()) : said);
+}
+
+void add_scene_arguments(const BakeRequest& request, std::vector<std::string>& arguments)
+{
   for (const auto& [option, value] : { std::pair{ "--mesh-dir", request.mesh_directory },
                                        { "--accuracy", request.accuracy },
                                        { "--cache", request.cache } })
     if (!value.empty())
       arguments.insert(arguments.end(), { option, value });
-  run(request.program, arguments, log, cancelled);
+}
+
+Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled)
+{
+  const auto folder = temporary_folder();
+  const std::string file = (*folder / "model.vtkhdf").string();
+  std::vector<std::string> arguments{ "bake", request.scene, "-o", file };
+  add_scene_arguments(request, arguments);
+  run_program(request.program, arguments, log, cancelled);
   return read_model(file);
 }
 

@@ -66,7 +66,7 @@ void MuscleCommands::follow(const std::map<std::string, Course>& courses, double
     Course next;
     if (begin > now)
     {
-      // as commanded before, up to the beginning
+      // Until the new course begins, the muscle follows the course that it had before.
       next.push_back({ now, value_at(courses_[muscle], now) });
       for (const Knot& knot : courses_[muscle])
         if (knot.time > now && knot.time < begin)

@@ -13,7 +13,7 @@ MuscleLines::MuscleLines(const Model& model, std::size_t most) : lines_(model.mu
   for (std::size_t voxel = 0; voxel + 1 < model.fibre_begin.size(); ++voxel)
     for (auto fibre = model.fibre_begin[voxel]; fibre < model.fibre_begin[voxel + 1]; ++fibre)
     {
-      // from the voxel's centre in both directions to its sides
+      // The line runs from the voxel's centre in both directions, up to the sides of the voxel.
       const auto& direction = model.fibre_direction[static_cast<std::size_t>(fibre)];
       const double longest =
           std::max({ std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2]), 1e-6f });

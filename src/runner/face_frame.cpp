@@ -25,6 +25,20 @@ bool all_finite(const std::vector<std::array<float, 3>>& vectors)
                      { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); });
 }
 
+using Vector = physics::Vec3<double>;
+
+Vector vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
+
+BodyFrame in_face_frame(const Model& model, const Reaction& local, const RigidTransform& pose)
+{
+  const std::array<double, 3> origin = inverse(model.to_face).translation;
+  // from the origin of the local frame to that of the face frame, both carried by the body
+  const Vector about_face = vector_of(local.moment) - cross(vector_of(pose.turned(origin)), vector_of(local.force));
+  return { { model.to_face.turned(local.force),
+             model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } }) },
+           motion_in_face(model, pose) };
+}
+
 }  // namespace
 
 void to_face_frame(const Model& model, SkinState& skin)
@@ -39,26 +53,60 @@ void to_face_frame(const Model& model, SkinState& skin)
 
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model)
 {
-  using Vector = physics::Vec3<double>;
-  const auto vector = [](const std::array<double, 3>& a) { return Vector{ a[0], a[1], a[2] }; };
   const std::vector<Reaction> reactions = solver.reactions();
   const std::vector<TouchedBody> touched = touched_bodies(model);
   std::vector<RigidTransform> poses = solver.bodies();
   // a backend that knows of no body that is pushed leaves them where their bones are
   for (std::size_t c = poses.size(); c < reactions.size(); ++c)
     poses.push_back(touched[c].bone < 0 ? RigidTransform() : solver.controls().bone[touched[c].bone]);
-  const std::array<double, 3> origin = inverse(model.to_face).translation;
   std::vector<BodyFrame> bodies;
+  bodies.reserve(reactions.size());
   for (std::size_t c = 0; c < reactions.size(); ++c)
-  {
-    const auto& [force, moment] = reactions[c];
-    // from the origin of the local frame to that of the face frame, both carried by the body
-    const Vector about_face = vector(moment) - cross(vector(poses[c].turned(origin)), vector(force));
-    bodies.push_back({ { model.to_face.turned(force),
-                         model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } }) },
-                       motion_in_face(model, poses[c]) });
-  }
+    bodies.push_back(in_face_frame(model, reactions[c], poses[c]));
   return bodies;
+}
+
+std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, bool forces)
+{
+  const std::vector<RigidTransform>& poses = solver.controls().bone;
+  std::vector<Reaction> sums(model.bones.size());
+  const auto add = [](std::array<double, 3>& to, const Vector& by)
+  {
+    to[0] += by.x;
+    to[1] += by.y;
+    to[2] += by.z;
+  };
+  if (forces && !sums.empty())
+  {
+    std::vector<std::array<double, 3>> internal, displaced;
+    solver.internal_forces(internal);
+    solver.displacements(displaced);
+    for (const RigidNode& rigid : model.rigid)
+    {
+      if (rigid.bone < 0)
+        continue;
+      const auto node = static_cast<std::size_t>(rigid.node);
+      Reaction& sum = sums[static_cast<std::size_t>(rigid.bone)];
+      const Vector force = -1.0 * vector_of(internal[node]);
+      const Vector from_origin = vector_of(rest_position(model, node)) + vector_of(displaced[node]) -
+                                 vector_of(poses[static_cast<std::size_t>(rigid.bone)].translation);
+      add(sum.force, force);
+      add(sum.moment, cross(from_origin, force));
+    }
+    const std::vector<TouchedBody> touched = touched_bodies(model);
+    const std::vector<Reaction> reactions = solver.reactions();
+    for (std::size_t c = 0; c < reactions.size(); ++c)
+      if (touched[c].bone >= 0)
+      {
+        add(sums[static_cast<std::size_t>(touched[c].bone)].force, vector_of(reactions[c].force));
+        add(sums[static_cast<std::size_t>(touched[c].bone)].moment, vector_of(reactions[c].moment));
+      }
+  }
+  std::vector<BodyFrame> bones;
+  bones.reserve(sums.size());
+  for (std::size_t b = 0; b < sums.size(); ++b)
+    bones.push_back(in_face_frame(model, sums[b], poses[b]));
+  return bones;
 }
 
 bool is_finite(const SkinState& skin)

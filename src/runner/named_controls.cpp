@@ -76,6 +76,16 @@ bool add_pose(const Model& model, const std::vector<Model::Expression>& poses, c
   return false;
 }
 
+// A unit with one of FACS's letters, A (trace) to E (maximum), such as AU12C or AU12C_left, without its letter, and the
+// letter's share of the full intensity: 1 to 5 fifths. Other names stay as they are, with the share 1.
+std::pair<std::string, double> without_letter(const std::string& name)
+{
+  const std::size_t digit = name.find_last_of("0123456789");
+  if (digit == std::string::npos || digit + 1 == name.size() || name[digit + 1] < 'A' || name[digit + 1] > 'E')
+    return { name, 1 };
+  return { name.substr(0, digit + 1) + name.substr(digit + 2), (name[digit + 1] - 'A' + 1) / 5.0 };
+}
+
 Controls limited(Controls controls)
 {
   for (float& activation : controls.activation)
@@ -131,10 +141,39 @@ Controls action_unit_controls(const Model& model, const std::map<std::string, do
   {
     if (!(intensity >= 0 && intensity <= 1))
       throw Error(fmt::format("intensity of action unit '{}' is {}; must be from 0 to 1", name, intensity));
-    if (!add_pose(model, model.action_units, name, intensity, controls))
+    const auto [unit, share] = without_letter(name);
+    if (!add_pose(model, model.action_units, name, intensity, controls) &&
+        !add_pose(model, model.action_units, unit, share * intensity, controls))
       throw Error("no action unit is called '" + name + "'; there is " + listed(names_of(model.action_units)));
   }
   return limited(controls);
+}
+
+Controls value_controls(const Model& model, const std::map<std::string, double>& values)
+{
+  static const std::array<std::string, 6> axes{ { "x", "y", "z", "rx", "ry", "rz" } };
+  constexpr double millimetre = 1e-3, degree = 3.14159265358979323846 / 180;
+  Controls controls = rest_controls(model);
+  std::map<std::string, double> activation;
+  std::map<std::string, std::array<double, 6>> motions;
+  for (const auto& [name, value] : values)
+  {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos)
+    {
+      activation[name] = value;
+      continue;
+    }
+    const auto axis = std::find(axes.begin(), axes.end(), name.substr(dot + 1));
+    if (axis == axes.end())
+      throw Error("'" + name + "' is no muscle, nor a bone's .x, .y, .z, .rx, .ry or .rz");
+    const auto index = static_cast<std::size_t>(axis - axes.begin());
+    motions[name.substr(0, dot)][index] = value * (index < 3 ? millimetre : degree);
+  }
+  set_activations(model, activation, controls.activation);
+  for (const auto& [bone, m] : motions)
+    set_bone_motion(model, bone, rigid_motion({ { m[3], m[4], m[5] } }, { { m[0], m[1], m[2] } }), controls.bone);
+  return controls;
 }
 
 void take_pose(const Model& model, const Controls& pose, Controls& controls)

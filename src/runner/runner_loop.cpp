@@ -116,6 +116,8 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   frame.steps = solver->profile().steps;
   frame.activation = solver->activation();
   frame.bodies = bodies_in_face_frame(*solver, *model);
+  frame.has_bone_forces = settings.wants_bone_forces && settings.wants_bone_forces();
+  frame.bones = bones_in_face_frame(*solver, *model, frame.has_bone_forces);
   if (guard)
     frame.guard = guard->counts();
   ++frame.sequence;

@@ -142,6 +142,19 @@ TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)
   EXPECT_NEAR(axes.getColumn(2).x(), -1, 1e-6);
 }
 
+TEST(Conversions, StandardLandmarksAreInTheirOrderAndComplete)
+{
+  Model model = small_model();
+  for (int number = 68; number >= 1; --number)
+    model.landmarks.push_back("ibug_" + std::to_string(number));
+  const auto found = standard_landmarks(model);
+  ASSERT_EQ(found.size(), 68u);
+  EXPECT_EQ(model.landmarks[found[0]], "ibug_1");
+  EXPECT_EQ(model.landmarks[found[67]], "ibug_68");
+  model.landmarks[found[30]] = "nose";
+  EXPECT_TRUE(standard_landmarks(model).empty());
+}
+
 TEST(Conversions, MuscleLinesMoveWithTheTissue)
 {
   Model model = small_model();

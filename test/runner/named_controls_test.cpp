@@ -49,6 +49,11 @@ TEST(NamedControls, one_side_moves_alone_with_half_of_the_middle)
   const Model model = face();
   EXPECT_EQ(expression_controls(model, "smile_left").activation, (std::vector<float>{ 0.75f, 0, 0.25f, 0.5f }));
   EXPECT_EQ(expression_controls(model, "smile_right").activation, (std::vector<float>{ 0, 0.75f, 0.25f, 0.5f }));
+  EXPECT_EQ(action_unit_controls(model, { { "AU12C_left", 1 } }).activation,
+            action_unit_controls(model, { { "AU12_left", 0.6 } }).activation);
+  EXPECT_EQ(action_unit_controls(model, { { "AU5E", 0.5 } }).activation[3],
+            action_unit_controls(model, { { "AU5", 0.5 } }).activation[3]);
+  EXPECT_THROW(action_unit_controls(model, { { "AU12F", 1 } }), Error);
   EXPECT_EQ(action_unit_controls(model, { { "AU12_left", 0.5 } }).activation, (std::vector<float>{ 0.5f, 0, 0, 0.5f }));
   EXPECT_EQ(action_unit_controls(model, { { "AU12_left", 0.5 }, { "AU12", 0.25 } }).activation,
             (std::vector<float>{ 0.75f, 0.25f, 0, 0.5f }));

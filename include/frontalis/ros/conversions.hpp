@@ -46,17 +46,20 @@ void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, 
 /// The skin vertex that is closest at rest to each landmark.
 std::vector<std::size_t> landmark_vertices(const Model& model);
 
+/// The 68 points of the iBUG 300-W annotation, landmarks ibug_1 to ibug_68, in this order; empty if one is missing.
+std::vector<std::size_t> standard_landmarks(const Model& model);
+
 /// One pose per landmark, in the order of the model: x along the outward normal of the skin at its vertex, z along the
 /// skin upwards. Fills all but the header.
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out);
 
-/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body.
+/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body and bone.
 void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::PoseArray& landmarks,
                    const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
 
-/// Name of the frame of a body that tissue touches. Its origin is the body's centre, and it lies as the face frame does
-/// while the body is at rest.
+/// Name of the frame of a body that tissue touches, or of a bone. Its origin is the body's centre, and it lies as the
+/// face frame does while the body is at rest.
 std::string body_frame(const std::string& face_frame, const BodyShape& shape);
 /// From the face frame to that of a body.
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);

@@ -50,6 +50,10 @@ public:
   /// Resets the face, and forgets all commands.
   void reset(Runner& running);
 
+  /// Commands muscles, as a message on this topic or from this source; if there is a fault, it is reported like that of
+  /// a message, and nothing changes.
+  void set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
+           const std::vector<double>& values);
   /// Sets what the demo, the commands and the followed frames have for a simulated time [s].
   void play(Runner& running, double time);
   /// Whether the activations may change after a time [s] without a further command.
@@ -72,8 +76,6 @@ private:
   /// runner, its stamp is not close to the present, or `act` throws.
   template <typename Act>
   void take(const char* topic, const ros::Time& stamp, const Act& act);
-  void set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
-           const std::vector<double>& values);
   void command(const char* topic, Runner& running, double now,
                const std::map<std::string, MuscleCommands::Course>& courses, double begin);
   /// Durations [s]: to reach a pose, to keep it (0: until the next command), to relax after that.

@@ -2,6 +2,7 @@
 
 #include "frontalis/ros/face_inputs.hpp"
 #include "frontalis/ros/face_publisher.hpp"
+#include "frontalis/ros/fit_action.hpp"
 #include "frontalis/ros/parameters.hpp"
 #include "frontalis/runner/runner.hpp"
 
@@ -66,6 +67,8 @@ private:
   bool on_list_muscles(ListMuscles::Request& request, ListMuscles::Response& response);
   bool on_load_scene(LoadScene::Request& request, LoadScene::Response& response);
   bool on_probe(Probe::Request& request, Probe::Response& response);
+  /// The face that ~fit_activation is about. Throws an Error if there is none yet.
+  FitAction::Face fitted_face() const;
   void on_config(FaceConfig& config, std::uint32_t level);
   /// Throws an Error if the configuration names something unknown, or an effect cannot be switched.
   void apply_config(Runner& running, const FaceConfig& config);
@@ -112,6 +115,7 @@ private:
   FaceConfig config_ = FaceConfig::__getDefault__();
   std::set<std::string> switched_off_;  ///< effects that the configuration has switched off
   std::unique_ptr<dynamic_reconfigure::Server<FaceConfig>> server_;
+  std::unique_ptr<FitAction> fit_;
   ros::WallTimer frame_timer_, diagnostics_timer_;
   std::thread loader_;
 };

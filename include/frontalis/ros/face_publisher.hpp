@@ -24,8 +24,8 @@ namespace frontalis
 
 /// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~bodies, ~wrench/...
 /// and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory is reused
-/// once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field() and
-/// shows_muscles().
+/// once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field(),
+/// shows_muscles() and shows_bone_forces().
 class FacePublisher
 {
 public:
@@ -44,6 +44,8 @@ public:
   std::optional<SkinField> wanted_field() const;
   /// Whether frames must have displacements, for ~muscles.
   bool shows_muscles() const { return muscles_.getNumSubscribers() > 0; }
+  /// Whether frames must have the forces on bones.
+  bool shows_bone_forces() const { return bone_listeners_; }
 
   /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
@@ -77,9 +79,10 @@ private:
 
   Topic<visualization_msgs::Marker> skin_;
   Topic<sensor_msgs::PointCloud2> points_, field_;
-  Topic<geometry_msgs::PoseArray> landmarks_;
+  Topic<geometry_msgs::PoseArray> landmarks_, landmarks_68_;
   Topic<SimulationState> state_;
-  std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per body
+  std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
+  std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
   ros::Publisher topology_, bodies_, muscles_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
@@ -91,12 +94,13 @@ private:
   std::unique_ptr<SkinShading> shading_;
   std::vector<std::array<float, 3>> rest_;
   std::vector<std::size_t> landmark_vertices_;
+  std::vector<std::size_t> standard_landmarks_;
   std::unique_ptr<MuscleLines> lines_;
   std::atomic<SkinColour> colour_{ SkinColour::skin };
   std::atomic<SkinField> shown_field_{ SkinField::strain };
   double colour_range_ = 0;
   SkinColours colours_;
-  std::vector<BodyShape> shapes_;
+  std::vector<BodyShape> shapes_;  ///< of bodies that tissue touches, then of bones
   std::vector<geometry_msgs::TransformStamped> frame_transforms_;
 };
 

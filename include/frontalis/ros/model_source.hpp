@@ -3,8 +3,11 @@
 #include "frontalis/model/model.hpp"
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace frontalis
 {
@@ -22,6 +25,18 @@ struct BakeRequest
 /// Called with each line that the program prints.
 using BakeLog = std::function<void(const std::string& line)>;
 
+/// Adds the options of the program that say how a scene is baked.
+void add_scene_arguments(const BakeRequest& request, std::vector<std::string>& arguments);
+
+/// Makes a folder in the system's temporary folder. It is removed, with all that it contains, with the last owner of
+/// its path.
+std::shared_ptr<const std::filesystem::path> temporary_folder();
+
+/// Runs a program to its end. It is killed within 0.1 s after `cancelled` becomes true, and when the calling thread or
+/// its process ends. Throws an Error with what the program wrote to standard error, or how it ended.
+void run_program(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
+                 const std::atomic<bool>& cancelled);
+
 /// The path of the program `frontalis`: `wanted` if it is not empty, else the first executable file of that name in the
 /// folder of the running executable, in the folder `frontalis` beside this library, and in the folders of PATH. Throws
 /// an Error that lists the places where it looked.
@@ -32,9 +47,7 @@ std::string find_program(const std::string& wanted);
 std::string default_cache();
 
 /// Bakes a scene by a process of its own, so that a crash there does not reach the caller, and reads the model. The
-/// process writes into a temporary folder, which is removed. It is killed within 0.1 s after `cancelled` becomes true,
-/// and when the calling thread or its process ends. Throws an Error with what the program wrote to standard error, or
-/// how it ended.
+/// process writes into a temporary folder. Cancels and throws as run_program().
 Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled);
 
 }  // namespace frontalis

@@ -22,8 +22,14 @@ Controls rest_controls(const Model& model);
 /// this name.
 Controls expression_controls(const Model& model, const std::string& name);
 
-/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left.
+/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left. FACS's letters A to E in a
+/// name (AU12C, AU12C_left) stand for 0.2, 0.4, 0.6, 0.8 and 1 of the intensity.
 Controls action_unit_controls(const Model& model, const std::map<std::string, double>& intensities);
+
+/// Named values added to rest_controls(): an activation (0..1) by the name of its muscle, and a part of a bone's motion
+/// from its rest pose as BONE.x, .y or .z, shift along the axes of the face frame [mm], or BONE.rx, .ry or .rz,
+/// rotation vector about its origin [degrees]. Throws an Error that names what is unknown or out of range.
+Controls value_controls(const Model& model, const std::map<std::string, double>& values);
 
 /// Sets all activations, and the motions of the bones that expressions or action units of the model move.
 void take_pose(const Model& model, const Controls& pose, Controls& controls);

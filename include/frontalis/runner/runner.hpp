@@ -28,6 +28,8 @@ struct Frame
   /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
   std::vector<std::array<double, 3>> displacements;
   std::vector<BodyFrame> bodies;  ///< that tissue touches, one per entry of touched_bodies(model)
+  std::vector<BodyFrame> bones;   ///< one per bone
+  bool has_bone_forces = false;   ///< while RunnerSettings::wants_bone_forces; else reactions of bones are 0
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   double seconds_per_step = 0;    ///< wall time per step since the latest renewal of the monitor; 0: not known
@@ -55,6 +57,8 @@ struct RunnerSettings
   std::function<std::optional<SkinField>()> wanted_field{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, no displacements are copied.
   std::function<bool()> wants_displacements{};
+  /// The same for the forces on bones.
+  std::function<bool()> wants_bone_forces{};
 };
 
 /// A face that moves by itself: it owns the solver and a thread that steps it and hands out frames. All functions may

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "frontalis/ros/model_source.hpp"
+
+#include <actionlib/server/simple_action_server.h>
+#include <frontalis/FitActivationAction.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// The action ~fit_activation, which `frontalis fit` answers as a process of its own. One goal at a time; a new goal
+/// ends the one that is under way.
+class FitAction
+{
+public:
+  /// What to fit: a scene or a baked model, and options of `frontalis fit` for the backend.
+  struct Face
+  {
+    BakeRequest source;
+    std::string model;                 ///< path of a baked model; empty: that of `source`
+    std::vector<std::string> options;  ///< such as --threads
+  };
+  /// Throws an Error if there is no face yet.
+  using FindFace = std::function<Face()>;
+  using Apply = std::function<void(const std::vector<std::string>& muscles, const std::vector<double>& activations)>;
+
+  FitAction(const ros::NodeHandle& private_handle, FindFace face, Apply apply);
+  /// Ends the goal that is under way.
+  ~FitAction();
+  FitAction(const FitAction&) = delete;
+  FitAction& operator=(const FitAction&) = delete;
+
+private:
+  void execute(const FitActivationGoalConstPtr& goal);
+  FitActivationResult answer(const FitActivationGoal& goal);
+
+  const FindFace face_;
+  const Apply apply_;
+  std::atomic<bool> stopping_{ false };
+  std::atomic<bool> cancelled_{ false };
+  actionlib::SimpleActionServer<FitActivationAction> server_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,269 @@
+#include "study/fit/influence.hpp"
+
+#include "frontalis/runner/face_frame.hpp"
+#include "frontalis/study/step_time.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace frontalis
+{
+namespace
+{
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double tolerance = 1e-3;           // of equilibrium: remaining motion over displacement
+constexpr double sufficient_motion = 5e-6;   // remaining motion of the skin that is small enough in any case [m]
+constexpr double shortest_relaxation = 0.1;  // simulated time after which that is looked at [s]
+constexpr double longest_relaxation = 5;     // simulated time within which a face finds its equilibrium [s]
+constexpr double interior_share = 0.1;       // of the range: an unknown that rests farther from both limits is inside
+
+std::vector<double> numbers_of(const VectorXd& vector) { return { vector.begin(), vector.end() }; }
+
+VectorXd vector_of(const nlohmann::json& json, std::size_t size)
+{
+  const auto numbers = json.get<std::vector<double>>();
+  if (numbers.size() != size)
+    throw Error("has another number of coordinates");
+  return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(size));
+}
+
+// Influences are of use only for the same landmarks and the same laws of motion.
+nlohmann::ordered_json heading_of(const Model& model)
+{
+  return { { "motion_generation", motion_generation },
+           { "scene", model.scene_hash },
+           { "landmarks", model.landmarks } };
+}
+
+// what a file holds; nothing if it is missing, damaged or of another model
+Influence read_influence(const std::string& path, const Model& model)
+{
+  Influence out;
+  try
+  {
+    std::ifstream file(path);
+    const auto json = nlohmann::json::parse(file);
+    const nlohmann::ordered_json heading = heading_of(model);
+    for (const auto& [key, value] : heading.items())
+      if (json.at(key) != nlohmann::json(value))
+        return {};
+    const std::size_t size = 3 * model.landmarks.size();
+    out.rest = vector_of(json.at("rest"), size);
+    for (const auto& [name, column] : json.at("unknowns").items())
+    {
+      auto& [at, displaced] = out.columns[name];
+      at = column.at("at").get<std::array<double, 2>>();
+      for (const std::size_t side : { 0, 1 })
+        displaced[side] = vector_of(column.at("displaced").at(side), size);
+    }
+    return out;
+  }
+  catch (const std::exception&)
+  {
+    return {};
+  }
+}
+
+void keep_influence(const std::string& path, const Model& model, const Influence& influence)
+{
+  nlohmann::ordered_json json = heading_of(model);
+  json["rest"] = numbers_of(influence.rest);
+  for (const auto& [name, column] : influence.columns)
+    json["unknowns"][name] = { { "at", column.at },
+                               { "displaced", { numbers_of(column.displaced[0]), numbers_of(column.displaced[1]) } } };
+  try
+  {
+    make_folder(std::filesystem::path(path).parent_path().string());
+    write_text(path, json_text(json));
+  }
+  catch (const Error&)
+  {
+    // the fit has its influence; only the next one takes longer
+  }
+}
+
+// both limits if the unknown rests between them, else the farther limit and the middle of the way there
+std::array<double, 2> measured_at(const Unknown& unknown, double rest)
+{
+  const double below = rest - unknown.lower, above = unknown.upper - rest;
+  const double least = interior_share * (unknown.upper - unknown.lower);
+  if (below > least && above > least)
+    return { { unknown.lower, unknown.upper } };
+  const double far = above >= below ? unknown.upper : unknown.lower;
+  return { { (rest + far) / 2, far } };
+}
+
+VectorXd places_of(const SkinState& skin)
+{
+  VectorXd out(static_cast<Index>(3 * skin.landmarks.size()));
+  for (Index i = 0; i < out.size(); ++i)
+    out[i] = double(skin.landmarks[static_cast<std::size_t>(i / 3)][static_cast<std::size_t>(i % 3)]);
+  return out;
+}
+
+double largest_motion(const SkinState& from, const SkinState& to)
+{
+  double most = 0;
+  for (std::size_t v = 0; v < from.vertices.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(double(to.vertices[v][axis]) - double(from.vertices[v][axis])));
+  return most;
+}
+
+}  // namespace
+
+ForwardRuns::ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings)
+    : model_(std::move(model)),
+      watch_(settings.watch ? settings.watch : [](const std::string&, double) {}),
+      solver_(make_solver(model_, settings.solver)),
+      guard_(*solver_, model_)
+{
+}
+
+void ForwardRuns::announce(const std::string& stage, double done)
+{
+  stage_ = stage;
+  done_ = done;
+  watch_(stage, done);
+}
+
+SkinState ForwardRuns::skin()
+{
+  SkinState skin;
+  solver_->skin(skin);
+  to_face_frame(*model_, skin);
+  return skin;
+}
+
+VectorXd ForwardRuns::settle(const std::map<std::string, double>& values)
+{
+  solver_->reset();
+  guard_.restart();
+  const SkinState start = skin();
+  // a face that hardly moves, such as one at rest, is in equilibrium although nothing is small in proportion to that
+  const auto moves = [&](const Equilibrium& now)
+  {
+    watch_(stage_, done_);
+    return now.seconds < shortest_relaxation || now.residual * largest_motion(start, skin()) > sufficient_motion;
+  };
+  std::string of;
+  for (const auto& [name, value] : values)
+    of += fmt::format(" {} {:g}", name, value);
+  if (of.empty())
+    of = " all at rest";
+  Equilibrium found;
+  try
+  {
+    found = guard_.settle(value_controls(*model_, values), tolerance, longest_relaxation / model_->time_scaling, moves);
+  }
+  catch (const Unstable& error)
+  {
+    throw Error(fmt::format("with{}: {}", of, error.what()));
+  }
+  if (!found.reached && moves(found))
+    throw Error(fmt::format("no equilibrium with{}: {:.2g} of the displacement is left after {:g} s of relaxation", of,
+                            found.residual, found.seconds));
+  return places_of(skin());
+}
+
+std::vector<VectorXd> ForwardRuns::play(const ControlCurve& curve, const std::vector<double>& times)
+{
+  solver_->reset();
+  guard_.restart();
+  std::vector<VectorXd> out;
+  out.reserve(times.size());
+  double now = 0;
+  for (const double time : times)
+  {
+    if (time > now)
+      guard_.advance((time - now) / model_->time_scaling, curve.at(time));
+    now = std::max(now, time);
+    out.push_back(places_of(skin()));
+    watch_(stage_, static_cast<double>(out.size()) / static_cast<double>(times.size()));
+  }
+  return out;
+}
+
+double rest_value(const Model& model, const std::string& unknown)
+{
+  const Controls rest = rest_controls(model);
+  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+    if (model.muscles[m].name == unknown)
+      return rest.activation[m];
+  return 0;
+}
+
+Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknowns, const FitSettings& settings,
+                           double& seconds)
+{
+  const Model& model = runs.model();
+  const std::string path = settings.cache.empty() || model.scene_hash.empty()
+                               ? ""
+                               : settings.cache + "/" + model.scene_hash + ".influence.json";
+  Influence influence = path.empty() ? Influence() : read_influence(path, model);
+  const double begin = wall_seconds();
+  const auto count = static_cast<double>(unknowns.size());
+  bool measured = false;
+  if (influence.rest.size() == 0)
+  {
+    runs.announce("influence", 0);
+    influence.rest = runs.settle({});
+    measured = true;
+  }
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+  {
+    const Unknown& unknown = unknowns[i];
+    const auto at = measured_at(unknown, rest_value(model, unknown.name));
+    if (const auto known = influence.columns.find(unknown.name);
+        known != influence.columns.end() && known->second.at == at)
+      continue;
+    runs.announce("influence", static_cast<double>(i) / count);
+    auto& column = influence.columns[unknown.name];
+    column.at = at;
+    for (const std::size_t side : { 0, 1 })
+      column.displaced[side] = runs.settle({ { unknown.name, at[side] } }) - influence.rest;
+    measured = true;
+  }
+  seconds = measured ? wall_seconds() - begin : 0;
+  if (measured && !path.empty())
+    keep_influence(path, model, influence);
+  return influence;
+}
+
+InfluenceLaw::InfluenceLaw(const Model& model, const Influence& influence, const std::vector<Unknown>& unknowns)
+    : rest_(static_cast<Index>(unknowns.size())),
+      linear_(influence.rest.size(), rest_.size()),
+      quadratic_(influence.rest.size(), rest_.size())
+{
+  for (Index i = 0; i < rest_.size(); ++i)
+  {
+    const std::string& name = unknowns[static_cast<std::size_t>(i)].name;
+    const auto& [at, displaced] = influence.columns.at(name);
+    rest_[i] = rest_value(model, name);
+    // the parabola b s + c s^2 through both, with s from rest
+    const double first = at[0] - rest_[i], second = at[1] - rest_[i];
+    quadratic_.col(i) = (displaced[1] / second - displaced[0] / first) / (second - first);
+    linear_.col(i) = displaced[0] / first - quadratic_.col(i) * first;
+  }
+}
+
+VectorXd InfluenceLaw::displacement(const VectorXd& values) const
+{
+  const VectorXd from_rest = values - rest_;
+  return linear_ * from_rest + quadratic_ * from_rest.cwiseAbs2();
+}
+
+Eigen::MatrixXd InfluenceLaw::derivative(const VectorXd& values) const
+{
+  return linear_ + 2 * quadratic_ * (values - rest_).asDiagonal();
+}
+
+}  // namespace frontalis

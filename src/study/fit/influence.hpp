@@ -1,0 +1,83 @@
+#pragma once
+
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/guard.hpp"
+#include "frontalis/study/fit.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+// Vectors of places have x, y and z of each landmark of the model in turn, in the face frame [m].
+
+/// The simulations of a fit, all of which start at rest.
+class ForwardRuns
+{
+public:
+  ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings);
+
+  /// Names what the next simulations are for.
+  void announce(const std::string& stage, double done);
+  /// Places of the landmarks in equilibrium. Throws Error if there is none.
+  Eigen::VectorXd settle(const std::map<std::string, double>& values);
+  /// Places at each of these times under controls that change linearly between knots.
+  std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
+
+  const Model& model() const { return *model_; }
+
+private:
+  SkinState skin();  // in the face frame
+
+  std::shared_ptr<const Model> model_;
+  std::function<void(const std::string&, double)> watch_;
+  std::string stage_;
+  double done_ = 0;
+  std::unique_ptr<Solver> solver_;
+  Guard guard_;
+};
+
+/// How far each unknown moves the landmarks by itself: measured at two of its values.
+struct Influence
+{
+  struct Column
+  {
+    std::array<double, 2> at{};                ///< values of the unknown
+    std::array<Eigen::VectorXd, 2> displaced;  ///< from `rest`
+  };
+  Eigen::VectorXd rest;  ///< places in equilibrium with all unknowns at rest
+  std::map<std::string, Column> columns;
+};
+
+/// The influence of the unknowns from the file of the model in the folder `settings.cache`. What is missing there is
+/// measured and added; if the folder cannot be written, nothing is kept. `seconds`: receives the wall time that
+/// measuring took.
+Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknowns, const FitSettings& settings,
+                           double& seconds);
+
+/// The value of an unknown at rest: the tone of a muscle, 0 of a bone.
+double rest_value(const Model& model, const std::string& unknown);
+
+/// The displacement of landmarks as the sum of what each unknown does by itself. That is the parabola through rest and
+/// the two measured values.
+class InfluenceLaw
+{
+public:
+  InfluenceLaw(const Model& model, const Influence& influence, const std::vector<Unknown>& unknowns);
+
+  Eigen::VectorXd displacement(const Eigen::VectorXd& values) const;
+  Eigen::MatrixXd derivative(const Eigen::VectorXd& values) const;
+  const Eigen::VectorXd& rest_values() const { return rest_; }
+
+private:
+  Eigen::VectorXd rest_;
+  Eigen::MatrixXd linear_, quadratic_;  // one column per unknown
+};
+
+}  // namespace frontalis
