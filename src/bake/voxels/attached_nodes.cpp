@@ -234,7 +234,8 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor)
 {
-  if (scene.accuracy.boundary != "true")
+  // without the effect, nodes near bones stay held or keep their distance where they are
+  if (scene.accuracy.boundary != "true" || scene.switched_off.has(Effect::attachment))
     return;
   CandidateFinder candidates(scene, surfaces, frame, model);
   const MasterFinder masters(frame, model);
