@@ -54,7 +54,7 @@ void AttachedBlocks<Real>::finish()
 {
   // Groups arrive in the order of their masters. Those of neighbouring masters are sorted by kind and size, so that few
   // lanes of rows stay empty while the nodes of a block stay close to each other in memory.
-  constexpr std::size_t neighbours = 32 * attach_width;
+  constexpr std::size_t neighbours = 128 * attach_width;
   const auto key = [](const Group& group)
   {
     return std::make_tuple(group.levels.empty(), group.held.empty(), group.levels.size(), group.held.size(),
