@@ -118,8 +118,6 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
     if (scene.accuracy.boundary != "true" || scene.accuracy.integration != "one_point")
       voxels.centre.clear();
     frame = assemble_voxels(grid, voxels, model);
-    if (!model.flaps.empty() && scene.accuracy.boundary == "true")
-      throw Error(scene.file + ": boundary: true and gaps: parted are not possible together yet; choose one of them");
     frame.gaps = model.flaps.empty() ? nullptr : &gaps;
   }
   copy_settings(scene, frame, model);

@@ -124,6 +124,51 @@ TEST(Gaps, BoneHoldsTheTissueThatItTouches)
   EXPECT_EQ(held, 25u);
 }
 
+TEST(Gaps, NodesAreAttachedToTissueOfTheirOwnSide)
+{
+  // a gum of 4.6 mm, one and a half voxels, with a lip over it: the nearest free nodes above are those of the lip
+  for (const double gap : { 0.05e-3, 0.5e-3, 2e-3 })
+  {
+    Scene scene = two_blocks(gap, "parted", 4.6e-3);
+    scene.accuracy.boundary = "true";
+    const Model model = bake(scene);
+    ASSERT_FALSE(model.attached.empty()) << gap;
+    const auto bodies = bodies_of(model);
+    EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u) << gap;
+    for (const AttachedNode& node : model.attached)
+      EXPECT_EQ(bodies[static_cast<std::size_t>(node.node)], bodies[static_cast<std::size_t>(node.master)]) << gap;
+  }
+}
+
+TEST(Gaps, NodesBesideASlitAreAttachedToTheirOwnSide)
+{
+  // the slit begins at the bone, x = 0, and ends 12 mm above it
+  for (const double z : { 7e-3, 6e-3 })
+  {
+    Scene scene = slit_block(z);
+    scene.accuracy.boundary = "true";
+    scene.surfaces.push_back(box_surface("bone", { -1e-3, 6e-3, 6e-3 }, { 3e-3, 40e-3, 40e-3 }));
+    scene.constraints = { held("bone") };
+    const Model model = bake(scene);
+    ASSERT_FALSE(model.attached.empty());
+    // side of a node: that of the centres of its voxels, which no voxel at the slit has on both sides
+    std::vector<double> side(model.nodes.size(), 0);
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+      for (const std::int32_t n : model.voxel_nodes[e])
+      {
+        Vector3 mean{};
+        for (const std::int32_t corner : model.voxel_nodes[e])
+          for (std::size_t a = 0; a < 3; ++a)
+            mean[a] += rest_position(model, static_cast<std::size_t>(corner))[a] / 8;
+        for (std::size_t a = 0; a < 3; ++a)
+          mean[a] += model.tissue_centre.empty() ? 0 : 0.5 * model.spacing[a] * double(model.tissue_centre[e][a]);
+        side[static_cast<std::size_t>(n)] += transformed(model.to_scene, mean)[2] - z;
+      }
+    for (const AttachedNode& node : model.attached)
+      EXPECT_GT(side[static_cast<std::size_t>(node.node)] * side[static_cast<std::size_t>(node.master)], 0);
+  }
+}
+
 TEST(Gaps, SlitDoublesEachNodeOnItOnce)
 {
   // through voxels, and along a plane of the grid; both end at a plane of the grid

@@ -96,6 +96,32 @@ TEST(Slit, OpensToOneShapeAtAnyVoxelSize)
   }
 }
 
+TEST(Slit, OpensAlikeWithBoundariesAtTheirPlaces)
+{
+  // floor and roof are 0.3 mm inside the block, where no grid has nodes
+  const auto scene = [](double voxel, const char* boundary)
+  {
+    Scene out = slit_block(voxel, 11.3e-3);
+    out.surfaces[1] = box_surface("floor", { 18e-3, 3e-3, -0.7e-3 }, { 60e-3, 60e-3, 2e-3 });
+    out.surfaces[2] = box_surface("roof", { 18e-3, 3e-3, 24.7e-3 }, { 60e-3, 60e-3, 2e-3 });
+    out.accuracy.boundary = boundary;
+    for (SceneConstraint& constraint : out.constraints)
+      constraint.within = -1;
+    return out;
+  };
+  const std::vector<double> fine = opening(bake(scene(1e-3, "true")), "cpu");
+  EXPECT_GT(fine[0], 1e-3);
+  for (const double voxel : { 2e-3, 3e-3 })
+  {
+    const Model model = bake(scene(voxel, "true"));
+    EXPECT_FALSE(model.attached.empty());
+    EXPECT_FALSE(model.joints.empty());
+    const std::vector<double> coarse = opening(model, "cpu");
+    for (std::size_t p = 0; p < places.size(); ++p)
+      EXPECT_NEAR(coarse[p], fine[p], 0.1 * fine[0]) << voxel << " at " << places[p];
+  }
+}
+
 TEST(Slit, JointsAreOneNodeOnEachBackend)
 {
   const Model model = bake(slit_block(3e-3, 11.3e-3));

@@ -6,6 +6,7 @@
 #include "frontalis/physics/sliding.hpp"
 
 #include <map>
+#include <numeric>
 #include <optional>
 
 namespace frontalis
@@ -29,6 +30,95 @@ struct Candidate
   Vector3d normal{ 0, 0, 0 };  ///< into the tissue, local axes
 };
 
+/// Whether the tissue around a node continues in a voxel near it, so that the node may follow a node of that voxel. In
+/// a model with flaps, voxels at one place or side by side may belong to the two sides of a gap. They are not connected
+/// by nodes, at least not by a way that is about straight.
+class ContinuousTissue
+{
+public:
+  explicit ContinuousTissue(const Model& model) : model_(model)
+  {
+    if (model.flaps.empty())
+      return;
+    one_.resize(model.nodes.size());
+    std::iota(one_.begin(), one_.end(), 0);
+    for (const Model::Joint& joint : model.joints)
+      one_[joint.node] = joint.master;
+    voxels_of_.resize(model.nodes.size());
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+      for (const std::int32_t n : model.voxel_nodes[e])
+        voxels_of_[one_[n]].push_back(static_cast<std::int32_t>(e));
+    ring_.assign(model.voxels.size(), 0);
+  }
+
+  /// Of two or more nodes that are joined, the one that stands for all.
+  std::int32_t joined(std::int32_t node) const { return one_.empty() ? node : one_[node]; }
+
+  void begin_at(std::int32_t node)
+  {
+    node_ = node;
+    for (const std::int32_t voxel : found_)
+      ring_[voxel] = 0;
+    found_.clear();
+    rings_ = 0;
+  }
+  /// From the node towards the middle of the voxels around it; 0 in models without flaps [m].
+  Vector3d inwards() const
+  {
+    Vector3d sum(0, 0, 0);
+    for (const std::int32_t voxel : around())
+      for (const std::int32_t corner : model_.voxel_nodes[voxel])
+        sum += to_vector(rest_position(model_, corner)) - to_vector(rest_position(model_, node_));
+    return sum.isZero() ? sum : Vector3d(sum / (8.0 * static_cast<double>(around().size())));
+  }
+  bool reaches(std::int32_t voxel)
+  {
+    if (one_.empty())
+      return true;
+    const auto at = rest_place(model_, model_.nodes[node_]), place = rest_place(model_, model_.voxels[voxel]);
+    std::int32_t apart = 0;  // in voxels
+    for (std::size_t a = 0; a < 3; ++a)
+      apart = std::max({ apart, place[a] - at[a], at[a] - place[a] - 1 });
+    while (rings_ < apart + 1)
+      add_ring();
+    return ring_[voxel] > 0 && ring_[voxel] <= apart + 1;
+  }
+
+private:
+  std::vector<std::int32_t> around() const
+  {
+    return one_.empty() ? std::vector<std::int32_t>() : voxels_of_[one_[node_]];
+  }
+  // Adds the voxels around the node, or those that share nodes with voxels of the latest ring.
+  void add_ring()
+  {
+    ++rings_;
+    const auto add_around = [&](std::int32_t node)
+    {
+      for (const std::int32_t voxel : voxels_of_[one_[node]])
+        if (ring_[voxel] == 0)
+        {
+          ring_[voxel] = rings_;
+          found_.push_back(voxel);
+        }
+    };
+    if (rings_ == 1)
+      add_around(node_);
+    const std::size_t known = found_.size();
+    for (std::size_t n = 0; n < known && rings_ > 1; ++n)
+      if (ring_[found_[n]] == rings_ - 1)
+        for (const std::int32_t node : model_.voxel_nodes[found_[n]])
+          add_around(node);
+  }
+
+  const Model& model_;
+  std::vector<std::int32_t> one_;                     ///< see joined(); empty without flaps
+  std::vector<std::vector<std::int32_t>> voxels_of_;  ///< around each node that stands for others
+  std::int32_t node_ = 0, rings_ = 0;
+  std::vector<std::int32_t> ring_;   ///< of each voxel, from 1; 0: not found
+  std::vector<std::int32_t> found_;  ///< voxels in the order of rings
+};
+
 /// Finds the masters of nodes near a surface. Coordinates are local.
 class MasterFinder
 {
@@ -36,6 +126,7 @@ public:
   MasterFinder(const LocalFrame& frame, const Model& model)
       : frame_(frame),
         model_(model),
+        tissue_(model),
         index_(model),
         spacing_(to_vector(model.spacing)),
         edge_(spacing_.maxCoeff()),
@@ -44,14 +135,23 @@ public:
     mark(model.rigid);
     mark(model.sliding);
     mark(model.prescribed);
+    // settle_joints() gives what restricts a node to those that are joined to it
+    std::vector<bool> any(model.nodes.size(), false);
+    for (std::size_t n = 0; n < any.size(); ++n)
+      if (restricted_[n])
+        any[tissue_.joined(static_cast<std::int32_t>(n))] = true;
+    for (std::size_t n = 0; n < any.size(); ++n)
+      restricted_[n] = any[tissue_.joined(static_cast<std::int32_t>(n))];
   }
 
   double edge() const { return edge_; }
 
   /// Fills the master and the ratio. Returns whether there is a master.
-  bool find(Candidate& candidate) const
+  bool find(Candidate& candidate)
   {
-    const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal;
+    tissue_.begin_at(candidate.node.node);
+    // a little inwards, since the node may be on the wall of a gap
+    const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal + 1e-3 * tissue_.inwards();
     for (double height = 1; height < 3.1; height += 0.25)
     {
       const Vector3d y = foot + height * edge_ * candidate.normal;
@@ -85,7 +185,7 @@ private:
   Vector3d rest(std::int32_t node) const { return to_vector(rest_position(model_, node)); }
 
   /// The nearest voxel with free corners within 2.5 edges of a point above the surface.
-  bool find_beside(const Vector3d& above, Candidate& candidate) const
+  bool find_beside(const Vector3d& above, Candidate& candidate)
   {
     constexpr std::int32_t reach = 3;
     std::vector<std::pair<double, VoxelPlace>> places;
@@ -107,12 +207,11 @@ private:
   }
 
   /// Takes the corner nearest to y of a voxel with free corners as master.
-  bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate) const
+  bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate)
   {
     std::int32_t voxel = index_.find(place);
-    if (const std::int32_t owner = frame_.owner(model_, index_, y);
-        owner >= 0 && rest_place(model_, model_.voxels[owner]) == place)
-      voxel = owner;
+    while (voxel >= 0 && !tissue_.reaches(voxel))
+      voxel = index_.another(voxel);
     if (voxel < 0)
       return false;
     const auto& corners = model_.voxel_nodes[voxel];
@@ -132,6 +231,7 @@ private:
 
   const LocalFrame& frame_;
   const Model& model_;
+  ContinuousTissue tissue_;
   VoxelIndex index_;
   Vector3d spacing_;
   double edge_;
@@ -234,10 +334,11 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor)
 {
-  if (scene.accuracy.boundary != "true")
+  // without the effect, nodes near bones stay held or keep their distance where they are
+  if (scene.accuracy.boundary != "true" || scene.switched_off.has(Effect::attachment))
     return;
   CandidateFinder candidates(scene, surfaces, frame, model);
-  const MasterFinder masters(frame, model);
+  MasterFinder masters(frame, model);
   std::size_t held = 0, freed = 0;
   // keeps the nodes of a list that are not attached
   const auto attach = [&](auto& list)

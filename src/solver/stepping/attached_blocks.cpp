@@ -52,29 +52,30 @@ bool AttachedBlocks<Real>::add_group(const AttachedNode* begin, const AttachedNo
 template <class Real>
 void AttachedBlocks<Real>::finish()
 {
-  // groups of a plane by kind and in the order of their sizes, so that few lanes of rows stay empty
-  const auto key = [&](const Group& group)
+  // Groups arrive in the order of their masters. Those of neighbouring masters are sorted by kind and size, so that few
+  // lanes of rows stay empty while the nodes of a block stay close to each other in memory.
+  constexpr std::size_t neighbours = 128 * attach_width;
+  const auto key = [](const Group& group)
   {
-    return std::make_tuple(model_.nodes[group.master][2], group.levels.empty(), group.held.empty(), group.levels.size(),
-                           group.held.size(), group.master);
+    return std::make_tuple(group.levels.empty(), group.held.empty(), group.levels.size(), group.held.size(),
+                           group.master);
   };
-  std::sort(groups_.begin(), groups_.end(), [&](const Group& a, const Group& b) { return key(a) < key(b); });
-  plane_blocks_.assign(static_cast<std::size_t>(model_.size[2]) + 2, 0);
   for (std::size_t begin = 0, end = 0; begin < groups_.size(); begin = end)
   {
-    const std::int32_t plane = model_.nodes[groups_[begin].master][2];
-    const auto joins = [&, &first = groups_[begin]](const Group& group)
-    {
-      return model_.nodes[group.master][2] == plane && group.levels.empty() == first.levels.empty() &&
-             group.held.empty() == first.held.empty();
-    };
+    end = std::min(begin + neighbours, groups_.size());
+    std::sort(groups_.data() + begin, groups_.data() + end,
+              [&](const Group& a, const Group& b) { return key(a) < key(b); });
+  }
+  rows_before_ = { 0 };
+  for (std::size_t begin = 0, end = 0; begin < groups_.size(); begin = end)
+  {
+    const auto joins = [&first = groups_[begin]](const Group& group)
+    { return group.levels.empty() == first.levels.empty() && group.held.empty() == first.held.empty(); };
     while (end < groups_.size() && end < begin + attach_width && joins(groups_[end]))
       ++end;
     add_block(groups_.data() + begin, groups_.data() + end);
-    ++plane_blocks_[plane + 1];
+    rows_before_.push_back(masters_.size() + held_.size() + levels_.size());
   }
-  for (std::size_t k = 1; k < plane_blocks_.size(); ++k)
-    plane_blocks_[k] += plane_blocks_[k - 1];
   groups_ = {};
   reset();
 }
@@ -154,6 +155,15 @@ void AttachedBlocks<Real>::list_arrays(ArrayList& list)
   list.add_state(Effect::attachment, "attached nodes", levels_);
 }
 
+// Threads get equal numbers of rows.
+template <class Real>
+std::int32_t AttachedBlocks<Real>::first_block(int thread, int threads) const
+{
+  const std::size_t rows = rows_before_.back() * static_cast<std::size_t>(thread) / static_cast<std::size_t>(threads);
+  return static_cast<std::int32_t>(std::lower_bound(rows_before_.begin(), rows_before_.end(), rows) -
+                                   rows_before_.begin());
+}
+
 template <class Real>
 void AttachedBlocks<Real>::constrain(const NodeShare& share, Real* const u[3], Real* const v[3], double dt)
 {
@@ -166,7 +176,7 @@ void AttachedBlocks<Real>::constrain(const NodeShare& share, Real* const u[3], R
             static_cast<Real>(physics::error_left),
             renew,
             this },
-          plane_blocks_[share.first_plane], plane_blocks_[share.end_plane]);
+          first_block(share.thread, share.threads), first_block(share.thread + 1, share.threads));
 }
 
 // Where the field ends or has no direction, the old plane stays.

@@ -16,15 +16,17 @@ physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
 /// Level of an attached node at rest less its ratio times its master's [m]; 0 where the field ends.
 double level_offset(const Model& model, const AttachedNode& node);
 
-/// Groups of attached nodes that are held by what is still, or slide on one surface that is still. Sixteen masters of a
-/// plane of nodes form a block; the nodes that follow them are in rows of sixteen.
+/// Groups of attached nodes that are held by what is still, or slide on one surface that is still. Sixteen masters form
+/// a block; the nodes that follow them are in rows of sixteen. No node is in two groups, so that any thread may process
+/// any block.
 template <class Real>
 class AttachedBlocks
 {
 public:
   AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
 
-  /// Adds a master without a prescribed path and its nodes, if they are of this kind. Returns whether they are.
+  /// Adds a master without a prescribed path and its nodes, if they are of this kind; in ascending order of masters.
+  /// Returns whether they are.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
   /// Forms the blocks.
   void finish();
@@ -32,7 +34,7 @@ public:
   bool empty() const { return masters_.empty(); }
   void reset();
   void list_arrays(ArrayList& list);
-  /// Applies the constraints of the groups whose masters are in the share.
+  /// Applies the constraints of the thread's part of the groups.
   void constrain(const NodeShare& share, Real* const u[3], Real* const v[3], double dt);
 
 private:
@@ -43,6 +45,7 @@ private:
     std::vector<AttachedNode> held, levels;
   };
 
+  std::int32_t first_block(int thread, int threads) const;
   void add_block(const Group* begin, const Group* end);
   static void renew(void* self, Planes& planes, int lane, std::int32_t node, const Real u[3]);
 
@@ -54,7 +57,7 @@ private:
   std::vector<MasterBlock<Real>> masters_;
   std::vector<HeldRow<Real>> held_;
   std::vector<LevelRow<Real>> levels_;
-  std::vector<std::int32_t> plane_blocks_;  // blocks of plane k of nodes: plane_blocks_[k] .. plane_blocks_[k + 1]
+  std::vector<std::size_t> rows_before_{ 0 };  // rows of the blocks before each block, and of all
 };
 
 }  // namespace frontalis

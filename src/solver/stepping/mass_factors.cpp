@@ -8,17 +8,19 @@ namespace
 {
 
 // Squared frequency bound of a model of only the voxels that are not chosen [1/s2]. Held nodes count only if all of
-// these voxels' nodes are held.
+// these voxels' nodes are held. The factors at the corners of cut voxels raise the bound at nodes, but hardly the true
+// frequency, so that they count only where this bound is the time step.
 double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
                          const std::vector<std::array<float, 8>>& corner_stiffness,
                          const std::vector<std::int32_t>& held)
 {
   std::vector<double> stiffness(model.nodes.size(), 0), mass(model.nodes.size(), 0);
+  const bool by_corner = !corner_stiffness.empty() && model.time_step_estimate == TimeStepEstimate::element;
   for (std::size_t e = 0; e < voxels.size(); ++e)
     for (std::size_t corner = 0; corner < 8 && !voxels[e].chosen; ++corner)
     {
       const std::int32_t n = model.voxel_nodes[e][corner];
-      stiffness[n] += voxels[e].stiffness * (corner_stiffness.empty() ? 1.0 : double(corner_stiffness[e][corner]));
+      stiffness[n] += voxels[e].stiffness * (by_corner ? double(corner_stiffness[e][corner]) : 1.0);
       mass[n] += voxels[e].mass / 8;
     }
   const auto largest = [&]

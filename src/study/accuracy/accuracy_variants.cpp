@@ -79,6 +79,8 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   const Numbers edges(plan.edges.begin(), plan.edges.end() - (plan.exact || plan.edges.empty() ? 0 : 1));
   // the GPU always computes in single precision
   const Names precisions = s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" };
+  // bodies with a closed form have no bones, and the GPU does not attach nodes at the surface of bones
+  const Numbers attached_edges = plan.exact || s.backend == "cuda" ? Numbers{} : edges;
   std::vector<Backend> backends = available_backends();
   if (quick)
     backends.erase(std::remove(backends.begin(), backends.end(), "reference"), backends.end());
@@ -89,6 +91,15 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
            { "fill_min", "least filling",
              sweep(s, quick ? Numbers{ 0.05, 0.4 } : Numbers{ 0.02, 0.1, 0.3, 0.5 },
                    [](auto& to, double share) { to.profile.fill_min = share; }) },
+           { "boundary", "boundary at its place",
+             sweep(s, attached_edges,
+                   [](auto& to, double edge)
+                   {
+                     to.profile.voxel.fill(edge);
+                     to.profile.boundary = "true";
+                     to.profile.fill_min = std::min(to.profile.fill_min, 0.05);
+                     to.profile.time_step = "assembled";
+                   }) },
            { "hourglass", "hourglass form",
              sweep(s, Names{ "scalar", "assumed_strain" },
                    [](auto& to, const auto& form) { to.profile.assumed_strain = form != "scalar"; }) },
