@@ -172,15 +172,66 @@ std::string body_frame(const std::string& face_frame, const BodyShape& shape)
   return face_frame + "/body/" + shape.name;
 }
 
-geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
+std::string bone_frame(const std::string& face_frame, const std::string& bone) { return face_frame + "/bone/" + bone; }
+
+namespace
+{
+
+/// Where a frame is whose origin rests at `centre` in the face frame.
+geometry_msgs::Transform to_transform(const std::array<double, 3>& centre, const RigidTransform& pose)
 {
   const auto& r = pose.rotation;
   tf2::Quaternion rotation;
   tf2::Matrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]).getRotation(rotation);
   geometry_msgs::Transform out;
-  set(out.translation, pose(model.to_face(shape.centre)));
+  set(out.translation, pose(centre));
   set(out.rotation, rotation);
   return out;
+}
+
+/// Adds an eyeball: a white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil.
+void add_eyeball(const Model& model, const std::string& face_frame, const ConstraintSurface& eye,
+                 visualization_msgs::MarkerArray& out)
+{
+  // radii of the balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of
+  // 11.7 mm, a cornea with a radius of 7.8 mm and a pupil of 4.4 mm on a ball of 24.2 mm
+  struct Ball
+  {
+    double radius, rim;
+    std::array<float, 3> colour;
+  };
+  constexpr std::array<Ball, 3> balls{ { { 1, 0, { { 0.92f, 0.90f, 0.87f } } },
+                                         { 0.645, 0.483, { { 0.30f, 0.20f, 0.12f } } },
+                                         { 0.5, 0.18, { { 0.02f, 0.02f, 0.02f } } } } };
+  double ahead = 0, radius = 1;  // of the ball before
+  for (const Ball& ball : balls)
+  {
+    const auto from_rim = [&](double r) { return std::sqrt(r * r - ball.rim * ball.rim); };
+    ahead += from_rim(radius) - from_rim(ball.radius);
+    radius = ball.radius;
+    visualization_msgs::Marker& marker = out.markers.emplace_back();
+    const std::string& bone = model.bones[eye.bone];
+    marker.header.frame_id = bone_frame(face_frame, bone);
+    marker.frame_locked = true;
+    marker.ns = bone;
+    marker.id = static_cast<std::int32_t>(&ball - balls.data());
+    marker.type = visualization_msgs::Marker::SPHERE;
+    marker.action = visualization_msgs::Marker::ADD;
+    marker.pose.position.x = ahead * eye.field.radius;
+    marker.pose.orientation.w = 1;
+    marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius * eye.field.radius;
+    marker.color.r = ball.colour[0];
+    marker.color.g = ball.colour[1];
+    marker.color.b = ball.colour[2];
+    marker.color.a = 1;
+  }
+}
+
+}  // namespace
+
+geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose)
+{
+  return to_transform(model.to_face(shape.centre), pose);
 }
 
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body)
@@ -229,6 +280,9 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
         set(marker.points.emplace_back(), p);
       }
   }
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    if (surface.bone >= 0 && surface.field.radius > 0 && model.bones[surface.bone].compare(0, 3, "eye") == 0)
+      add_eyeball(model, face_frame, surface, out);
   return out;
 }
 
@@ -238,7 +292,17 @@ void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::
 {
   const SkinState& skin = frame.skin;
   const std::vector<BodyShape> shapes = body_shapes(model);
-  out.resize(skin.landmarks.size() + frame.bodies.size());
+  const std::vector<std::array<double, 3>> centres = bone_centres(model);
+  const std::size_t first_bone = skin.landmarks.size() + frame.bodies.size();
+  out.resize(first_bone + frame.bones.size());
+  for (std::size_t bone = 0; bone < frame.bones.size(); ++bone)
+  {
+    auto& transform = out[first_bone + bone];
+    transform.header.stamp = stamp;
+    transform.header.frame_id = face_frame;
+    transform.child_frame_id = bone_frame(face_frame, model.bones[bone]);
+    transform.transform = to_transform(centres[bone], frame.bones[bone]);
+  }
   for (std::size_t body = 0; body < frame.bodies.size(); ++body)
   {
     auto& transform = out[skin.landmarks.size() + body];

@@ -61,6 +61,32 @@ std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& m
   return bodies;
 }
 
+std::vector<std::array<double, 3>> bone_centres(const Model& model)
+{
+  std::vector<std::array<double, 3>> centres(model.bones.size());
+  std::vector<bool> known(model.bones.size(), false);
+  const auto set = [&](std::int32_t bone, const std::array<double, 3>& centre)
+  {
+    if (bone < 0 || known[bone])
+      return;
+    centres[bone] = centre;
+    known[bone] = true;
+  };
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    if (surface.field.radius > 0)
+      set(surface.bone, model.to_face(surface.field.origin));
+  const auto set_all = [&](const auto& poses)
+  {
+    for (const auto& pose : poses)
+      for (const Model::BonePose& bone : pose.bones)
+        set(bone.bone, bone.centre);
+  };
+  set_all(model.action_units);
+  set_all(model.expressions);
+  set_all(model.demo);
+  return centres;
+}
+
 bool is_finite(const SkinState& skin)
 {
   return all_finite(skin.vertices) && all_finite(skin.normals) && all_finite(skin.landmarks);

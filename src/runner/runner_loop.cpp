@@ -1,5 +1,6 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "runner/runner_implementation.hpp"
 
@@ -116,6 +117,9 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   frame.steps = solver->profile().steps;
   frame.activation = solver->activation();
   frame.bodies = bodies_in_face_frame(*solver, *model);
+  frame.bones.clear();
+  for (const RigidTransform& bone : solver->controls().bone)
+    frame.bones.push_back(motion_in_face(*model, bone));
   if (guard)
     frame.guard = guard->counts();
   ++frame.sequence;

@@ -50,7 +50,7 @@ std::vector<std::size_t> landmark_vertices(const Model& model);
 /// skin upwards. Fills all but the header.
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out);
 
-/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body.
+/// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, one per body, and one per bone.
 void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::PoseArray& landmarks,
                    const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
@@ -62,8 +62,11 @@ std::string body_frame(const std::string& face_frame, const BodyShape& shape);
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);
 /// What tissue does to a body, in the body's frame and about its origin.
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
-/// The surfaces of all bodies, each in the frame of its own, which it follows. Without a stamp: it is shown with the
-/// latest transform.
+/// Name of the frame of a bone. Its origin is the point that the bone turns about, and it lies as the face frame does
+/// while the bone is at rest: the x axis of an eye is where it looks.
+std::string bone_frame(const std::string& face_frame, const std::string& bone);
+/// The surfaces of all bodies, and the eyeballs: balls that tissue slides on, of bones whose names begin with "eye".
+/// Each is in the frame of its own, which it follows. Without a stamp: it is shown with the latest transform.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more

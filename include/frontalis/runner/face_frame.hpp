@@ -20,4 +20,8 @@ struct BodyFrame
 /// One per entry of Model::contacts, in the latest step; none where the backend computes no contact.
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model);
 
+/// The points that bones turn about, at rest in the face frame [m]: the centre of a ball that tissue slides on, else
+/// the centre of the first pose of the bone in the action units, expressions and demo, else the origin.
+std::vector<std::array<double, 3>> bone_centres(const Model& model);
+
 }  // namespace frontalis

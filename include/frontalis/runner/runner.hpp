@@ -25,6 +25,8 @@ struct Frame
   std::uint64_t sequence = 0;   ///< number of the frame
   SkinState skin;
   std::vector<float> field;  ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
+  /// Motion of each bone from its place at rest, in the face frame.
+  std::vector<RigidTransform> bones;
   /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
   std::vector<std::array<double, 3>> displacements;
   std::vector<BodyFrame> bodies;  ///< that tissue touches, one per entry of touched_bodies(model)
