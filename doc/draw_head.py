@@ -154,7 +154,7 @@ def main(surfaces, cage, pictures):
     eyes = [eye_of(parts[name][0]) for name in ("eye_left", "eye_right")]
     bones = [actor_of(*parts[name], colour) for name, colour in (("skull", (0.9, 0.86, 0.76)), ("mandible", (0.87, 0.82, 0.70)),
                                                                  ("teeth_upper", (0.97, 0.96, 0.92)), ("teeth_lower", (0.97, 0.96, 0.92)))]
-    others = ("face", "visible", "cut", "mouth", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
+    others = ("face", "visible", "cut", "mouth", "modiolus_left", "modiolus_right", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
     muscles = []
     names = [name for name in parts if name not in others and not name.startswith("fat_")]
     kinds = sorted({name.replace("_left", "").replace("_right", "") for name in names})

@@ -124,6 +124,22 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
   contact.area = vertex_areas(surface);
 }
 
+namespace
+{
+
+/// A place of the face frame in the local frame [m].
+std::array<double, 3> local_place(const Model& model, const std::array<double, 3>& p)
+{
+  const RigidTransform& to_face = model.to_face;
+  std::array<double, 3> out{};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[axis] += to_face.rotation[3 * row + axis] * (p[row] - to_face.translation[row]);
+  return out;
+}
+
+}  // namespace
+
 std::vector<BodyShape> body_shapes(const Model& model)
 {
   std::vector<BodyShape> shapes;
@@ -136,19 +152,37 @@ std::vector<BodyShape> bone_shapes(const Model& model)
 {
   std::vector<BodyShape> shapes;
   shapes.reserve(model.bones.size());
-  for (std::size_t b = 0; b < model.bones.size(); ++b)
+  for (const std::string& bone : model.bones)
+    shapes.push_back({ bone, "bone/" + bone, {} });
+  std::vector<bool> known(shapes.size(), false);
+  const auto set = [&](std::int32_t bone, const std::array<double, 3>& centre)
   {
-    BodyShape& shape = shapes.emplace_back(BodyShape{ model.bones[b], "bone/" + model.bones[b], {} });
-    double held = 0;
-    for (const RigidNode& rigid : model.rigid)
-      if (rigid.bone == static_cast<std::int32_t>(b))
-      {
-        const auto place = rest_position(model, static_cast<std::size_t>(rigid.node));
-        ++held;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          shape.centre[axis] += (place[axis] - shape.centre[axis]) / held;
-      }
-  }
+    if (bone < 0 || known[bone])
+      return;
+    shapes[bone].centre = centre;
+    known[bone] = true;
+  };
+  for (const ConstraintSurface& surface : model.constraint_surfaces)
+    if (surface.field.radius > 0)
+      set(surface.bone, surface.field.origin);
+  const auto set_all = [&](const auto& poses)
+  {
+    for (const auto& pose : poses)
+      for (const Model::BonePose& bone : pose.bones)
+        set(bone.bone, local_place(model, bone.centre));
+  };
+  set_all(model.action_units);
+  set_all(model.expressions);
+  set_all(model.demo);
+  std::vector<double> held(shapes.size(), 0);
+  for (const RigidNode& rigid : model.rigid)
+    if (rigid.bone >= 0 && !known[rigid.bone])
+    {
+      const auto place = rest_position(model, static_cast<std::size_t>(rigid.node));
+      ++held[rigid.bone];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        shapes[rigid.bone].centre[axis] += (place[axis] - shapes[rigid.bone].centre[axis]) / held[rigid.bone];
+    }
   return shapes;
 }
 

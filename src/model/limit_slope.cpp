@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace frontalis
@@ -15,94 +14,135 @@ namespace
 
 using physics::DistanceField;
 
-// The samples of a field by their places on the lattice. Bricks share those on their faces.
+// A point of the lattice of samples. Bricks share those on their faces.
+using Place = std::array<std::int32_t, 3>;
+
 class Lattice
 {
 public:
   explicit Lattice(SampledField& field) : field_(field)
   {
-    for (int axis = 0; axis < 3; ++axis)
-      row_[axis] = std::int64_t{ DistanceField::brick_edge } * field.bricks[axis] + 2;
-    offset_ = { { 1, row_[0], row_[0] * row_[1] } };
-    each_sample(
-        [&](std::size_t sample, std::int64_t place)
-        {
-          const auto [known, is_new] = at_.try_emplace(place, static_cast<std::int32_t>(values_.size()));
-          if (is_new)
-          {
-            values_.push_back(field.samples[sample]);
-            places_.push_back(place);
-          }
-        });
+    for (std::int32_t b = 0; b < static_cast<std::int32_t>(field.table.size()); ++b)
+      if (field.table[b] >= 0)
+        stored_.push_back(
+            { { b % field.bricks[0], b / field.bricks[0] % field.bricks[1], b / field.bricks[0] / field.bricks[1] } });
   }
 
   // Two neighbours that differ by more than the spacing move towards each other by half of what is too much, and their
   // own neighbours are looked at next.
   void limit()
   {
-    constexpr double tolerance = 1.01;  // of the spacing, so that this ends
-    const double step = field_.spacing;
-    std::vector<std::int32_t> now(values_.size()), next;
-    for (std::size_t n = 0; n < now.size(); ++n)
-      now[n] = static_cast<std::int32_t>(n);
-    std::vector<bool> listed(values_.size(), false);
-    const auto revisit = [&](std::int32_t sample)
+    std::vector<Place> now = steep_places(), next;
+    std::vector<bool> listed(field_.samples.size(), false);
+    std::vector<std::size_t> marks;  // of `listed`
+    const auto revisit = [&](const Place& place, const Samples& samples)
     {
-      if (listed[sample])
+      const auto mark = static_cast<std::size_t>(samples.at[0] - field_.samples.data());
+      if (listed[mark])
         return;
-      listed[sample] = true;
-      next.push_back(sample);
+      listed[mark] = true;
+      marks.push_back(mark);
+      next.push_back(place);
     };
     while (!now.empty())
     {
-      for (const auto a : now)
-        for (const std::int64_t way : { offset_[0], offset_[1], offset_[2], -offset_[0], -offset_[1], -offset_[2] })
-        {
-          const auto found = at_.find(places_[a] + way);
-          if (found == at_.end())
-            continue;
-          const auto b = found->second;
-          const double difference = double(values_[a]) - double(values_[b]);
-          if (std::abs(difference) <= tolerance * step)
-            continue;
-          const auto move = static_cast<float>(0.5 * (difference - std::copysign(step, difference)));
-          values_[a] -= move;
-          values_[b] += move;
-          revisit(a);
-          revisit(b);
-        }
+      for (const Place& a : now)
+      {
+        const Samples of_a = samples_at(a);
+        for (const std::int32_t side : { 1, -1 })
+          for (std::size_t axis = 0; axis < 3; ++axis)
+          {
+            Place b = a;
+            b[axis] += side;
+            const Samples of_b = samples_at(b);
+            if (of_b.count == 0)
+              continue;
+            const double difference = double(*of_a.at[0]) - double(*of_b.at[0]);
+            if (!steep(difference))
+              continue;
+            const auto move = static_cast<float>(0.5 * (difference - std::copysign(field_.spacing, difference)));
+            for (std::size_t n = 0; n < of_a.count; ++n)
+              *of_a.at[n] -= move;
+            for (std::size_t n = 0; n < of_b.count; ++n)
+              *of_b.at[n] += move;
+            revisit(a, of_a);
+            revisit(b, of_b);
+          }
+      }
       now.swap(next);
       next.clear();
-      for (const auto sample : now)
-        listed[sample] = false;
+      for (const std::size_t mark : marks)
+        listed[mark] = false;
+      marks.clear();
     }
-    each_sample([&](std::size_t sample, std::int64_t place) { field_.samples[sample] = values_[at_.at(place)]; });
   }
 
 private:
-  // visit(index in the field, place on the lattice)
-  template <class Visit>
-  void each_sample(const Visit& visit) const
+  static constexpr std::int32_t edge = DistanceField::brick_edge, width = DistanceField::brick_row;
+
+  // The tolerance makes the iteration end.
+  bool steep(double difference) const { return std::abs(difference) > 1.01 * field_.spacing; }
+
+  // The samples of a place, one for each stored brick that has it.
+  struct Samples
   {
-    constexpr std::int32_t width = DistanceField::brick_row;
-    for (std::size_t brick = 0; brick < field_.table.size(); ++brick)
-      if (field_.table[brick] >= 0)
+    std::array<float*, 8> at{};
+    std::size_t count = 0;
+  };
+
+  float* brick(const Place& b) const
+  {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (b[axis] < 0 || b[axis] >= field_.bricks[axis])
+        return nullptr;
+    const std::int32_t stored = field_.table[(b[2] * field_.bricks[1] + b[1]) * field_.bricks[0] + b[0]];
+    return stored < 0 ? nullptr : field_.samples.data() + std::int64_t{ stored } * DistanceField::brick_size;
+  }
+
+  Samples samples_at(const Place& place) const
+  {
+    Samples found;
+    std::array<std::array<std::int32_t, 2>, 3> range{};
+    // brick b has the places 8 b - 1 to 8 b + 8; the quotients round down, also those of places just below 0
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      range[axis] = { { (place[axis] - 1 + 2 * edge) / edge - 2, (place[axis] + 1 + edge) / edge - 1 } };
+    Place b{};
+    for (b[2] = range[2][0]; b[2] <= range[2][1]; ++b[2])
+      for (b[1] = range[1][0]; b[1] <= range[1][1]; ++b[1])
+        for (b[0] = range[0][0]; b[0] <= range[0][1]; ++b[0])
+        {
+          const Place at{ { place[0] - edge * b[0] + 1, place[1] - edge * b[1] + 1, place[2] - edge * b[2] + 1 } };
+          if (float* const samples = brick(b); samples != nullptr)
+            found.at[found.count++] = samples + (at[2] * width + at[1]) * width + at[0];
+        }
+    return found;
+  }
+
+  // Places that differ from a neighbour by too much, some of them repeatedly. Neighbours are always together in one of
+  // the bricks.
+  std::vector<Place> steep_places() const
+  {
+    std::vector<Place> places;
+    for (const Place& b : stored_)
+    {
+      const float* const samples = brick(b);
+      for (std::int32_t s = 0; s < DistanceField::brick_size; ++s)
       {
-        const auto x = static_cast<std::int64_t>(brick % field_.bricks[0]),
-                   row = static_cast<std::int64_t>(brick / field_.bricks[0]);
-        const std::int64_t first =
-            DistanceField::brick_edge * (x + row % field_.bricks[1] * offset_[1] + row / field_.bricks[1] * offset_[2]);
-        for (std::int32_t s = 0; s < DistanceField::brick_size; ++s)
-          visit(static_cast<std::size_t>(field_.table[brick]) * DistanceField::brick_size + s,
-                first + s % width + s / width % width * offset_[1] + s / (width * width) * offset_[2]);
+        const Place at{ { s % width, s / width % width, s / (width * width) } };
+        const std::array<std::int32_t, 3> step{ { 1, width, width * width } };
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (at[axis] + 1 < width && steep(double(samples[s]) - double(samples[s + step[axis]])))
+          {
+            places.push_back({ { edge * b[0] + at[0] - 1, edge * b[1] + at[1] - 1, edge * b[2] + at[2] - 1 } });
+            break;
+          }
       }
+    }
+    return places;
   }
 
   SampledField& field_;
-  std::array<std::int64_t, 3> row_{}, offset_{};  // of the lattice: samples in a row, and way to the next along an axis
-  std::unordered_map<std::int64_t, std::int32_t> at_;
-  std::vector<std::int64_t> places_;
-  std::vector<float> values_;
+  std::vector<Place> stored_;  ///< bricks
 };
 
 }  // namespace

@@ -81,7 +81,40 @@ SampledField empty_field(const Point& lower, const Point& upper, double spacing)
   return field;
 }
 
-// Samples the bricks in which the distance reaches the brick's band.
+// Index in the table of the brick `way` bricks from the one at `place` along each axis; -1 if there is none.
+std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std::array<int, 3>& way)
+{
+  const std::size_t row = place / field.bricks[0];
+  const std::array<std::size_t, 3> at{ { place % field.bricks[0], row % field.bricks[1], row / field.bricks[1] } };
+  std::ptrdiff_t index = 0;
+  for (int axis = 2; axis >= 0; --axis)
+  {
+    const auto b = static_cast<std::ptrdiff_t>(at[axis]) + way[axis];
+    if (b < 0 || b >= field.bricks[axis])
+      return -1;
+    index = index * field.bricks[axis] + b;
+  }
+  return index;
+}
+
+constexpr int width = DistanceField::brick_row;
+
+// Calls visit(sample, way) for the samples of a brick. way: to the brick whose cell the sample is the centre of. Rows
+// are visited forwards and backwards in turn, so that the next sample is always a neighbour.
+template <class Visit>
+void visit_samples(const Visit& visit)
+{
+  const auto side = [](int at) { return at == 0 ? -1 : at == width - 1 ? 1 : 0; };
+  for (int k = 0; k < width; ++k)
+    for (int j = 0; j < width; ++j)
+      for (int n = 0; n < width; ++n)
+      {
+        const int i = (j + k) % 2 == 0 ? n : width - 1 - n;
+        visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
+      }
+}
+
+// Samples the bricks in which the distance reaches the brick's band. What bricks share is sampled once.
 void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
 {
   const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;
@@ -89,40 +122,61 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
   for (std::size_t b = 0; b < bands.size(); ++b)
     if (bands[b].least < bands[b].largest)
       places.push_back(b);
-  std::vector<std::vector<float>> samples(places.size());
+  // where the lattice point `at` of a brick is, which may lie between two of them
+  const auto point_of = [&](std::size_t place, double i, double j, double k)
+  {
+    const std::size_t row = place / field.bricks[0];
+    const auto along = [&](int axis, std::size_t brick, double at)
+    { return field.origin[axis] + (static_cast<double>(DistanceField::brick_edge * brick) + at - 1) * spacing; };
+    return Point{ { along(0, place % field.bricks[0], i), along(1, row % field.bricks[1], j),
+                    along(2, row / field.bricks[1], k) } };
+  };
+  std::vector<char> wanted(places.size());
   loop(places.size(),
        [&](std::size_t n)
        {
-         const std::size_t row = places[n] / field.bricks[0];
-         const std::array<std::size_t, 3> brick{ { places[n] % field.bricks[0], row % field.bricks[1],
-                                                   row / field.bricks[1] } };
-         Point first{}, middle{};
-         for (int axis = 0; axis < 3; ++axis)
-         {
-           first[axis] = field.origin[axis] + static_cast<double>(brick[axis]) * edge - spacing;
-           middle[axis] = first[axis] + 0.5 * (edge + spacing);
-         }
          const Band& band = bands[places[n]];
-         if (!band.home && !reaches(distance, band, middle, edge, spacing))
-           return;
-         samples[n].reserve(DistanceField::brick_size);
-         for (int s = 0; s < DistanceField::brick_size; ++s)
-         {
-           constexpr int width = DistanceField::brick_row;
-           const std::array<int, 3> at{ { s % width, s / width % width, s / (width * width) } };
-           samples[n].push_back(static_cast<float>(
-               distance({ { first[0] + at[0] * spacing, first[1] + at[1] * spacing, first[2] + at[2] * spacing } })
-                   .value));
-         }
+         constexpr double middle = 0.5 * (width - 1);
+         wanted[n] =
+             band.home || reaches(distance, band, point_of(places[n], middle, middle, middle), edge, spacing) ? 1 : 0;
        });
-  std::int32_t stored = 0;
+  std::vector<std::size_t> stored;  // their places in the table
   for (std::size_t n = 0; n < places.size(); ++n)
+    if (wanted[n] != 0)
+    {
+      field.table[places[n]] = static_cast<std::int32_t>(stored.size());
+      stored.push_back(places[n]);
+    }
+  field.samples.resize(stored.size() * DistanceField::brick_size);
+  const auto owner = [&](std::size_t brick, const std::array<int, 3>& way)
   {
-    if (samples[n].empty())
-      continue;
-    field.table[places[n]] = stored++;
-    field.samples.insert(field.samples.end(), samples[n].begin(), samples[n].end());
-  }
+    const std::ptrdiff_t place = neighbour(field, stored[brick], way);
+    return place < 0 ? -1 : field.table[place];
+  };
+  loop(stored.size(),
+       [&](std::size_t n)
+       {
+         float* const samples = field.samples.data() + n * DistanceField::brick_size;
+         visit_samples(
+             [&](int s, const std::array<int, 3>& way)
+             {
+               const bool own = way == std::array<int, 3>{ { 0, 0, 0 } };
+               if (own || owner(n, way) < 0)
+                 samples[s] = static_cast<float>(
+                     distance(point_of(stored[n], s % width, s / width % width, s / (width * width))).value);
+             });
+       });
+  for (std::size_t n = 0; n < stored.size(); ++n)
+    visit_samples(
+        [&](int s, const std::array<int, 3>& way)
+        {
+          const std::int32_t from = owner(n, way);
+          if (way == std::array<int, 3>{ { 0, 0, 0 } } || from < 0)
+            return;
+          const int back = DistanceField::brick_edge * ((way[2] * width + way[1]) * width + way[0]);
+          field.samples[n * DistanceField::brick_size + s] =
+              field.samples[static_cast<std::size_t>(from) * DistanceField::brick_size + s - back];
+        });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "runner/runner_implementation.hpp"
 

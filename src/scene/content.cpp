@@ -97,6 +97,8 @@ void add_surface(const Surface& surface, Content& content)
   if (shape.head)
     for (const std::string& file : shape.head->files)
       content.add(hash_of_file(file));
+  if (shape.tissue != 1)
+    content.add("tissue", shape.tissue);
 }
 
 void add_muscle(const SceneMuscle& muscle, Content& content)

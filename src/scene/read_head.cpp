@@ -69,6 +69,21 @@ void read_dimension(const std::string& name, const Node& node, const Names& land
   head.dimensions.push_back(dimension);
 }
 
+void read_presets(const Node& node, HeadTemplate& head)
+{
+  Mapping presets(node);
+  for (const auto& [age, changes] : presets.optional("age").named_pairs())
+  {
+    auto& added = head.ages[age];
+    Mapping mapping(changes);
+    for (const auto& d : head.dimensions)
+      if (d.derived_from.empty() && mapping.has(d.name))
+        added[d.name] = read_length(mapping.optional(d.name), any_number);
+  }
+  for (const auto& [name, factor] : presets.optional("tissue").named_pairs())
+    head.tissues[name] = factor.number(Dimension::number, positive, 1);
+}
+
 double read_coordinate(const Node& node, double fallback)
 {
   return node.number(Dimension::length, any_number, fallback);
@@ -302,6 +317,7 @@ void read_root(const Node& root, HeadTemplate& head)
   read_vertices(mapping.required("landmarks", "{midline, left}"), landmarks, head);
   for (const auto& [name, node] : mapping.required("dimensions", "a mapping").named_pairs())
     read_dimension(name, node, landmarks, head);
+  read_presets(mapping.optional("presets"), head);
   read_beside(mapping.required("bones", "a YAML file"), head, [&](const Node& node) { read_bones(node, head); });
   for (const auto& [bone, node] : mapping.optional("joints").named_pairs())
     head.joints[bone] = read_joint(node);

@@ -127,13 +127,33 @@ void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
   const Node file = mapping.required("template", "the YAML file of a head");
   const Node many = mapping.optional("parts"), one = mapping.optional("part");
   read_dimensions(mapping, shape);
-  const Node sex = mapping.optional("sex");
+  const Node sex = mapping.optional("sex"), age = mapping.optional("age"), tissue = mapping.optional("tissue");
   shape.head = folder.head(file);
   const std::string of = sex.choice({ "male", "female" });
-  if (shape.head && !of.empty())
+  if (shape.head)
+  {
+    const auto names_of = [](const auto& presets)
+    {
+      std::vector<std::string> names;
+      names.reserve(presets.size());
+      for (const auto& preset : presets)
+        names.push_back(preset.first);
+      return names;
+    };
+    const std::string years = age.choice(names_of(shape.head->ages));
+    const std::map<std::string, double> added =
+        years.empty() ? std::map<std::string, double>() : shape.head->ages.at(years);
     for (const auto& d : shape.head->dimensions)
-      if (d.derived_from.empty())
-        shape.dimensions.emplace(d.name, of == "male" ? d.men : d.women);
+    {
+      const auto change = added.find(d.name);
+      if (!d.derived_from.empty() || (of.empty() && change == added.end()))
+        continue;
+      const double mean = of.empty() ? d.mean : of == "male" ? d.men : d.women;
+      shape.dimensions.emplace(d.name, mean + (change == added.end() ? 0 : change->second));
+    }
+    if (const std::string depth = tissue.choice(names_of(shape.head->tissues)); !depth.empty())
+      shape.tissue = shape.head->tissues.at(depth);
+  }
   if (shape.head)
     read_parts(many, one, "head", shape.head->parts(), shape.head->muscle_parts(), shape, parts);
   else

@@ -79,6 +79,40 @@ TEST(Head, TakesTheMeansOfEitherSex)
   }
 }
 
+TEST(Head, HasTheDimensionsOfEachAge)
+{
+  ASSERT_EQ(shipped()->ages.size(), 3u);
+  for (const auto& [age, changes] : shipped()->ages)
+  {
+    std::map<std::string, double> wanted;
+    for (const auto& d : shipped()->dimensions)
+      if (const auto change = changes.find(d.name); change != changes.end())
+        wanted[d.name] = d.mean + change->second;
+    const Head head(shipped(), wanted);
+    for (const auto& [name, value] : wanted)
+      EXPECT_NEAR(head.dimension(name), value, 1e-3) << age << ": " << name;
+  }
+}
+
+TEST(Head, HasItsBonesDeeperBelowFullTissue)
+{
+  const PreparedSurface skin("skin", default_head().part("skin", 3e-3));
+  for (const char* preset : { "lean", "average", "full" })
+  {
+    const HeadBones bones(*shipped(), skin.tree(), shipped()->tissues.at(preset));
+    for (const auto& site : shipped()->depths)
+      for (const char* name : { "frontal", "malar", "zygion", "mid_body", "mental_eminence" })
+        if (site.name == name)
+        {
+          const ClosestPoint closest = skin.tree().closest(to_vector(site.at));
+          const bool directed = to_vector(site.direction).norm() > 0;
+          const Vector3d inward = directed ? to_vector(site.direction) : -skin.pseudonormal(closest);
+          const double depth = (directed ? 1 : shipped()->tissues.at(preset)) * site.depth;
+          EXPECT_NEAR(bones.hull(closest.point + depth * inward), 0, 1e-3) << preset << ": " << name;
+        }
+  }
+}
+
 TEST(Head, HasTheStandardLandmarksOnItsSkin)
 {
   const TriangleMesh skin = default_head().part("face", 2e-3);

@@ -1,5 +1,6 @@
 #include "frontalis/ros/conversions.hpp"
 #include "frontalis/ros/muscle_lines.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include "ros/small_model.hpp"
 
@@ -129,6 +130,51 @@ TEST(Conversions, LandmarksBecomePosesAndFrames)
   EXPECT_EQ(transforms[0].header.stamp, ros::Time(5));
   EXPECT_NEAR(transforms[0].transform.translation.x, 1, 1e-6);
   EXPECT_EQ(transforms[0].transform.rotation, q);
+}
+
+TEST(Conversions, BonesBecomeFramesAndEyesAreShownInTheirs)
+{
+  Model model = small_model();
+  model.bones = { "jaw", "eye_left" };
+  model.expressions.push_back({ "open", {}, { { 0, {}, {}, { { -0.08, 0, -0.05 } } } } });
+  ConstraintSurface eye;
+  eye.bone = 1;
+  eye.field = SampledField();
+  eye.field.origin = inverse(model.to_face)(std::array<double, 3>{ { 0.01, 0.03, -0.01 } });
+  eye.field.radius = 0.012;
+  model.constraint_surfaces.push_back(eye);
+  Frame frame;
+  frame.skin = lifted(model, 0);
+  // the eye looks to the subject's left: a quarter turn about its centre
+  RigidTransform looks;
+  looks.rotation = { { 0, -1, 0, 1, 0, 0, 0, 0, 1 } };
+  looks.translation = { { 0.01 + 0.03, 0.03 - 0.01, 0 } };
+  frame.bones = { { {}, RigidTransform() }, { {}, looks } };
+  geometry_msgs::PoseArray poses;
+  to_poses(frame.skin, landmark_vertices(model), poses);
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  to_transforms(model, frame, poses, "face_7", ros::Time(5), transforms);
+  ASSERT_EQ(transforms.size(), 3u);
+  EXPECT_EQ(transforms[1].child_frame_id, "face_7/bone/jaw");
+  EXPECT_NEAR(transforms[1].transform.translation.x, -0.08, 1e-9);
+  EXPECT_NEAR(transforms[1].transform.rotation.w, 1, 1e-9);
+  EXPECT_EQ(transforms[2].child_frame_id, "face_7/bone/eye_left");
+  EXPECT_NEAR(transforms[2].transform.translation.x, 0.01, 1e-9);
+  EXPECT_NEAR(transforms[2].transform.translation.y, 0.03, 1e-9);
+  EXPECT_NEAR(transforms[2].transform.rotation.z, std::sqrt(0.5), 1e-9);
+
+  // the eyeball, its iris and its pupil reach farther and farther forwards
+  const auto markers = to_bodies(model, "face_7").markers;
+  ASSERT_EQ(markers.size(), 4u);
+  double reach = 0.0119;
+  for (std::size_t n = 1; n < 4; ++n)
+  {
+    EXPECT_EQ(markers[n].header.frame_id, "face_7/bone/eye_left");
+    const double front = markers[n].pose.position.x + 0.5 * markers[n].scale.x;
+    EXPECT_GT(front, reach);
+    reach = front;
+  }
+  EXPECT_LT(reach, 0.0135);
 }
 
 TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)

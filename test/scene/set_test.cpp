@@ -107,5 +107,25 @@ TEST(Set, faults_name_their_place)
          "expressions.up.frontalis_left: 'frontalis_left' has an activation already");
 }
 
+TEST(Set, takes_a_head_of_a_sex_an_age_and_a_tissue)
+{
+  const std::string head = "  head: {shape: head, template: " FRONTALIS_SOURCE_DIRECTORY
+                           "/config/head/head.yaml, parts: [skin, skull], dimensions: {sa_sba: 60}";
+  const auto scene_of = [&](const std::string& presets)
+  { return read_with(head + presets + "}\n  tissue: {shape: box, size: [1, 1, 1]}\n", "  body: {}\n"); };
+  const Scene scene = scene_of(", sex: male, age: old, tissue: full");
+  const Shape& shape = *named(scene.surfaces, "skin").shape;
+  EXPECT_NEAR(shape.dimensions.at("sa_sba"), 60e-3, 1e-9) << "what is asked for goes first";
+  EXPECT_NEAR(shape.dimensions.at("n_sn"), 54.8e-3 + 2.5e-3, 1e-9);
+  EXPECT_NEAR(shape.dimensions.at("zy_zy"), 142.6e-3, 1e-9);
+  EXPECT_EQ(shape.tissue, 1.2);
+  const Scene older = scene_of(", age: old");
+  const Shape& default_sex = *named(older.surfaces, "skull").shape;
+  EXPECT_NEAR(default_sex.dimensions.at("n_sn"), 52.7e-3 + 2.5e-3, 1e-9);
+  EXPECT_EQ(default_sex.dimensions.count("zy_zy"), 0U);
+  EXPECT_EQ(default_sex.tissue, 1);
+  EXPECT_THROW(scene_of(", age: ancient"), Error);
+}
+
 }  // namespace
 }  // namespace frontalis

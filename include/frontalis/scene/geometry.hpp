@@ -35,7 +35,7 @@ struct Shape
     cylinder,   ///< centre, axis, radius, length; closed by caps
     torus,      ///< centre, axis, radius (of the ring), minor_radius (of the tube)
     forehead,   ///< part (one of forehead_parts()), dimensions
-    head        ///< head, part (one of its parts()), dimensions
+    head        ///< head, part (one of its parts()), dimensions, tissue
   };
   Kind kind = Kind::box;
   Vector3 centre{ 0, 0, 0 };
@@ -49,6 +49,7 @@ struct Shape
   std::shared_ptr<const HeadTemplate> head;
   /// Dimensions of the generated forehead or head [m] by name; those not given have their defaults.
   std::map<std::string, double> dimensions;
+  double tissue = 1;  ///< head: depths of the bone below the skin, over those of the template
 };
 
 struct Surface

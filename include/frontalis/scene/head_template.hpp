@@ -105,6 +105,9 @@ struct HeadTemplate
   std::map<std::string, std::vector<Point>> points;  ///< sets of landmarks: `anthropometric` and those of the files
   std::map<std::string, Joint> joints;               ///< by bone
   std::vector<Dimension> dimensions;
+  /// Presets: what an age adds to each dimension [m], and by how much tissue is thicker than normal.
+  std::map<std::string, std::map<std::string, double>> ages;
+  std::map<std::string, double> tissues;
   std::vector<DepthSite> depths;
   std::vector<std::pair<std::string, std::vector<BoneStep>>> bones;
   std::vector<Muscle> muscles;

@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf
+constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf, of which a Four has the boxes
 
 /// Closest point of a triangle (Ericson, Real-Time Collision Detection 2005, 5.1.5). `feature`: see ClosestPoint.
 Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c,
@@ -105,6 +105,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(&mesh), order_(mesh
   corners_.reserve(order_.size());
   for (const std::int32_t t : order_)
     corners_.push_back(corners(mesh, mesh.triangles[t]));
+  add_four(0);
   expansions_.reserve(nodes_.size());
   for (const Node& node : nodes_)
     expansions_.push_back(expand(node));
@@ -145,6 +146,46 @@ std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std
   return index;
 }
 
+void TriangleTree::add_four(std::int32_t node)
+{
+  const std::size_t index = fours_.size();
+  fours_.emplace_back();
+  Four four;
+  for (std::size_t a = 0; a < 3; ++a)
+    four.lower[a] = four.upper[a] = Eigen::Array4d::Constant(std::numeric_limits<double>::infinity());
+  const auto place = [&four](std::size_t n, const Box& box, std::int32_t below)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      four.lower[a][static_cast<Eigen::Index>(n)] = box.min()[static_cast<Eigen::Index>(a)];
+      four.upper[a][static_cast<Eigen::Index>(n)] = box.max()[static_cast<Eigen::Index>(a)];
+    }
+    four.below[n] = below;
+  };
+  const auto is_leaf = [this](std::int32_t n) { return nodes_[n].right == 0; };
+  if (is_leaf(node))
+    for (std::int32_t i = nodes_[node].begin; i < nodes_[node].end; ++i)
+    {
+      const auto& [a, b, c] = corners_[i];
+      place(static_cast<std::size_t>(i - nodes_[node].begin), Box(a).extend(b).extend(c), ~i);
+    }
+  else
+  {
+    std::vector<std::int32_t> members;
+    for (const std::int32_t child : { node + 1, nodes_[node].right })
+      if (is_leaf(child))
+        members.push_back(child);
+      else
+        members.insert(members.end(), { child + 1, nodes_[child].right });
+    for (std::size_t n = 0; n < members.size(); ++n)
+    {
+      place(n, nodes_[members[n]].box, static_cast<std::int32_t>(fours_.size()));
+      add_four(members[n]);
+    }
+  }
+  fours_[index] = four;
+}
+
 ClosestPoint TriangleTree::closest(const Vector3d& p, double bound, std::int32_t hint) const
 {
   ClosestPoint best;
@@ -168,34 +209,40 @@ ClosestPoint TriangleTree::closest(const Vector3d& p, double bound, std::int32_t
     ask(hint, corners(*mesh_, mesh_->triangles[hint]));
   struct Entry
   {
-    std::int32_t node;
+    std::int32_t below;
     double squared;
   };
-  Entry stack[64];
+  Entry stack[128];
   int top = 0;
-  const double root = nodes_[0].box.squaredExteriorDistance(p);
-  if (root <= squared)
-    stack[top++] = { 0, root };
+  stack[top++] = { 0, 0 };
   while (top > 0)
   {
     const Entry entry = stack[--top];
     if (entry.squared > squared)
       continue;
-    const Node& node = nodes_[entry.node];
-    if (node.right == 0)
+    if (entry.below < 0)
     {
-      for (std::int32_t i = node.begin; i < node.end; ++i)
-        ask(order_[i], corners_[i]);
+      ask(order_[~entry.below], corners_[~entry.below]);
       continue;
     }
-    Entry near{ entry.node + 1, nodes_[entry.node + 1].box.squaredExteriorDistance(p) };
-    Entry far{ node.right, nodes_[node.right].box.squaredExteriorDistance(p) };
-    if (far.squared < near.squared)
-      std::swap(near, far);
-    if (far.squared <= squared)
-      stack[top++] = far;
-    if (near.squared <= squared)
-      stack[top++] = near;
+    const Four& four = fours_[entry.below];
+    Eigen::Array4d away = Eigen::Array4d::Zero();
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const double x = p[static_cast<Eigen::Index>(a)];
+      away += (four.lower[a] - x).max(x - four.upper[a]).max(0).square();
+    }
+    // the nearest one comes on top
+    const int first = top;
+    for (int c = 0; c < 4; ++c)
+    {
+      if (!(away[c] <= squared))
+        continue;
+      int place = top++;
+      for (; place > first && stack[place - 1].squared < away[c]; --place)
+        stack[place] = stack[place - 1];
+      stack[place] = { four.below[c], away[c] };
+    }
   }
   best.distance = best.triangle < 0 ? bound : std::sqrt(squared);
   return best;

@@ -85,6 +85,14 @@ private:
     return false;
   }
 
+  /// Four boxes that are compared with a point at once: those of grandchildren of a node, or of a leaf's triangles.
+  struct Four
+  {
+    std::array<Eigen::Array4d, 3> lower, upper;  ///< corners of the boxes; an unused one is infinitely far
+    std::array<std::int32_t, 4> below{};  ///< index of the four boxes in this one; ~index in order_ of a triangle
+  };
+  void add_four(std::int32_t node);  ///< appends the boxes below a node
+
   std::int32_t build(std::int32_t begin, std::int32_t end, const std::vector<Vector3d>& centroids);
   Expansion expand(const Node& node) const;
   static double far_field(const Expansion& node, const Vector3d& p);
@@ -92,6 +100,7 @@ private:
   std::vector<std::int32_t> order_;               ///< triangle indices, contiguous for each node
   std::vector<std::array<Vector3d, 3>> corners_;  ///< corners of the triangles, in the order of order_
   std::vector<Node> nodes_;
+  std::vector<Four> fours_;
   std::vector<Expansion> expansions_;
 };
 

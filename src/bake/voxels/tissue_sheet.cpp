@@ -156,11 +156,32 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
+/// What a sheet leaves out of the surface that it is part of. Triangles have the same order in both.
+TriangleMesh rest_of(const SlidingSurface& surface)
+{
+  const TriangleMesh &whole = surface.whole->mesh(), &sheet = surface.sheet->mesh();
+  std::vector<bool> left_out(whole.triangles.size(), true);
+  std::size_t next = 0;  // triangle of the sheet
+  for (std::size_t t = 0; t < left_out.size() && next < sheet.triangles.size(); ++t)
+    if (corners(whole, whole.triangles[t]) == corners(sheet, sheet.triangles[next]))
+    {
+      left_out[t] = false;
+      ++next;
+    }
+  return keep_triangles(whole, left_out);
+}
+
 /// Distance of points from one sheet of a field.
 class SheetDistance
 {
 public:
-  explicit SheetDistance(const SlidingSurface& of) : of_(of), on_rim_(rim_features(of.sheet->mesh())) {}
+  explicit SheetDistance(const SlidingSurface& of)
+      : of_(of),
+        on_rim_(rim_features(of.sheet->mesh())),
+        rest_(std::make_unique<TriangleMesh>(rest_of(of))),
+        rest_tree_(*rest_)
+  {
+  }
 
   /// The closest point of the sheet within `bound` [m]. `hint`: triangle found for a neighbouring point, or -1;
   /// replaced by the one found here.
@@ -179,9 +200,11 @@ public:
     const Vector3d away = p - closest.point;
     const double height = away.dot(normal(closest));
     const bool at_rim = on_rim_[closest.triangle][closest.feature];
-    // a point inside a closed surface is not above its sheet, even if the sheet alone suggests it
-    if (height > 0 && of_.whole->closed() &&
-        of_.whole->signed_distance(p, of_.whole->tree().closest(p, closest.distance + 1e-9)) < 0)
+    // A point inside a closed surface is not above its sheet, even if the sheet alone suggests it: then another part of
+    // the surface is closer.
+    const double bound = closest.distance + 1e-9;
+    if (height > 0 && of_.whole->closed() && rest_tree_.closest(p, bound).triangle >= 0 &&
+        of_.whole->signed_distance(p, of_.whole->tree().closest(p, bound)) < 0)
       return -closest.distance;
     if (at_rim)
       return { height, (away - height * normal(closest)).norm() };
@@ -191,6 +214,8 @@ public:
 private:
   SlidingSurface of_;
   std::vector<std::array<bool, 7>> on_rim_;
+  std::unique_ptr<TriangleMesh> rest_;  ///< of the whole surface, without the sheet
+  TriangleTree rest_tree_;
 };
 
 /// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have

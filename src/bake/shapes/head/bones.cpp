@@ -14,7 +14,7 @@ constexpr double smoothing = 1e-3;
 
 }  // namespace
 
-HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin)
+HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue)
     : eye_(to_vector(head.eye)), eye_radius_(head.eye_radius), bones_(head.bones.begin(), head.bones.end())
 {
   std::vector<double> value;
@@ -33,7 +33,9 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin)
     const ClosestPoint closest = skin.closest(to_vector(site.at));
     const auto [a, b, c] = corners(skin.mesh(), skin.mesh().triangles[closest.triangle]);
     Vector3d inward = to_vector(site.direction);
-    if (inward.norm() < 0.5)
+    // depths along a direction are those of the teeth and the chin, which tissue in front does not move
+    const bool normal = inward.norm() < 0.5;
+    if (normal)
       inward = -(b - a).cross(c - a).normalized();
     if (site.at[1] == 0)
       inward[1] = 0;
@@ -41,7 +43,7 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin)
     Vector3d place = closest.point;
     if (site.at[1] == 0)
       place[1] = 0;
-    const Vector3d bone = place + site.depth * inward;
+    const Vector3d bone = place + (normal ? tissue : 1) * site.depth * inward;
     add(bone, 0);
     add(bone - slope_distance * inward, slope_distance);
     add(bone + slope_distance * inward, -slope_distance);

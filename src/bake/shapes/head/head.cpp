@@ -40,7 +40,7 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
 
 }  // namespace
 
-Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions)
+Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions, double tissue)
     : head_(std::move(head))
 {
   cage_ = with_mirror_image(read_polygons(head_->cage, head_->unit), 1, &mirror_);
@@ -56,7 +56,7 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
       landmarks_[name][1] = 0;
   }
   warp_.emplace(*head_, landmarks_, dimensions);
-  bones_.emplace(*head_, *tree_);
+  bones_.emplace(*head_, *tree_, tissue);
 }
 
 TriangleMesh Head::skin(const std::string& name, double edge) const
@@ -172,6 +172,20 @@ Head::Below Head::below(const Vector3d& p) const
   return found;
 }
 
+ControlNet Head::known_net(const HeadTemplate::Muscle& muscle) const
+{
+  {
+    const std::lock_guard<std::mutex> lock(nets_mutex_);
+    const auto known = nets_.find(muscle.name);
+    if (known != nets_.end())
+      return known->second;
+  }
+  ControlNet net = left_net(muscle);
+  const std::lock_guard<std::mutex> lock(nets_mutex_);
+  nets_[muscle.name] = net;
+  return net;
+}
+
 std::optional<ControlNet> Head::net(const std::string& part) const
 {
   for (const auto& muscle : head_->muscles)
@@ -180,7 +194,7 @@ std::optional<ControlNet> Head::net(const std::string& part) const
     const bool right = muscle.sided && part == muscle.name + "_right";
     if (!left && !right && (muscle.sided || part != muscle.name))
       continue;
-    ControlNet net = left_net(muscle);
+    ControlNet net = known_net(muscle);
     for (Vector3& p : net.points)
     {
       if (right)
@@ -198,13 +212,15 @@ std::shared_ptr<const Head> head_of(const Shape& shape)
   static std::mutex mutex;
   static std::shared_ptr<const HeadTemplate> last_template;
   static std::map<std::string, double> last_dimensions;
+  static double last_tissue = 1;
   static std::shared_ptr<const Head> last;
   const std::lock_guard<std::mutex> lock(mutex);
-  if (!last || last_template != shape.head || last_dimensions != shape.dimensions)
+  if (!last || last_template != shape.head || last_dimensions != shape.dimensions || last_tissue != shape.tissue)
   {
-    last = std::make_shared<Head>(shape.head, shape.dimensions);
+    last = std::make_shared<Head>(shape.head, shape.dimensions, shape.tissue);
     last_template = shape.head;
     last_dimensions = shape.dimensions;
+    last_tissue = shape.tissue;
   }
   return last;
 }

@@ -6,6 +6,7 @@
 #include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/tissue.hpp"
 
+#include <mutex>
 #include <optional>
 
 namespace frontalis
@@ -32,7 +33,8 @@ private:
 class HeadBones
 {
 public:
-  HeadBones(const HeadTemplate& head, const TriangleTree& skin);
+  /// Depths of the template are multiplied by `tissue`, but for those of the teeth and the chin.
+  HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue = 1);
 
   /// Outer surface of skull, teeth and mandible, as if the nose's and the eyes' openings were closed.
   double hull(const Vector3d& p) const;
@@ -73,7 +75,7 @@ TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const B
 class Head
 {
 public:
-  Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions);
+  Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions, double tissue = 1);
 
   /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2). Throws Error on an unknown part.
   TriangleMesh part(const std::string& name, double edge) const;
@@ -92,6 +94,8 @@ private:
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
   ControlNet left_net(const HeadTemplate::Muscle& muscle) const;
+  /// left_net(), found once per muscle: surfaces and fibres of both sides ask for it.
+  ControlNet known_net(const HeadTemplate::Muscle& muscle) const;
   /// Skin's closest point to p, its outward normal, and the thickness of the soft tissue there, at most 20 mm.
   struct Below
   {
@@ -109,6 +113,8 @@ private:
   std::map<std::string, Vector3d> landmarks_;  ///< of the default head, left or midline
   std::optional<HeadWarp> warp_;
   std::optional<HeadBones> bones_;
+  mutable std::mutex nets_mutex_;
+  mutable std::map<std::string, ControlNet> nets_;
 };
 
 /// The head that a shape is a part of; equal shapes share one.

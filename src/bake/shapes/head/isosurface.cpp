@@ -24,18 +24,14 @@ public:
       for (int j = 0; j < size_[1]; j += block)
         for (int i = 0; i < size_[0]; i += block)
           sample(f, { i, j, k });
-    places_.reserve(values_.size());
-    std::vector<std::size_t> snapped;
     for (int k = 0; k < size_[2]; ++k)
       for (int j = 0; j < size_[1]; ++j)
         for (int i = 0; i < size_[0]; ++i)
-        {
-          places_.push_back(snapped_place({ i, j, k }));
-          if (places_.back() != at({ i, j, k }))
-            snapped.push_back(places_.size() - 1);
-        }
-    for (const std::size_t n : snapped)
-      values_[n] = 0;
+          if (const Index point{ i, j, k }; near(point))
+            if (const Vector3d place = snapped_place(point); place != at(point))
+              snapped_[number(point)] = place;
+    for (const auto& [point, place] : snapped_)
+      values_[point] = 0;
   }
 
   TriangleMesh surface() const
@@ -44,8 +40,9 @@ public:
     for (int k = 0; k + 1 < size_[2]; ++k)
       for (int j = 0; j + 1 < size_[1]; ++j)
         for (int i = 0; i + 1 < size_[0]; ++i)
-          for (const auto& t : tetrahedra)
-            add(mesh, { i, j, k }, t);
+          if (near({ i, j, k }))
+            for (const auto& t : tetrahedra)
+              add(mesh, { i, j, k }, t);
     return mesh;
   }
 
@@ -62,11 +59,15 @@ private:
     return { origin_[0] + edge_ * i[0], i[1] == 0 ? origin_[1] : origin_[1] + edge_ * i[1], origin_[2] + edge_ * i[2] };
   }
 
+  /// Where the function is at least this, the surface is farther than the points of a block and their neighbours.
+  double far() const { return 1.5 * block * edge_; }
+  bool near(const Index& i) const { return std::abs(values_[number(i)]) < far(); }
+
   /// Values at a block of grid points; one for all where it says that the surface is far, since f is about a distance.
   void sample(const std::function<double(const Vector3d&)>& f, const Index& first)
   {
     const double middle = f(at(first) + Vector3d::Constant(0.5 * (block - 1) * edge_));
-    const bool near = std::abs(middle) < 1.5 * block * edge_;
+    const bool near = std::abs(middle) < far();
     for (int k = first[2]; k < std::min(size_[2], first[2] + block); ++k)
       for (int j = first[1]; j < std::min(size_[1], first[1] + block); ++j)
         for (int i = first[0]; i < std::min(size_[0], first[0] + block); ++i)
@@ -118,10 +119,13 @@ private:
     {
       const std::size_t inner = number(index[cut.first]), outer = number(index[cut.second]);
       if (values_[outer] == 0)
-        return places_[outer];
+        return snapped_.at(outer);
       // from the lower number on, so that neighbours find the same point
-      const std::size_t a = std::min(inner, outer), b = std::max(inner, outer);
-      return places_[a] + values_[a] / (values_[a] - values_[b]) * (places_[b] - places_[a]);
+      const bool ordered = inner < outer;
+      const std::size_t a = ordered ? inner : outer, b = ordered ? outer : inner;
+      const Vector3d from = at(index[ordered ? cut.first : cut.second]),
+                     to = at(index[ordered ? cut.second : cut.first]);
+      return from + values_[a] / (values_[a] - values_[b]) * (to - from);
     };
     const Vector3d outward = at(index[out[0]]) - at(index[in[0]]);
     const auto triangle = [&](const Cut& a, const Cut& b, const Cut& c)
@@ -150,7 +154,7 @@ private:
   double edge_;
   Index size_{};
   std::vector<double> values_;
-  std::vector<Vector3d> places_;  ///< of the grid points
+  std::map<std::size_t, Vector3d> snapped_;  ///< where grid points that were moved onto the surface are
 };
 
 }  // namespace
