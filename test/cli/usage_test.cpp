@@ -49,6 +49,9 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "run", scene, "--activate", "strand=much" },
     { "run", scene, "--activate", "strand=0.1,strand=0.2" },
     { "run", scene, "--activate", "=0.1" },
+    { "run", scene, "--vtp" },
+    { "fit", scene },
+    { "retarget", scene, "-o", "found.csv" },
     { "verify", "--only", "no_such_case" },
   };
   for (const std::vector<std::string>& arguments : wrong)

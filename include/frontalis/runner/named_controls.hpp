@@ -22,8 +22,8 @@ Controls rest_controls(const Model& model);
 /// this name.
 Controls expression_controls(const Model& model, const std::string& name);
 
-/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left. FACS's letters A to E in a
-/// name (AU12C, AU12C_left) stand for 0.2, 0.4, 0.6, 0.8 and 1 of the intensity.
+/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left. FACS's letters A to E in
+/// a name (AU12C, AU12C_left) stand for 0.2, 0.4, 0.6, 0.8 and 1 of the intensity.
 Controls action_unit_controls(const Model& model, const std::map<std::string, double>& intensities);
 
 /// Named values added to rest_controls(): an activation (0..1) by the name of its muscle, and a part of a bone's motion
