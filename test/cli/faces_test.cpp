@@ -63,7 +63,7 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_and_smiles)
     for (const char* still : { "mouth_corner", "malar", "ala" })
       EXPECT_LT(raised.at(still + side).at("size [mm]"), 1) << still;
     const nlohmann::json& frowning = found.at("frown").at("brow_medial" + side);
-    EXPECT_LT(outward(found.at("frown").at("brow_mid" + side)), 0);
+    EXPECT_LT(outward(frowning), 0);
     EXPECT_LT(up(frowning), -0.5);
     const nlohmann::json& smiling = found.at("smile").at("mouth_corner" + side);
     EXPECT_GT(outward(smiling), 0.25);
