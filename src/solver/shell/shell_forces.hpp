@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/cpu/shell_kernel.hpp"
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <array>

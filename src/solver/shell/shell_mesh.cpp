@@ -1,4 +1,4 @@
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
