@@ -98,8 +98,9 @@ void ShellForces<Real>::add_blocks()
     set_lane(blocks_[t / width], t % width, triangle, empty);
     for (std::size_t i = 0; i < 6 && !empty; ++i)
       if (i < 3 || triangle.has_beyond(i - 3))
-        of_vertex[triangle.vertex[i]].push_back(
-            { static_cast<std::int32_t>((t / width * 6 + i) * width) + kernels_.place_of_lane(t % width), Real(1) });
+        of_vertex[triangle.vertex[i]].push_back({ static_cast<std::int32_t>((t / width * 6 + i) * width) +
+                                                      kernels_.place_of_lane(static_cast<int>(t % width)),
+                                                  Real(1) });
   }
   on_vertex_ = Sums(of_vertex);
 }
