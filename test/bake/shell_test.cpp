@@ -19,14 +19,15 @@ namespace
 
 constexpr double radius = 12e-3, voxel = 1.5e-3, corneum = 0.02e-3, dermis = 1e-3;
 
-Scene ball_in_shells()
+// layers over the tissue; one of them, or both, are shells
+Scene ball_in_shells(bool outer, bool inner)
 {
   Scene scene = plain_scene(voxel);
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, radius, 0.7e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
   scene.materials.push_back(material("corneum"));
-  scene.layers = { { "corneum", "skin", "tissue", "corneum", corneum, 1, true },
-                   { "dermis", "skin", "tissue", "dermis", dermis, 2, true } };
+  scene.layers = { { "corneum", "skin", "tissue", "corneum", corneum, 1, outer },
+                   { "dermis", "skin", "tissue", "dermis", dermis, 2, inner } };
   return scene;
 }
 
@@ -37,14 +38,15 @@ double distance(const Vector3& a, const Vector3& b)
 
 TEST(BakeShell, covers_the_surface_at_the_depth_of_the_layer_with_edges_of_a_voxel)
 {
-  const Model model = bake(ball_in_shells());
-  ASSERT_EQ(model.shells.size(), 2U);
-  EXPECT_TRUE(effects_of(model).has(Effect::shell));
   const double depths[] = { 0.5 * corneum, corneum + 0.5 * dermis };
   for (std::size_t s = 0; s < 2; ++s)
   {
-    const Shell& shell = model.shells[s];
+    const Model model = bake(ball_in_shells(s == 0, s == 1));
+    ASSERT_EQ(model.shells.size(), 1U);
+    EXPECT_TRUE(effects_of(model).has(Effect::shell));
+    const Shell& shell = model.shells[0];
     EXPECT_EQ(model.materials[shell.material].name, s == 0 ? "corneum" : "dermis");
+    EXPECT_EQ(shell.thickness, s == 0 ? corneum : dermis);
     double area = 0, shortest = 1, sum = 0, farthest = 0;
     for (const auto& t : shell.surface.triangles)
     {
@@ -64,20 +66,52 @@ TEST(BakeShell, covers_the_surface_at_the_depth_of_the_layer_with_edges_of_a_vox
   }
 }
 
+// The published corneum on its dermis: a plate of 1.25 mm and 0.883 MPa, whose middle is near the stiff outer layer.
+TEST(BakeShell, layers_on_each_other_become_one_plate)
+{
+  Scene scene = ball_in_shells(true, true);
+  scene.materials.push_back(material("stiff", 48e6));
+  scene.materials.push_back(material("soft", 81.4e3));
+  scene.layers[0].material = "stiff";
+  scene.layers[1].material = "soft";
+  scene.layers[1].thickness = 1.8e-3;
+  const Model model = bake(scene);
+  ASSERT_EQ(model.shells.size(), 1U);
+  const Shell& plate = model.shells[0];
+  EXPECT_EQ(plate.name, "corneum + dermis");
+  EXPECT_NEAR(plate.thickness, 1.25e-3, 0.005e-3);
+  const auto& numbers = model.materials[plate.material].parameters;
+  EXPECT_NEAR(9 * numbers[0] * numbers[1] / (3 * numbers[1] + numbers[0]), 0.883e6, 0.005e6);
+  const double stretching[] = { 48e6 * corneum, 81.4e3 * 1.8e-3 };
+  const double neutral =
+      (stretching[0] * 0.5 * corneum + stretching[1] * (corneum + 0.9e-3)) / (stretching[0] + stretching[1]);
+  for (const Vector3& v : plate.surface.vertices)
+    EXPECT_NEAR(distance(transformed(model.to_scene, v), {}), radius - neutral, 0.05e-3);
+}
+
+TEST(BakeShell, shells_with_a_layer_between_them_stay_apart)
+{
+  Scene scene = ball_in_shells(true, false);
+  scene.layers.push_back({ "fascia", "skin", "tissue", "corneum", corneum, 3, true });
+  const Model model = bake(scene);
+  ASSERT_EQ(model.shells.size(), 2U);
+  EXPECT_EQ(model.shells[0].name, "corneum");
+  EXPECT_EQ(model.shells[1].name, "fascia");
+}
+
 TEST(BakeShell, nothing_of_it_is_in_the_voxels)
 {
-  const Model model = bake(ball_in_shells());
+  const Model model = bake(ball_in_shells(true, true));
   for (std::size_t m = 0; m < model.mixture_material.size(); ++m)
     EXPECT_TRUE(model.materials[model.mixture_material[m]].name == "fat" || model.mixture_proportion[m] == 0);
-  Scene scene = ball_in_shells();
-  for (Layer& layer : scene.layers)
-    layer.shell = false;
-  EXPECT_TRUE(bake(scene).shells.empty());
+  EXPECT_TRUE(bake(ball_in_shells(false, false)).shells.empty());
 }
 
 TEST(BakeShell, is_the_same_in_the_model_file)
 {
-  const Model model = bake(ball_in_shells());
+  Scene scene = ball_in_shells(true, false);
+  scene.layers.push_back({ "fascia", "skin", "tissue", "corneum", corneum, 3, true });
+  const Model model = bake(scene);
   const std::string file =
       (std::filesystem::temp_directory_path() / ("shell_test_" + std::to_string(::getpid()))).string();
   write_model(model, file);
@@ -98,7 +132,7 @@ TEST(BakeShell, is_the_same_in_the_model_file)
 
 TEST(BakeShell, is_refused_where_the_surface_is_far_from_the_tissue)
 {
-  Scene scene = ball_in_shells();
+  Scene scene = ball_in_shells(true, true);
   scene.surfaces.push_back(sphere_surface("shield", { 0, 0, 0 }, 2 * radius, 2e-3));
   scene.layers = { { "film", "shield", "tissue", "corneum", corneum, 7, true } };
   try

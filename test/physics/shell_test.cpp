@@ -1,6 +1,6 @@
 // the law of a shell: gradient, rigid motions, energies of plates
 
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 
 #include <gtest/gtest.h>
 

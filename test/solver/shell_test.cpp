@@ -219,6 +219,27 @@ TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
   }
 }
 
+// A plate that bends under its weight, far stiffer than the tissue around it, whose own vibrations are much slower.
+TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
+{
+  BlockSettings settings;
+  settings.voxels = { { 10, 3, 1 } };
+  settings.young = 100;
+  settings.poisson = 0.3;
+  Model model = block_model(settings);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][0] < 2)
+      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  ShellSettings plate;
+  plate.height = 0.5e-3;
+  plate.thickness = 0.2e-3;
+  add_shell(model, plate);
+  model.gravity = { { 0, 0, -0.2 } };
+  constexpr double period = 0.14;  // of a beam's slowest vibration
+  const auto solver = make(model, 1, false);
+  EXPECT_TRUE(solver->settle(solver->controls(), 1e-3, 8 * period).reached);
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, ShellBackend, testing::ValuesIn(host_backends()), backend_name);
 
 }  // namespace

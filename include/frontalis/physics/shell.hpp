@@ -14,7 +14,7 @@ struct ShellTriangle
 {
   Vec3<T> from_corner[5];  ///< vertices 1..5 less corner 0 [m]
   T metric[3];             ///< inverse of the matrix of scalar products of the first two: 11, 12, 22 [1/m2]
-  T area_twice;            ///< [m2]
+  T inverse_area;          ///< of the doubled area [1/m2]
   T shear, dilatation;     ///< Lame's constants in plane stress times thickness and area [J]
   T height[3];             ///< of vertices 3..5 above the triangle's plane [m]
   T bending[6];            ///< symmetric matrix of the bending energy over heights: 11, 12, 13, 22, 23, 33 [J/m2]
@@ -55,13 +55,14 @@ FRONTALIS_LAW ShellReaction<T> shell_forces(const ShellTriangle<T>& rest, const 
 
   const Vec3<T> along_a = rest.metric[0] * a + rest.metric[1] * b, along_b = rest.metric[1] * a + rest.metric[2] * b;
   const Vec3<T> across_a = cross(b, normal), across_b = cross(normal, a);  // gradients of the doubled area
-  const T trace = dot(along_a, a) + dot(along_b, b), inverse_area = T(1) / rest.area_twice;
-  const T ratio = length * inverse_area;
+  const T trace = dot(along_a, a) + dot(along_b, b);
+  const T ratio = length * rest.inverse_area;
   const T sum = N::sqrt(trace + N::of(2) * ratio);
   const T dilated = sum - N::of(2);
   const T per_sum = rest.dilatation * dilated - N::of(2) * rest.shear;  // dE / d(s1 + s2)
-  const T per_trace = rest.shear + N::of(0.5) * per_sum / sum;
-  const T per_area = inverse_area * per_sum / sum;
+  const T along_sum = per_sum / sum;
+  const T per_trace = rest.shear + N::of(0.5) * along_sum;
+  const T per_area = rest.inverse_area * along_sum;
 
   ShellReaction<T> out;
   out.membrane = rest.shear * (trace - N::of(2) * sum + N::of(2)) + N::of(0.5) * rest.dilatation * dilated * dilated;

@@ -137,7 +137,8 @@ public:
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
   /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Internal forces [N] at the present displacements (elastic, hourglass, fibres), before constraints.
+  /// Internal forces [N] at the present displacements (elastic, hourglass, fibres; on a CPU
+  /// also those of shells and contact), before constraints.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;
 
   virtual std::string description() const = 0;  ///< backend, instruction set or device, threads

@@ -3,7 +3,10 @@
 #include "bake/mesh/remesh.hpp"
 #include "bake/messages.hpp"
 #include "bake/voxels/contact_bodies.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 
+#include <cmath>
 #include <map>
 
 namespace frontalis
@@ -33,20 +36,94 @@ void sink(TriangleMesh& mesh, double depth)
     mesh.vertices[v] = to_array(to_vector(mesh.vertices[v]) - depth * normals[v].normalized());
 }
 
+// Layers that are shells and lie on each other.
+struct Plate
+{
+  const Layer* top = nullptr;
+  std::string name;
+  std::size_t layers = 0;
+  int material = 0;  // of the top layer
+  double thickness = 0;
+  // sums over the layers of Young's modulus times thickness, and of that times depth, depth squared and Poisson's
+  // ratio; depth below the surface; depth squared is that averaged over the layer
+  double stiffness = 0, first = 0, second = 0, poisson = 0;
+
+  void add(const Layer& layer, int index, const Material& of, double depth)
+  {
+    if (layers++ == 0)
+    {
+      top = &layer;
+      material = index;
+    }
+    name += (name.empty() ? "" : " + ") + layer.name;
+    thickness += layer.thickness;
+    const double mu = physics::shear_modulus_of(of.law, of.parameters);
+    const double young = physics::young_modulus(mu, of.parameters[1]), share = young * layer.thickness;
+    const double middle = depth + 0.5 * layer.thickness;
+    stiffness += share;
+    first += share * middle;
+    second += share * (middle * middle + layer.thickness * layer.thickness / 12);
+    poisson += share * (young / (2 * mu) - 1);
+  }
+  double neutral() const { return first / stiffness; }
+
+  // Turns several layers into a homogeneous one with their stiffness in the surface and in bending about their neutral
+  // surface: apart, each would bend about a middle of its own, and a thin stiff one would fold in waves that no voxel
+  // resolves.
+  void make_homogeneous(Model& model)
+  {
+    if (layers == 1)
+      return;
+    thickness = std::sqrt(12 * (second / stiffness - neutral() * neutral()));
+    const double young = stiffness / thickness, ratio = poisson / stiffness;
+    Material together;
+    together.name = name;
+    together.density = model.materials[material].density;
+    together.parameters[0] = young / (2 * (1 + ratio));
+    together.parameters[1] = young / (3 * (1 - 2 * ratio));
+    material = static_cast<int>(model.materials.size());
+    model.materials.push_back(together);
+  }
+};
+
+std::vector<Plate> plates_of(const Scene& scene, const Model& model)
+{
+  struct Below
+  {
+    double depth = 0;  // at which the next layer begins
+    std::size_t plate = 0;
+    bool on_plate = false;
+  };
+  std::map<std::pair<std::string, std::string>, Below> below;
+  std::vector<Plate> plates;
+  for (const Layer& layer : scene.layers)
+  {
+    Below& here = below[{ layer.volume, layer.surface }];
+    if (layer.shell && !here.on_plate)
+    {
+      here.plate = plates.size();
+      plates.emplace_back();
+    }
+    here.on_plate = layer.shell;
+    if (layer.shell)
+    {
+      const int material = index_of(scene.materials, layer.material, place_in_scene(scene, "layer", layer), "material");
+      plates[here.plate].add(layer, material, model.materials[material], here.depth);
+    }
+    here.depth += layer.thickness;
+  }
+  return plates;
+}
+
 }  // namespace
 
 void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                  BakeMonitor& monitor)
 {
   const double edge = *std::max_element(model.spacing.begin(), model.spacing.end());
-  std::map<std::pair<std::string, std::string>, double> depth;  // at which the next layer begins
-  for (const Layer& layer : scene.layers)
+  for (Plate& plate : plates_of(scene, model))
   {
-    double& top = depth[{ layer.volume, layer.surface }];
-    const double middle = top + 0.5 * layer.thickness;
-    top += layer.thickness;
-    if (!layer.shell)
-      continue;
+    const Layer& layer = *plate.top;
     const std::string place = place_in_scene(scene, "layer", layer);
     const Region crop = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")].crop;
     // the part near the tissue: triangles of the surface itself may be larger than the tissue
@@ -58,17 +135,18 @@ void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const Loc
     TriangleMesh surface = near.mesh;
     if (!surface.triangles.empty())
       surface = with_equal_edges(surface, edge_ratio * edge);
-    sink(surface, middle);
+    sink(surface, plate.neutral());
     for (Vector3& v : surface.vertices)
       v = to_array(frame.to_scene(to_vector(v)));
     BoundMesh bound = bind_mesh(surface, Region(), frame, model, farthest * edge, monitor);
     if (bound.mesh.triangles.empty())
       throw failure("{}: no triangle of surface '{}' lies in the crop of volume '{}' and within {} of its voxels",
                     place, layer.surface, layer.volume, length_text(farthest * edge, scene.unit));
-    monitor.found("layer '{}': a shell of {} triangles, {:.4g} cm2", layer.name, bound.mesh.triangles.size(),
+    monitor.found("layer '{}': a shell of {} triangles, {:.4g} cm2", plate.name, bound.mesh.triangles.size(),
                   1e4 * surface_area(bound.mesh));
-    model.shells.push_back({ layer.name, layer.thickness, index_of(scene.materials, layer.material, place, "material"),
-                             std::move(bound.mesh), std::move(bound.binding) });
+    plate.make_homogeneous(model);
+    model.shells.push_back(
+        { plate.name, plate.thickness, plate.material, std::move(bound.mesh), std::move(bound.binding) });
   }
 }
 

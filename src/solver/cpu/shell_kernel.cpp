@@ -1,40 +1,39 @@
-#include "solver/cpu/one_lane.hpp"
 #include "solver/cpu/shell_kernel_body.hpp"
-
-#include <algorithm>
 
 namespace frontalis
 {
-
-template <class Real>
-WeightedSums<Real>::WeightedSums(const std::vector<Terms>& sums)
+namespace
 {
-  for (std::size_t first = 0; first < sums.size(); first += width)
+
+template <class Number>
+struct PlainLane
+{
+  using Real = Number;
+  using Batch = Number;
+  using Vector = physics::Vec3<Number>;
+  static constexpr int count = 1;
+
+  static FRONTALIS_LAW Number load(const Number* p) { return *p; }
+  static FRONTALIS_LAW Vector gather(const ShellVector<Number>* from, const std::int32_t* index)
   {
-    const std::size_t last = std::min(first + width, sums.size());
-    std::size_t longest = 0;
-    for (std::size_t s = first; s < last; ++s)
-      longest = std::max(longest, sums[s].size());
-    const std::size_t begins = rows.size();
-    rows.resize(begins + longest, Row{});
-    for (std::size_t s = first; s < last; ++s)
-      for (std::size_t term = 0; term < sums[s].size(); ++term)
-      {
-        rows[begins + term].index[s - first] = sums[s][term].first;
-        rows[begins + term].weight[s - first] = sums[s][term].second;
-      }
-    begin.push_back(static_cast<std::int32_t>(rows.size()));
+    return vector(from[*index]);
   }
-}
+  static FRONTALIS_LAW void store(const Vector& v, ShellVector<Number>* to) { store(v, *to); }
+  static FRONTALIS_LAW Vector vector(const ShellVector<Number>& v) { return { v.x[0], v.x[1], v.x[2] }; }
+  static FRONTALIS_LAW Vector vector(Number x, Number y, Number z) { return { x, y, z }; }
+  static FRONTALIS_LAW Vector times(Number weight, const Vector& v) { return weight * v; }
+  static FRONTALIS_LAW void store(const Vector& v, ShellVector<Number>& to) { to = { { v.x, v.y, v.z, 0 } }; }
+  static int place(int lane) { return lane; }
+};
+
+}  // namespace
 
 template <class Real>
 ShellKernels<Real> plain_shell_kernels()
 {
-  return { ShellKernelBody<OneLane<Real>>::forces, ShellKernelBody<OneLane<Real>>::sum };
+  return ShellKernelBody<PlainLane<Real>>::all();
 }
 
-template struct WeightedSums<float>;
-template struct WeightedSums<double>;
 template ShellKernels<float> plain_shell_kernels();
 template ShellKernels<double> plain_shell_kernels();
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -17,48 +15,61 @@ struct ShellBlock
 
   Real from_corner[5][3][width];
   Real metric[3][width];
-  Real area_twice[width], shear[width], dilatation[width];
+  Real inverse_area[width], shear[width], dilatation[width];
   Real height[3][width], bending[6][width];
   std::int32_t vertex[6][width];
 };
 
-/// Weighted sums of vectors: the interpolation of bound points and its transpose. Sums are computed in blocks of
-/// `width`, one per lane; a block has as many rows as its longest sum, and shorter ones have rows of weight 0.
+/// A vector with a fourth number, 0, so that one instruction loads it.
+template <class Real>
+struct ShellVector
+{
+  alignas(4 * sizeof(Real)) Real x[4];
+};
+
+/// Weighted sums of vectors: the interpolation of bound points, and its transpose. Each sum is filled up to a multiple
+/// of four terms with terms of weight 0, since most of the time would go into guessing wrongly where a short sum ends.
 template <class Real>
 struct WeightedSums
 {
-  static constexpr int width = 16;
-  struct Row
+  struct Term
   {
-    std::int32_t index[width];
-    Real weight[width];
+    std::int32_t index;
+    Real weight;
   };
-  using Terms = std::vector<std::pair<std::int32_t, Real>>;
+  using Terms = std::vector<Term>;
 
   WeightedSums() = default;
-  explicit WeightedSums(const std::vector<Terms>& sums);
+  explicit WeightedSums(const std::vector<Terms>& sums)
+  {
+    for (const Terms& sum : sums)
+    {
+      terms.insert(terms.end(), sum.begin(), sum.end());
+      while (terms.size() % 4 != 0)
+        terms.push_back({ sum[0].index, 0 });
+      begin.push_back(static_cast<std::int32_t>(terms.size()));
+    }
+  }
 
-  std::int32_t blocks() const { return static_cast<std::int32_t>(begin.size()) - 1; }
-
-  std::vector<std::int32_t> begin{ 0 };  ///< first row of each block, and the number of rows
-  std::vector<Row> rows;
+  std::vector<std::int32_t> begin{ 0 };  ///< first term of each sum, and the number of terms
+  std::vector<Term> terms;
 };
-
-/// The components x, y, z of vectors.
-template <class Real>
-using ConstComponents = std::array<const Real*, 3>;
-template <class Real>
-using Components = std::array<Real*, 3>;
 
 template <class Real>
 struct ShellKernels
 {
-  /// Forces of blocks [first, last) at the displacements u of vertices, as [block][vertex of the triangle][axis][lane].
-  void (*forces)(const ShellBlock<Real>* blocks, const ConstComponents<Real>& u, Real* forces, std::int32_t first,
-                 std::int32_t last);
-  /// Blocks [first, last) of the sums of `in`; writes whole blocks to `out`.
-  void (*sum)(const WeightedSums<Real>& sums, const ConstComponents<Real>& in, const Components<Real>& out,
-              std::int32_t first, std::int32_t last);
+  /// Sums [first, last) of vectors whose components are in three arrays.
+  void (*place)(const WeightedSums<Real>& sums, const Real* const in[3], ShellVector<Real>* out, std::int32_t first,
+                std::int32_t last);
+  /// Forces of blocks [first, last) at the displacements u of vertices, as [block][vertex of the triangle][place].
+  void (*forces)(const ShellBlock<Real>* blocks, const ShellVector<Real>* u, ShellVector<Real>* forces,
+                 std::int32_t first, std::int32_t last);
+  /// Sums [first, last) of vectors.
+  void (*sum)(const WeightedSums<Real>& sums, const ShellVector<Real>* in, ShellVector<Real>* out, std::int32_t first,
+              std::int32_t last);
+  /// Where forces() writes the force on a vertex of the triangle in a lane: not in the order of lanes, which saves
+  /// permutations.
+  int (*place_of_lane)(int lane);
 };
 
 /// The kernels without SIMD, in any precision.

@@ -3,10 +3,6 @@
 namespace frontalis
 {
 
-ShellKernels<float> shell_kernels_avx2()
-{
-  using Body = ShellKernelBody<ShellLanes<xsimd::fma3<xsimd::avx2>>>;
-  return { Body::forces, Body::sum };
-}
+ShellKernels<float> shell_kernels_avx2() { return ShellKernelBody<ShellLanes<xsimd::fma3<xsimd::avx2>>>::all(); }
 
 }  // namespace frontalis

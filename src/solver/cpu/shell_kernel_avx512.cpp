@@ -3,10 +3,6 @@
 namespace frontalis
 {
 
-ShellKernels<float> shell_kernels_avx512()
-{
-  using Body = ShellKernelBody<ShellLanes<xsimd::avx512bw>>;
-  return { Body::forces, Body::sum };
-}
+ShellKernels<float> shell_kernels_avx512() { return ShellKernelBody<ShellLanes<xsimd::avx512bw>>::all(); }
 
 }  // namespace frontalis

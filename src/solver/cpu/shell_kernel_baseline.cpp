@@ -3,10 +3,6 @@
 namespace frontalis
 {
 
-ShellKernels<float> shell_kernels_baseline()
-{
-  using Body = ShellKernelBody<ShellLanes<xsimd::default_arch>>;
-  return { Body::forces, Body::sum };
-}
+ShellKernels<float> shell_kernels_baseline() { return ShellKernelBody<ShellLanes<xsimd::default_arch>>::all(); }
 
 }  // namespace frontalis

@@ -15,8 +15,7 @@ struct ShellKernelBody
   using Batch = typename Lanes::Batch;
   using Block = ShellBlock<Real>;
   using Vector = physics::Vec3<Batch>;
-  static_assert(Block::width % Lanes::count == 0 && WeightedSums<Real>::width % Lanes::count == 0,
-                "a block is a whole number of batches");
+  static_assert(Block::width % Lanes::count == 0, "a block is a whole number of batches");
 
   static FRONTALIS_LAW physics::ShellTriangle<Batch> load(const Block& b, int lane)
   {
@@ -31,7 +30,7 @@ struct ShellKernelBody
       t.metric[i] = Lanes::load(b.metric[i] + lane);
       t.height[i] = Lanes::load(b.height[i] + lane);
     }
-    t.area_twice = Lanes::load(b.area_twice + lane);
+    t.inverse_area = Lanes::load(b.inverse_area + lane);
     t.shear = Lanes::load(b.shear + lane);
     t.dilatation = Lanes::load(b.dilatation + lane);
     FRONTALIS_UNROLL
@@ -40,7 +39,13 @@ struct ShellKernelBody
     return t;
   }
 
-  static void forces(const Block* blocks, const ConstComponents<Real>& from, Real* out, std::int32_t first,
+  static void place(const WeightedSums<Real>& sums, const Real* const in[3], ShellVector<Real>* out, std::int32_t first,
+                    std::int32_t last)
+  {
+    add(sums, out, first, last, [in](std::int32_t n) { return Lanes::vector(in[0][n], in[1][n], in[2][n]); });
+  }
+
+  static void forces(const Block* blocks, const ShellVector<Real>* from, ShellVector<Real>* out, std::int32_t first,
                      std::int32_t last)
   {
     for (auto block = first; block < last; ++block)
@@ -50,42 +55,41 @@ struct ShellKernelBody
         Vector u[6];
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-          u[i] = gathered(from, b.vertex[i] + lane);
+          u[i] = Lanes::gather(from, b.vertex[i] + lane);
         const auto reaction = physics::shell_forces(load(b, lane), u);
-        Real* const force = out + std::ptrdiff_t{ block } * 18 * Block::width + lane;
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-          store(reaction.force[i], { force + (3 * i) * Block::width, force + (3 * i + 1) * Block::width,
-                                     force + (3 * i + 2) * Block::width });
+          Lanes::store(reaction.force[i], out + (std::ptrdiff_t{ block } * 6 + i) * Block::width + lane);
       }
   }
 
-  static void sum(const WeightedSums<Real>& sums, const ConstComponents<Real>& in, const Components<Real>& out,
+  static void sum(const WeightedSums<Real>& sums, const ShellVector<Real>* in, ShellVector<Real>* out,
                   std::int32_t first, std::int32_t last)
   {
-    constexpr int width = WeightedSums<Real>::width;
-    for (auto block = first; block < last; ++block)
-      for (int lane = 0; lane < width; lane += Lanes::count)
-      {
-        const Batch none = physics::Number<Batch>::of(0);
-        Vector sum{ none, none, none };
-        for (auto r = sums.begin[block]; r < sums.begin[block + 1]; ++r)
-          sum = sum + Lanes::load(sums.rows[r].weight + lane) * gathered(in, sums.rows[r].index + lane);
-        const std::ptrdiff_t at = std::ptrdiff_t{ block } * width + lane;
-        store(sum, { out[0] + at, out[1] + at, out[2] + at });
-      }
+    add(sums, out, first, last, [in](std::int32_t i) { return Lanes::vector(in[i]); });
   }
 
+  static int place_of_lane(int lane) { return lane - lane % Lanes::count + Lanes::place(lane % Lanes::count); }
+
+  static ShellKernels<Real> all() { return { place, forces, sum, place_of_lane }; }
+
 private:
-  static FRONTALIS_LAW Vector gathered(const ConstComponents<Real>& from, const std::int32_t* index)
+  template <class Vectors>
+  static FRONTALIS_LAW void add(const WeightedSums<Real>& sums, ShellVector<Real>* out, std::int32_t first,
+                                std::int32_t last, const Vectors& vector)
   {
-    return { Lanes::gather(from[0], index), Lanes::gather(from[1], index), Lanes::gather(from[2], index) };
-  }
-  static FRONTALIS_LAW void store(const Vector& v, const Components<Real>& out)
-  {
-    Lanes::store(v.x, out[0]);
-    Lanes::store(v.y, out[1]);
-    Lanes::store(v.z, out[2]);
+    const auto* const terms = sums.terms.data();
+    const auto* const begin = sums.begin.data();
+    for (auto i = first; i < last; ++i)
+    {
+      auto sum = Lanes::vector(0, 0, 0);
+      for (auto t = begin[i]; t < begin[i + 1]; t += 4)
+      {
+        const auto term = [&](int k) { return Lanes::times(terms[t + k].weight, vector(terms[t + k].index)); };
+        sum = sum + ((term(0) + term(1)) + (term(2) + term(3)));
+      }
+      Lanes::store(sum, out[i]);
+    }
   }
 };
 

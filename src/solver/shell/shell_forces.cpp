@@ -31,7 +31,7 @@ void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triang
     block.metric[i][lane] = static_cast<Real>(rest.metric[i]);
     block.height[i][lane] = static_cast<Real>(rest.height[i]);
   }
-  block.area_twice[lane] = static_cast<Real>(rest.area_twice);
+  block.inverse_area[lane] = static_cast<Real>(rest.inverse_area);
   block.shear[lane] = there * static_cast<Real>(rest.shear);
   block.dilatation[lane] = there * static_cast<Real>(rest.dilatation);
   for (std::size_t i = 0; i < 6; ++i)
@@ -41,30 +41,11 @@ void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triang
   }
 }
 
-template <class Real>
-ConstComponents<Real> pointers(const std::array<std::vector<Real>, 3>& lists)
+// The thread's share of things to do.
+std::pair<std::int32_t, std::int32_t> share_of(std::size_t count, const NodeShare& share)
 {
-  return { lists[0].data(), lists[1].data(), lists[2].data() };
-}
-template <class Real>
-Components<Real> pointers(std::array<std::vector<Real>, 3>& lists)
-{
-  return { lists[0].data(), lists[1].data(), lists[2].data() };
-}
-
-// Blocks that contain the entries [begin, end).
-template <class Index>
-std::pair<std::int32_t, std::int32_t> blocks_of(Index begin, Index end)
-{
-  constexpr auto width = static_cast<Index>(WeightedSums<float>::width);
-  return { static_cast<std::int32_t>(begin / width), static_cast<std::int32_t>((end + width - 1) / width) };
-}
-
-// The thread's share of some blocks.
-std::pair<std::int32_t, std::int32_t> share_of(std::size_t blocks, const NodeShare& share)
-{
-  return { static_cast<std::int32_t>(blocks * share.thread / share.threads),
-           static_cast<std::int32_t>(blocks * (share.thread + 1) / share.threads) };
+  return { static_cast<std::int32_t>(count * share.thread / share.threads),
+           static_cast<std::int32_t>(count * (share.thread + 1) / share.threads) };
 }
 
 }  // namespace
@@ -86,8 +67,8 @@ ShellForces<Real>::ShellForces(const Model& model, const ShellKernels<Real>& ker
     for (std::size_t b = 0; b < 8; ++b)
     {
       const auto node = model.voxel_nodes[binding.voxel[v]][b];
-      of_vertex[v].emplace_back(node, static_cast<Real>(weight[b]));
-      of_node[node].emplace_back(static_cast<std::int32_t>(v), static_cast<Real>(weight[b]));
+      of_vertex[v].push_back({ node, static_cast<Real>(weight[b]) });
+      of_node[node].push_back({ static_cast<std::int32_t>(v), static_cast<Real>(weight[b]) });
     }
     ++plane_vertices_[model.voxels[binding.voxel[v]][2] + 1];
   }
@@ -100,8 +81,7 @@ ShellForces<Real>::ShellForces(const Model& model, const ShellKernels<Real>& ker
   place_ = Sums(of_vertex);
   on_node_ = Sums(of_node);
   add_blocks();
-  for (auto& component : u_)
-    component.assign(static_cast<std::size_t>(place_.blocks()) * Sums::width, 0);
+  u_.resize(of_vertex.size());
 }
 
 template <class Real>
@@ -109,7 +89,7 @@ void ShellForces<Real>::add_blocks()
 {
   constexpr std::size_t width = Block::width;
   blocks_.resize((mesh_.triangles.size() + width - 1) / width);
-  forces_.assign(blocks_.size() * 18 * width, 0);
+  forces_.resize(blocks_.size() * 6 * width);
   std::vector<typename Sums::Terms> of_vertex(mesh_.binding.voxel.size());
   for (std::size_t t = 0; t < blocks_.size() * width; ++t)
   {
@@ -118,8 +98,9 @@ void ShellForces<Real>::add_blocks()
     set_lane(blocks_[t / width], t % width, triangle, empty);
     for (std::size_t i = 0; i < 6 && !empty; ++i)
       if (i < 3 || triangle.has_beyond(i - 3))
-        of_vertex[triangle.vertex[i]].emplace_back(
-            static_cast<std::int32_t>((t / width * 18 + 3 * i) * width + t % width), Real(1));
+        of_vertex[triangle.vertex[i]].push_back({ static_cast<std::int32_t>((t / width * 6 + i) * width) +
+                                                      kernels_.place_of_lane(static_cast<int>(t % width)),
+                                                  Real(1) });
   }
   on_vertex_ = Sums(of_vertex);
 }
@@ -135,13 +116,12 @@ void ShellForces<Real>::list_arrays(ArrayList& list)
   list.add(effect, "vertices", plane_vertices_);
   list.add(effect, "nodes", nodes_);
   for (const Sums* const sums : { &place_, &on_vertex_, &on_node_ })
-    if (!sums->rows.empty())
+    if (!sums->terms.empty())
     {
       list.add(effect, "sums", sums->begin);
-      list.add(effect, "sums", sums->rows);
+      list.add(effect, "sums", sums->terms);
     }
-  for (const auto& component : u_)
-    list.add(effect, "forces", component);
+  list.add(effect, "forces", u_);
   list.add(effect, "forces", forces_);
 }
 
@@ -150,37 +130,35 @@ void ShellForces<Real>::prepare_step(const NodeShare& share, const Real* const u
 {
   if (share.thread == 0)
     work_.resize(static_cast<std::size_t>(share.threads));
-  const auto [first, last] = share_of(static_cast<std::size_t>(place_.blocks()), share);
-  kernels_.sum(place_, { u[0], u[1], u[2] }, pointers(u_), first, last);
+  const auto [first, last] = share_of(u_.size(), share);
+  kernels_.place(place_, u, u_.data(), first, last);
 }
 
 template <class Real>
 void ShellForces<Real>::before_step(const NodeShare& share, const Real* const /*u*/[3], const ConstraintStep& /*step*/)
 {
   const auto [first, last] = share_of(blocks_.size(), share);
-  kernels_.forces(blocks_.data(), pointers(std::as_const(u_)), forces_.data(), first, last);
+  kernels_.forces(blocks_.data(), u_.data(), forces_.data(), first, last);
 }
 
 template <class Real>
 void ShellForces<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
 {
   Work& work = work_[share.thread];
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    work.on_vertex[axis].resize(u_[axis].size());
-    work.on_node[axis].resize(static_cast<std::size_t>(on_node_.blocks()) * Sums::width);
-  }
-  const auto vertices =
-      blocks_of(plane_vertices_[std::max(share.first_plane - 1, 0)], plane_vertices_[share.end_plane]);
-  const Real* const x = forces_.data();
-  kernels_.sum(on_vertex_, { x, x + Block::width, x + 2 * Block::width }, pointers(work.on_vertex), vertices.first,
-               vertices.second);
-  const auto begin = std::lower_bound(nodes_.begin(), nodes_.end(), share.first_node) - nodes_.begin();
-  const auto end = std::lower_bound(nodes_.begin(), nodes_.end(), share.end_node) - nodes_.begin();
-  const auto blocks = blocks_of(begin, end);
-  kernels_.sum(on_node_, pointers(std::as_const(work.on_vertex)), pointers(work.on_node), blocks.first, blocks.second);
+  work.on_vertex.resize(u_.size());
+  work.on_node.resize(nodes_.size());
+  kernels_.sum(on_vertex_, forces_.data(), work.on_vertex.data(), plane_vertices_[std::max(share.first_plane - 1, 0)],
+               plane_vertices_[share.end_plane]);
+  const auto place = [&](std::int32_t node)
+  { return static_cast<std::int32_t>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin()); };
+  const auto begin = place(share.first_node), end = place(share.end_node);
+  kernels_.sum(on_node_, work.on_vertex.data(), work.on_node.data(), begin, end);
+  const ForceSink<Real> to = sink;  // so that the compiler keeps its members in registers
   for (auto n = begin; n < end; ++n)
-    sink(nodes_[n], { { double(work.on_node[0][n]), double(work.on_node[1][n]), double(work.on_node[2][n]) } });
+  {
+    const auto& force = work.on_node[n].x;
+    to(nodes_[n], std::array<Real, 3>{ { force[0], force[1], force[2] } });
+  }
 }
 
 template <class Real>

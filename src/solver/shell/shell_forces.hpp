@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/cpu/shell_kernel.hpp"
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <array>
@@ -35,11 +35,11 @@ public:
 private:
   using Block = ShellBlock<Real>;
   using Sums = WeightedSums<Real>;
-  using Lists = std::array<std::vector<Real>, 3>;
+  using Vectors = std::vector<ShellVector<Real>>;
   // of a thread: forces on vertices and on nodes [N]
   struct Work
   {
-    Lists on_vertex, on_node;
+    Vectors on_vertex, on_node;
   };
 
   void add_blocks();
@@ -55,9 +55,9 @@ private:
   Sums on_vertex_;                            // forces on vertices, of those of triangles
   Sums on_node_;                              // forces on nodes_, of those on vertices
   // of the step under way
-  Lists u_;                   // of vertices [m]
-  std::vector<Real> forces_;  // see ShellKernels [N]
-  std::vector<Work> work_;    // one per thread
+  Vectors u_;               // of vertices [m]
+  Vectors forces_;          // see ShellKernels [N]
+  std::vector<Work> work_;  // one per thread
 };
 
 }  // namespace frontalis

@@ -1,4 +1,4 @@
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/trilinear.hpp"
@@ -63,13 +63,14 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   ShellMesh::Triangle out{};
   auto& rest = out.rest;
   const Vector a = x[1] - x[0], b = x[2] - x[0], area = cross(a, b);
-  rest.area_twice = norm(area);
-  const Vector normal = (1 / rest.area_twice) * area, across_a = cross(b, normal), across_b = cross(normal, a);
-  const double per_area = 1 / (rest.area_twice * rest.area_twice);
+  const double area_twice = norm(area);
+  rest.inverse_area = 1 / area_twice;
+  const Vector normal = (1 / area_twice) * area, across_a = cross(b, normal), across_b = cross(normal, a);
+  const double per_area = 1 / (area_twice * area_twice);
   rest.metric[0] = per_area * dot(b, b);
   rest.metric[1] = -per_area * dot(a, b);
   rest.metric[2] = per_area * dot(a, a);
-  const double volume = 0.5 * rest.area_twice * thickness;
+  const double volume = 0.5 * area_twice * thickness;
   rest.shear = volume * young / (2 * (1 + poisson));
   rest.dilatation = volume * young * poisson / (1 - poisson * poisson);
   // The energy is at most (shear + dilatation) |grad u|^2. |grad u|^2 is a quadratic form of rank 2 in the corners'
@@ -81,8 +82,7 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   const auto quadratic = [&](const Vector& at)
   {
     const double s = dot(at, e1), t = dot(at, e2);
-    return std::array<double, 3>{ { 0.5 * s * s / rest.area_twice, 0.5 * t * t / rest.area_twice,
-                                    0.5 * s * t / rest.area_twice } };
+    return std::array<double, 3>{ { 0.5 * s * s / area_twice, 0.5 * t * t / area_twice, 0.5 * s * t / area_twice } };
   };
   const auto of_a = quadratic(a), of_b = quadratic(b);
   const Vector corner[3] = { { 0, 0, 0 }, a, b };
@@ -97,7 +97,7 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
     const Vector outer = beyond[i] ? x[i + 3] - x[0] : mirrored;
     rest.from_corner[i + 2] = outer;
     rest.height[i] = dot(outer, normal);
-    const double on_a = dot(outer, across_a) / rest.area_twice, on_b = dot(outer, across_b) / rest.area_twice;
+    const double on_a = dot(outer, across_a) / area_twice, on_b = dot(outer, across_b) / area_twice;
     share[i] = { { 1 - on_a - on_b, on_a, on_b } };
     const auto of_outer = quadratic(outer);
     for (std::size_t k = 0; k < 3; ++k)
@@ -108,7 +108,7 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
     squared[k][k] += regularisation;
   const Matrix curvature = product(inverse(squared), transposed(T));  // of heights over twice the area
   const double plate = young * std::pow(thickness, 3) / (12 * (1 - poisson * poisson));
-  const double scale = 0.5 * plate / rest.area_twice;
+  const double scale = 0.5 * plate / area_twice;
   const Matrix law{
     { { { scale, scale * poisson, 0 } }, { { scale * poisson, scale, 0 } }, { { 0, 0, 0.5 * scale * (1 - poisson) } } }
   };

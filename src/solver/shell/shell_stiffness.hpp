@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/shell/shell_mesh.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 #include "solver/stepping/added_stiffness.hpp"
 
 namespace frontalis

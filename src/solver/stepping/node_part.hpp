@@ -34,7 +34,8 @@ public:
       : gain_(gain), dt_(dt), inverse_mass_(inverse_mass), u_{ u[0], u[1], u[2] }, v_{ v[0], v[1], v[2] }
   {
   }
-  void operator()(std::int32_t node, const std::array<double, 3>& force) const
+  template <class Number = double>
+  void operator()(std::int32_t node, const std::array<Number, 3>& force) const
   {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (inverse_mass_ == nullptr)

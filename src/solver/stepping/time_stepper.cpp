@@ -214,6 +214,17 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   return plan;
 }
 
+void TimeStepper::internal_forces(NodalVectors& out)
+{
+  backend_->internal_forces(nullptr, out);
+  NodalVectors pushing(out.size());
+  EnergyLedger unused = empty_ledger();
+  backend_->add_energies(false, pushing, unused);
+  for (std::size_t n = 0; n < out.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[n][axis] -= pushing[n][axis];
+}
+
 Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double seconds,
                                 const std::function<bool(const Equilibrium&)>& go_on)
 {

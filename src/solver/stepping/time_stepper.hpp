@@ -48,7 +48,7 @@ public:
   void displacements(NodalVectors& out) const override { backend_->get(NodalField::displacements, out); }
   void set_displacements(const NodalVectors& in) override;
   void set_velocities(const NodalVectors& in) override;
-  void internal_forces(NodalVectors& out) override { backend_->internal_forces(nullptr, out); }
+  void internal_forces(NodalVectors& out) override;
   std::string description() const override { return traits_.description; }
 
 private:

@@ -1,9 +1,11 @@
 #include "frontalis/study/statics.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/trilinear.hpp"
 #include "frontalis/solver/guard.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Sparse>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,6 +18,8 @@ namespace
 {
 
 using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
+using Sparse = Eigen::SparseMatrix<double>;           // index 3 * node (or vertex) + axis
+using Entries = std::vector<Eigen::Triplet<double>>;
 
 Mixture mixture_of(const Model& model, std::size_t e)
 {
@@ -73,6 +77,85 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
   return 0.5 * (k + k.transpose());
 }
 
+int row_of(std::size_t point, std::size_t axis) { return static_cast<int>(3 * point + axis); }
+
+Sparse sparse(int rows, int columns, const Entries& entries)
+{
+  Sparse matrix(rows, columns);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Sparse voxel_stiffness(const Model& model, const std::array<double, 9>& gradient)
+{
+  Entries entries;
+  entries.reserve(model.voxels.size() * 24 * 24);
+  std::map<std::vector<float>, ElementMatrix> known;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    const auto [entry, is_new] = known.try_emplace(stiffness_key(model, e));
+    if (is_new)
+      entry->second = element_stiffness(model, e, gradient);
+    const auto& nodes = model.voxel_nodes[e];
+    for (int row = 0; row < 24; ++row)
+      for (int column = 0; column < 24; ++column)
+        entries.emplace_back(row_of(nodes[row / 3], row % 3), row_of(nodes[column / 3], column % 3),
+                             entry->second(row, column));
+  }
+  const auto size = row_of(model.nodes.size(), 0);
+  return sparse(size, size, entries);
+}
+
+// Central differences of the law of each triangle, passed on to the nodes that carry its vertices.
+Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient)
+{
+  const ShellMesh mesh(model);
+  const auto vertices = mesh.binding.voxel.size();
+  Entries entries, binding;
+  std::vector<physics::Vec3<double>> moved(vertices);
+  const Vectors of_nodes = affine_displacements(model, gradient);
+  for (std::size_t v = 0; v < vertices; ++v)
+  {
+    const auto& at = mesh.binding.coordinates[v];
+    double weight[8];
+    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+    moved[v] = { 0, 0, 0 };
+    for (std::size_t b = 0; b < 8; ++b)
+    {
+      const auto node = model.voxel_nodes[mesh.binding.voxel[v]][b];
+      const Point& u = of_nodes[node];
+      moved[v] = moved[v] + weight[b] * physics::Vec3<double>{ u[0], u[1], u[2] };
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        binding.emplace_back(row_of(node, axis), row_of(v, axis), weight[b]);
+    }
+  }
+  const double step = 1e-6 * *std::min_element(model.spacing.begin(), model.spacing.end());
+  for (const auto& triangle : mesh.triangles)
+    for (std::size_t column = 0; column < 18; ++column)
+    {
+      physics::Vec3<double> u[6];
+      for (std::size_t i = 0; i < 6; ++i)
+        u[i] = moved[triangle.vertex[i]];
+      auto& vector = u[column / 3];
+      double& component = column % 3 == 0 ? vector.x : column % 3 == 1 ? vector.y : vector.z;
+      component -= step;
+      const auto before = physics::shell_forces(triangle.rest, u);
+      component += 2 * step;
+      const auto after = physics::shell_forces(triangle.rest, u);
+      for (std::size_t i = 0; i < 6; ++i)
+      {
+        const auto change = (0.5 / step) * (before.force[i] - after.force[i]);
+        const double of_axis[3] = { change.x, change.y, change.z };
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          entries.emplace_back(row_of(triangle.vertex[i], axis), row_of(triangle.vertex[column / 3], column % 3),
+                               of_axis[axis]);
+      }
+    }
+  const auto size = row_of(vertices, 0);
+  const Sparse own = sparse(size, size, entries), bind = sparse(row_of(model.nodes.size(), 0), size, binding);
+  return 0.5 * bind * Sparse(own + Sparse(own.transpose())) * bind.transpose();
+}
+
 }  // namespace
 
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
@@ -118,48 +201,20 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
   return sum;
 }
 
-// Voxels couple only neighbouring planes of nodes. With planes across the longest axis of the grid the stiffness is
-// therefore block tridiagonal, and its Cholesky factor consists of dense blocks.
 struct LinearStatics::System
 {
-  struct Unknown
-  {
-    int plane = 0, row = -1;  // row in the plane's block; -1: fixed component
-  };
-  std::vector<std::array<Unknown, 3>> unknowns;    // one per node and component
-  Vectors fixed;                                   // prescribed displacements [m]
-  std::vector<Eigen::VectorXd> forces;             // per plane: forces that prescribed displacements cause [N]
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> plane;  // per plane: factor of its own block
-  std::vector<Eigen::MatrixXd> next;               // per plane: factor of the block that couples it to the next
-  bool positive_definite = true;
+  std::vector<std::array<int, 3>> unknown;  // row of each component of each node; -1: fixed
+  Vectors fixed;                            // prescribed displacements [m]
+  Eigen::VectorXd forces;                   // that prescribed displacements cause [N]
+  Eigen::SimplicialLLT<Sparse> factor;
 
-  void factorise(std::vector<Eigen::MatrixXd> diagonal)
+  template <class Visit>
+  void for_each_unknown(const Visit& visit) const
   {
-    for (std::size_t p = 0; p < diagonal.size() && positive_definite; ++p)
-    {
-      plane.emplace_back(diagonal[p]);
-      positive_definite = plane.back().info() == Eigen::Success;
-      if (p + 1 == diagonal.size() || !positive_definite)
-        continue;
-      plane[p].matrixU().solveInPlace<Eigen::OnTheRight>(next[p]);
-      diagonal[p + 1].noalias() -= next[p] * next[p].transpose();
-    }
-  }
-
-  void solve_in_place(std::vector<Eigen::VectorXd>& x) const
-  {
-    for (std::size_t p = 0; p < x.size(); ++p)
-    {
-      if (p > 0)
-        x[p].noalias() -= next[p - 1] * x[p - 1];
-      plane[p].matrixL().solveInPlace(x[p]);
-    }
-    for (std::size_t p = x.size(); p-- > 0;)
-    {
-      if (p + 1 < x.size())
-        x[p].noalias() -= next[p].transpose() * x[p + 1];
-      plane[p].matrixU().solveInPlace(x[p]);
-    }
+    for (std::size_t n = 0; n < unknown.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (unknown[n][axis] >= 0)
+          visit(unknown[n][axis], n, axis);
   }
 };
 
@@ -168,80 +223,51 @@ LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gr
 {
   if (!model.muscles.empty() || !model.sliding.empty())
     throw Error("linear statics: the model has muscles or sliding nodes; it must have neither");
-  std::vector<std::array<bool, 3>> held(model.nodes.size(), { { false, false, false } });
+  auto& unknown = system_->unknown;
+  unknown.assign(model.nodes.size(), { { 0, 0, 0 } });
   system_->fixed.assign(model.nodes.size(), { { 0, 0, 0 } });
   for (const auto& rigid : model.rigid)
-    held[rigid.node] = { { true, true, true } };
+    unknown[rigid.node] = { { -1, -1, -1 } };
   for (const auto& [node, load] : model.prescribed)
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
       if (model.loads[load].fixed[axis])
       {
-        held[node][axis] = true;
+        unknown[node][axis] = -1;
         system_->fixed[node][axis] = model.loads[load].value[axis];
       }
-  const auto along = std::max_element(model.size.begin(), model.size.end()) - model.size.begin();
-  const std::size_t planes = static_cast<std::size_t>(model.size[along]) + 1;
-  std::vector<int> rows(planes, 0);
-  system_->unknowns.resize(model.nodes.size());
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int plane = model.nodes[n][along];
-      system_->unknowns[n][axis] = { plane, held[n][axis] ? -1 : rows[plane]++ };
-    }
+  int count = 0;
+  for (auto& node : unknown)
+    for (int& row : node)
+      row = row < 0 ? -1 : count++;
 
-  std::vector<Eigen::MatrixXd> diagonal;
-  for (std::size_t p = 0; p < planes; ++p)
-  {
-    diagonal.emplace_back(Eigen::MatrixXd::Zero(rows[p], rows[p]));
-    system_->forces.emplace_back(Eigen::VectorXd::Zero(rows[p]));
-    if (p + 1 < planes)
-      system_->next.emplace_back(Eigen::MatrixXd::Zero(rows[p + 1], rows[p]));
-  }
-  std::map<std::vector<float>, ElementMatrix> known;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    const auto [entry, is_new] = known.try_emplace(stiffness_key(model, e));
-    if (is_new)
-      entry->second = element_stiffness(model, e, gradient);
-    const ElementMatrix& k = entry->second;
-    for (int row = 0; row < 24; ++row)
-    {
-      const auto [plane, i] = system_->unknowns[model.voxel_nodes[e][row / 3]][row % 3];
-      for (int column = 0; i >= 0 && column < 24; ++column)
-      {
-        const auto node = model.voxel_nodes[e][column / 3];
-        const auto [other, j] = system_->unknowns[node][column % 3];
-        if (j < 0)
-          system_->forces[plane][i] -= k(row, column) * system_->fixed[node][column % 3];
-        else if (other <= plane)
-          (other == plane ? diagonal[plane] : system_->next[other])(i, j) += k(row, column);
-      }
-    }
-  }
-  system_->factorise(std::move(diagonal));
+  Sparse stiffness = voxel_stiffness(model, gradient);
+  if (!model.shells.empty())
+    stiffness += shell_stiffness(model, gradient);
+  Entries kept;
+  Eigen::VectorXd fixed = Eigen::VectorXd::Zero(stiffness.cols());
+  for (std::size_t n = 0; n < unknown.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      fixed[row_of(n, axis)] = system_->fixed[n][axis];
+  system_->for_each_unknown([&](int row, std::size_t n, std::size_t axis)
+                            { kept.emplace_back(row, row_of(n, axis), 1); });
+  const Sparse select = sparse(count, static_cast<int>(stiffness.cols()), kept);
+  system_->forces = -(select * (stiffness * fixed));
+  system_->factor.compute(select * stiffness * select.transpose());
 }
 
 LinearStatics::~LinearStatics() = default;
 
-bool LinearStatics::positive_definite() const { return system_->positive_definite; }
+bool LinearStatics::positive_definite() const { return system_->factor.info() == Eigen::Success; }
 
 Vectors LinearStatics::solve(const Vectors& forces) const
 {
   if (!positive_definite())
     throw Error("linear statics: the stiffness is not positive definite");
-  std::vector<Eigen::VectorXd> x = system_->forces;
+  Eigen::VectorXd x = system_->forces;
+  system_->for_each_unknown([&](int row, std::size_t n, std::size_t axis) { x[row] += forces[n][axis]; });
+  x = system_->factor.solve(x);
   Vectors u = system_->fixed;
-  const auto for_each_unknown = [&](const auto& visit)
-  {
-    for (std::size_t n = 0; n < u.size(); ++n)
-      for (int axis = 0; axis < 3; ++axis)
-        if (const auto [plane, row] = system_->unknowns[n][axis]; row >= 0)
-          visit(x[plane][row], n, axis);
-  };
-  for_each_unknown([&](double& value, std::size_t n, int axis) { value += forces[n][axis]; });
-  system_->solve_in_place(x);
-  for_each_unknown([&](double value, std::size_t n, int axis) { u[n][axis] = value; });
+  system_->for_each_unknown([&](int row, std::size_t n, std::size_t axis) { u[n][axis] = x[row]; });
   return u;
 }
 

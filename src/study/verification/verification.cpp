@@ -31,6 +31,8 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "attachment", false, baked(verify_attachment) },
            { "free_sides", false, baked(verify_free_sides) },
            { "wrinkling", true, verify_wrinkling },
+           { "shell", true, baked(verify_shell) },
+           { "wrinkle", false, baked(verify_wrinkle) },
            { "viscosity", true, verify_viscosity },
            { "hertz", false, verify_hertz },
            { "contact_pressure", true, verify_contact_pressure },

@@ -16,12 +16,25 @@ VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gr
 /// Cases that start from a scene.
 void verify_attachment(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_free_sides(const Backend& backend, const BakeScene& bake, Finding& finding);
+void verify_shell(const Backend& backend, const BakeScene& bake, Finding& finding);
+void verify_wrinkle(const Backend& backend, const BakeScene& bake, Finding& finding);
 
 inline constexpr HourglassControl hourglass_forms[] = { HourglassControl::scalar, HourglassControl::assumed_strain };
 inline std::string name_of(HourglassControl form)
 {
   return form == HourglassControl::scalar ? "scalar" : "assumed strain";
 }
+
+/// Wrinkles of a stiff film on a deep soft base, both with Poisson's ratio 0.49, in plane strain.
+struct Wrinkles
+{
+  double wavelength = 0;   ///< in units of the film's thickness
+  double compression = 0;  ///< [%]
+};
+/// By plate theory (Cao & Hutchinson 2012); `contrast`: Young's modulus of the film over the base's.
+Wrinkles expected_wrinkles(double contrast);
+/// Stretch across a base of Poisson's ratio 0.49 that leaves no stress in this direction, in plane strain.
+double free_stretch(double along);
 
 /// A solver that works in the calling thread.
 inline std::unique_ptr<Solver> solver_of(const Model& model, const Backend& backend)

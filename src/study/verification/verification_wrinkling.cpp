@@ -15,18 +15,6 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// stretch across the layers that leaves no stress in this direction, in plane strain
-double free_stretch(double along)
-{
-  const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
-  return zero_between(0.5, 2,
-                      [=](double z)
-                      {
-                        const double J = along * z, I1 = along * along + 1 + z * z;
-                        return mu * std::pow(J, -2.0 / 3) * (z - I1 / (3 * z)) + kappa * (J - 1) * along;
-                      });
-}
-
 // a film on a base
 struct Layers
 {
@@ -57,18 +45,6 @@ double critical_compression(const Layers& layers, int half)
     return LinearStatics(model, F).positive_definite() ? -1 : 1;
   };
   return zero_between(0, 0.3, unstable, 12);
-}
-
-struct Wrinkles
-{
-  double wavelength = 0;   ///< in units of the film's thickness
-  double compression = 0;  ///< [%]
-};
-
-// wrinkles by plate theory; `contrast`: Young's modulus of the film over the base's
-Wrinkles expected_wrinkles(double contrast)
-{
-  return { 2 * std::acos(-1.0) * std::cbrt(contrast / 3), 25 * std::pow(3 / contrast, 2.0 / 3) };
 }
 
 // The wrinkles that need the least compression, with half wavelengths from `first` to `last` voxels. `curve` gets the
@@ -126,6 +102,22 @@ Wrinkles skin_wrinkles(double depth, double expected)
 }
 
 }  // namespace
+
+Wrinkles expected_wrinkles(double contrast)
+{
+  return { 2 * std::acos(-1.0) * std::cbrt(contrast / 3), 25 * std::pow(3 / contrast, 2.0 / 3) };
+}
+
+double free_stretch(double along)
+{
+  const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
+  return zero_between(0.5, 2,
+                      [=](double z)
+                      {
+                        const double J = along * z, I1 = along * along + 1 + z * z;
+                        return mu * std::pow(J, -2.0 / 3) * (z - I1 / (3 * z)) + kappa * (J - 1) * along;
+                      });
+}
 
 void verify_wrinkling(const Backend&, Finding& finding)
 {

@@ -2,7 +2,6 @@
 
 #include "frontalis/model/model.hpp"
 #include "frontalis/physics/shell.hpp"
-#include "solver/stepping/array_list.hpp"
 
 #include <array>
 #include <vector>
