@@ -135,3 +135,17 @@ TEST(AttachedNodes, AreThoseOfConstraintsWithoutADistanceOfTheirOwnOrFriction)
   EXPECT_TRUE(friction.attached.empty());
   EXPECT_FALSE(friction.sliding.empty());
 }
+
+TEST(AttachedNodes, SwitchedOffStayHeldOrSlideWhereTheyAre)
+{
+  for (const auto kind : { SceneConstraint::Kind::rigid, SceneConstraint::Kind::sliding })
+  {
+    Scene scene = layer_scene(8e-3, kind);
+    const std::size_t attached = bake(scene).attached.size();
+    scene.switched_off = EffectSet().with(Effect::attachment);
+    const Model model = bake(scene);
+    EXPECT_TRUE(model.attached.empty());
+    EXPECT_EQ(model.rigid.size() + model.sliding.size(), attached);
+    EXPECT_FALSE(model.tissue_centre.empty());
+  }
+}
