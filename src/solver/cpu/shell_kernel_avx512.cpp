@@ -1,8 +1,9 @@
-#include "solver/cpu/shell_lanes.hpp"
+#include "solver/cpu/record_lanes.hpp"
+#include "solver/cpu/shell_kernel_body.hpp"
 
 namespace frontalis
 {
 
-ShellKernels<float> shell_kernels_avx512() { return ShellKernelBody<ShellLanes<xsimd::avx512bw>>::all(); }
+ShellKernels<float> shell_kernels_avx512() { return ShellKernelBody<RecordLanes<xsimd::avx512bw>>::all(); }
 
 }  // namespace frontalis

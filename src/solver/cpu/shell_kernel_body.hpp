@@ -3,6 +3,8 @@
 #include "frontalis/physics/shell.hpp"
 #include "solver/cpu/shell_kernel.hpp"
 
+#include <cstring>
+
 namespace frontalis
 {
 
@@ -42,7 +44,10 @@ struct ShellKernelBody
   static void place(const WeightedSums<Real>& sums, const Real* const in[3], ShellVector<Real>* out, std::int32_t first,
                     std::int32_t last)
   {
-    add(sums, out, first, last, [in](std::int32_t n) { return Lanes::vector(in[0][n], in[1][n], in[2][n]); });
+    add(sums, out, first, last,
+        [in](std::int32_t n) -> ShellVector<Real> {
+          return { { in[0][n], in[1][n], in[2][n], 0 } };
+        });
   }
 
   static void forces(const Block* blocks, const ShellVector<Real>* from, ShellVector<Real>* out, std::int32_t first,
@@ -55,25 +60,28 @@ struct ShellKernelBody
         Vector u[6];
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-          u[i] = Lanes::gather(from, b.vertex[i] + lane);
+          u[i] = Lanes::gather_records(from->x, 4, b.vertex[i] + lane);
         const auto reaction = physics::shell_forces(load(b, lane), u);
         FRONTALIS_UNROLL
         for (int i = 0; i < 6; ++i)
-          Lanes::store(reaction.force[i], out + (std::ptrdiff_t{ block } * 6 + i) * Block::width + lane);
+          Lanes::store_records(reaction.force[i], out[(std::ptrdiff_t{ block } * 6 + i) * Block::width + lane].x);
       }
   }
 
   static void sum(const WeightedSums<Real>& sums, const ShellVector<Real>* in, ShellVector<Real>* out,
                   std::int32_t first, std::int32_t last)
   {
-    add(sums, out, first, last, [in](std::int32_t i) { return Lanes::vector(in[i]); });
+    add(sums, out, first, last, [in](std::int32_t i) -> const ShellVector<Real>& { return in[i]; });
   }
 
-  static int place_of_lane(int lane) { return lane - lane % Lanes::count + Lanes::place(lane % Lanes::count); }
+  static int place_of_lane(int lane) { return lane - lane % Lanes::count + Lanes::record(lane % Lanes::count) / 4; }
 
   static ShellKernels<Real> all() { return { place, forces, sum, place_of_lane }; }
 
 private:
+  // One register of the processor: compilers do not find by themselves that a vector fits in it.
+  using Four [[gnu::vector_size(4 * sizeof(Real))]] = Real;
+
   template <class Vectors>
   static FRONTALIS_LAW void add(const WeightedSums<Real>& sums, ShellVector<Real>* out, std::int32_t first,
                                 std::int32_t last, const Vectors& vector)
@@ -82,13 +90,20 @@ private:
     const auto* const begin = sums.begin.data();
     for (auto i = first; i < last; ++i)
     {
-      auto sum = Lanes::vector(0, 0, 0);
+      Four sum{};
       for (auto t = begin[i]; t < begin[i + 1]; t += 4)
       {
-        const auto term = [&](int k) { return Lanes::times(terms[t + k].weight, vector(terms[t + k].index)); };
-        sum = sum + ((term(0) + term(1)) + (term(2) + term(3)));
+        Four term[4];
+        FRONTALIS_UNROLL
+        for (int k = 0; k < 4; ++k)
+        {
+          const ShellVector<Real> v = vector(terms[t + k].index);
+          std::memcpy(&term[k], &v, sizeof v);
+          term[k] *= terms[t + k].weight;
+        }
+        sum += (term[0] + term[1]) + (term[2] + term[3]);
       }
-      Lanes::store(sum, out[i]);
+      std::memcpy(&out[i], &sum, sizeof sum);
     }
   }
 };
