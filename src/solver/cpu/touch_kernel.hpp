@@ -34,13 +34,15 @@ struct MovedVertices
   Real* dual;
 };
 
-/// Pairs of a vertex and a triangle of another surface, one per lane (physics/surface_touch.hpp). Lanes beyond the last
-/// pair are copies of the first one without stiffness.
+/// The numbers of vertices and triangles of pairs of a vertex and a triangle of another surface, one pair per lane.
+/// They stand apart from PairBlock because adding up forces needs them alone.
 struct PairVertices
 {
   std::int32_t vertex[4][touch_width];  ///< the point, and the triangle's corners
   std::int32_t triangle[touch_width];   ///< -1: none
 };
+/// The other numbers of these pairs (physics/surface_touch.hpp). Lanes beyond the last pair are copies of the first one
+/// without stiffness.
 template <class Real>
 struct PairBlock
 {
