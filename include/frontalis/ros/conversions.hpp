@@ -65,9 +65,13 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 /// Name of the frame of a bone. Its origin is the point that the bone turns about, and it lies as the face frame does
 /// while the bone is at rest: the x axis of an eye is where it looks.
 std::string bone_frame(const std::string& face_frame, const std::string& bone);
-/// The surfaces of all bodies, and the eyeballs: balls that tissue slides on, of bones whose names begin with "eye".
-/// Each is in the frame of its own, which it follows. Without a stamp: it is shown with the latest transform.
+/// The surfaces of all bodies, each in the frame of its own, which it follows. Without a stamp: it is shown with the
+/// latest transform.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
+/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
+/// the eyeball, its iris and its pupil. `bones`: motions of the model's bones in the face frame. Fills all but the
+/// headers.
+visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<RigidTransform>& bones);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more
 /// than 1e-3.

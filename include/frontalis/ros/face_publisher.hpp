@@ -22,10 +22,10 @@
 namespace frontalis
 {
 
-/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~bodies, ~wrench/...
-/// and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory is reused
-/// once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field() and
-/// shows_muscles().
+/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~eyes, ~bodies,
+/// ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory
+/// is reused once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field()
+/// and shows_muscles().
 class FacePublisher
 {
 public:
@@ -80,7 +80,7 @@ private:
   Topic<geometry_msgs::PoseArray> landmarks_;
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per body
-  ros::Publisher topology_, bodies_, muscles_;
+  ros::Publisher topology_, bodies_, muscles_, eyes_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
