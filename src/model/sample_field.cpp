@@ -161,9 +161,9 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
              [&](int s, const std::array<int, 3>& way)
              {
                const bool own = way == std::array<int, 3>{ { 0, 0, 0 } };
+               const int i = s % width, j = s / width % width, k = s / (width * width);
                if (own || owner(n, way) < 0)
-                 samples[s] = static_cast<float>(
-                     distance(point_of(stored[n], s % width, s / width % width, s / (width * width))).value);
+                 samples[s] = static_cast<float>(distance(point_of(stored[n], i, j, k)).value);
              });
        });
   for (std::size_t n = 0; n < stored.size(); ++n)

@@ -195,49 +195,6 @@ geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape
   return out;
 }
 
-namespace
-{
-
-/// Adds an eyeball: a white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil.
-void add_eyeball(const Model& model, const std::string& face_frame, const ConstraintSurface& eye,
-                 visualization_msgs::MarkerArray& out)
-{
-  // radii of the balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of
-  // 11.7 mm, a cornea with a radius of 7.8 mm and a pupil of 4.4 mm on a ball of 24.2 mm
-  struct Ball
-  {
-    double radius, rim;
-    std::array<float, 3> colour;
-  };
-  constexpr std::array<Ball, 3> balls{ { { 1, 0, { { 0.92f, 0.90f, 0.87f } } },
-                                         { 0.645, 0.483, { { 0.30f, 0.20f, 0.12f } } },
-                                         { 0.5, 0.18, { { 0.02f, 0.02f, 0.02f } } } } };
-  double ahead = 0, radius = 1;  // of the ball before
-  for (const Ball& ball : balls)
-  {
-    const auto from_rim = [&](double r) { return std::sqrt(r * r - ball.rim * ball.rim); };
-    ahead += from_rim(radius) - from_rim(ball.radius);
-    radius = ball.radius;
-    visualization_msgs::Marker& marker = out.markers.emplace_back();
-    const std::string& bone = model.bones[eye.bone];
-    marker.header.frame_id = face_frame + "/bone/" + bone;
-    marker.frame_locked = true;
-    marker.ns = bone;
-    marker.id = static_cast<std::int32_t>(&ball - balls.data());
-    marker.type = visualization_msgs::Marker::SPHERE;
-    marker.action = visualization_msgs::Marker::ADD;
-    marker.pose.position.x = ahead * eye.field.radius;
-    marker.pose.orientation.w = 1;
-    marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius * eye.field.radius;
-    marker.color.r = ball.colour[0];
-    marker.color.g = ball.colour[1];
-    marker.color.b = ball.colour[2];
-    marker.color.a = 1;
-  }
-}
-
-}  // namespace
-
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body)
 {
   const RigidTransform back = inverse(body.pose);
@@ -284,9 +241,51 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
         set(marker.points.emplace_back(), p);
       }
   }
-  for (const ConstraintSurface& surface : model.constraint_surfaces)
-    if (surface.bone >= 0 && surface.field.radius > 0 && model.bones[surface.bone].compare(0, 3, "eye") == 0)
-      add_eyeball(model, face_frame, surface, out);
+  return out;
+}
+
+visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones)
+{
+  // A white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil. Radii of the
+  // balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of 11.7 mm, a
+  // cornea with a radius of 7.8 mm and a pupil of 4.4 mm on a ball of 24.2 mm.
+  struct Ball
+  {
+    double radius, rim;
+    std::array<float, 3> colour;
+  };
+  constexpr std::array<Ball, 3> balls{ { { 1, 0, { { 0.92f, 0.90f, 0.87f } } },
+                                         { 0.645, 0.483, { { 0.30f, 0.20f, 0.12f } } },
+                                         { 0.32, 0.18, { { 0.02f, 0.02f, 0.02f } } } } };
+  visualization_msgs::MarkerArray out;
+  for (const ConstraintSurface& eye : model.constraint_surfaces)
+  {
+    const auto bone = static_cast<std::size_t>(eye.bone);
+    if (eye.bone < 0 || eye.field.radius <= 0 || bone >= bones.size() || model.bones[bone].compare(0, 3, "eye") != 0)
+      continue;
+    const std::array<double, 3> centre = model.to_face(eye.field.origin);
+    double ahead = 0, radius = 1;  // of the ball before
+    for (std::size_t n = 0; n < balls.size(); ++n)
+    {
+      const Ball& ball = balls[n];
+      const auto from_rim = [&](double r) { return std::sqrt(r * r - ball.rim * ball.rim); };
+      ahead += from_rim(radius) - from_rim(ball.radius);
+      radius = ball.radius;
+      visualization_msgs::Marker& marker = out.markers.emplace_back();
+      marker.ns = model.bones[bone];
+      marker.id = static_cast<std::int32_t>(n);
+      marker.type = visualization_msgs::Marker::SPHERE;
+      marker.action = visualization_msgs::Marker::ADD;
+      set(marker.pose.position,
+          bones[bone].pose(std::array<double, 3>{ { centre[0] + ahead * eye.field.radius, centre[1], centre[2] } }));
+      marker.pose.orientation.w = 1;
+      marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius * eye.field.radius;
+      marker.color.r = ball.colour[0];
+      marker.color.g = ball.colour[1];
+      marker.color.b = ball.colour[2];
+      marker.color.a = 1;
+    }
+  }
   return out;
 }
 

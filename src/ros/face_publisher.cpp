@@ -47,6 +47,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
       muscles_(private_handle.advertise<visualization_msgs::MarkerArray>("muscles", 1)),
+      eyes_(private_handle.advertise<visualization_msgs::MarkerArray>("eyes", 1)),
       handle_(private_handle)
 {
 }
@@ -151,16 +152,25 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                             for (const std::size_t landmark : standard_landmarks_)
                               message.poses.push_back(poses.poses[landmark]);
                           });
-  if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
+  const auto publish_markers = [&](const ros::Publisher& publisher, visualization_msgs::MarkerArray& shown)
   {
-    visualization_msgs::MarkerArray muscles;
-    lines_->fill(*model_, frame.displacements, frame.activation, muscles);
-    for (auto& marker : muscles.markers)
+    for (auto& marker : shown.markers)
     {
       marker.header.frame_id = face_frame_;
       marker.header.stamp = stamp;
     }
-    muscles_.publish(muscles);
+    publisher.publish(shown);
+  };
+  if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
+  {
+    visualization_msgs::MarkerArray muscles;
+    lines_->fill(*model_, frame.displacements, frame.activation, muscles);
+    publish_markers(muscles_, muscles);
+  }
+  if (eyes_.getNumSubscribers() > 0)
+  {
+    visualization_msgs::MarkerArray eyes = to_eyeballs(*model_, frame.bones);
+    publish_markers(eyes_, eyes);
   }
   state_.publish(face_frame_, stamp,
                  [&](auto& state)

@@ -163,18 +163,19 @@ TEST(Conversions, BonesBecomeFramesAndEyesAreShownInTheirs)
   EXPECT_NEAR(transforms[2].transform.translation.y, 0.03, 1e-9);
   EXPECT_NEAR(transforms[2].transform.rotation.z, std::sqrt(0.5), 1e-9);
 
-  // the eyeball, its iris and its pupil reach farther and farther forwards
-  const auto markers = to_bodies(model, "face_7").markers;
-  ASSERT_EQ(markers.size(), 4u);
-  double reach = 0.0119;
-  for (std::size_t n = 1; n < 4; ++n)
+  // the eyeball, its iris and its pupil reach farther and farther to where the eye looks
+  const auto markers = to_eyeballs(model, frame.bones).markers;
+  ASSERT_EQ(markers.size(), 3u);
+  double reach = 0.03 + 0.0119;
+  for (const auto& marker : markers)
   {
-    EXPECT_EQ(markers[n].header.frame_id, "face_7/bone/eye_left");
-    const double front = markers[n].pose.position.x + 0.5 * markers[n].scale.x;
+    EXPECT_EQ(marker.ns, "eye_left");
+    EXPECT_NEAR(marker.pose.position.x, 0.01, 1e-9);
+    const double front = marker.pose.position.y + 0.5 * marker.scale.y;
     EXPECT_GT(front, reach);
     reach = front;
   }
-  EXPECT_LT(reach, 0.0135);
+  EXPECT_LT(reach, 0.03 + 0.014);
 }
 
 TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)

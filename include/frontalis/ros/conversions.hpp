@@ -65,9 +65,13 @@ std::string body_frame(const std::string& face_frame, const BodyShape& shape);
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);
 /// What tissue does to a body, in the body's frame and about its origin.
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
-/// The surfaces of all bodies, and the eyeballs: balls that tissue slides on, of bones whose names begin with "eye".
-/// Each is in the frame of its own, which it follows. Without a stamp: it is shown with the latest transform.
+/// The surfaces of all bodies, each in the frame of its own, which it follows. Without a stamp: it is shown with the
+/// latest transform.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
+/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
+/// the eyeball, its iris and its pupil. `bones`: those of a frame. Fills all but the
+/// headers.
+visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more
 /// than 1e-3.

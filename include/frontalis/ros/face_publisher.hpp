@@ -22,9 +22,9 @@
 namespace frontalis
 {
 
-/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~bodies, ~wrench/...
-/// and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory is reused
-/// once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field(),
+/// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~eyes, ~bodies,
+/// ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory
+/// is reused once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field()
 /// shows_muscles() and shows_bone_forces().
 class FacePublisher
 {
@@ -83,7 +83,7 @@ private:
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
-  ros::Publisher topology_, bodies_, muscles_;
+  ros::Publisher topology_, bodies_, muscles_, eyes_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
