@@ -37,7 +37,7 @@ public:
       cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
     voxel = index_.find(cell);
     if (voxel < 0)
-      voxel = nearest(local, cell);
+      voxel = nearest(local, inwards, cell);
     if (voxel >= 0)
       set_coordinates(local, voxel, coordinates);
     return voxel >= 0;
@@ -51,14 +51,16 @@ private:
       coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - place[a]);
   }
 
-  /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel.
-  std::int32_t nearest(const Vector3d& local, const VoxelPlace& cell) const
+  /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel. Voxels on the side
+  /// to which the surface's normal points are taken only if there are no others: they are the tissue beyond a gap, such
+  /// as the other lip.
+  std::int32_t nearest(const Vector3d& local, const Vector3d& inwards, const VoxelPlace& cell) const
   {
     const Vector3d spacing = to_vector(model_.spacing);
     const double edge = spacing.minCoeff();
     const auto shells = static_cast<std::int32_t>(std::ceil(extrapolation_ / edge)) + 1;
-    std::int32_t voxel = -1;
-    double best = extrapolation_ * extrapolation_ * (1 + 1e-12);
+    std::int32_t voxel = -1, beyond = -1;
+    double best = extrapolation_ * extrapolation_ * (1 + 1e-12), best_beyond = best;
     for (std::int32_t shell = 1; shell <= shells && (shell - 1) * edge * (shell - 1) * edge <= best; ++shell)
       for (std::int32_t k = -shell; k <= shell; ++k)
         for (std::int32_t j = -shell; j <= shell; ++j)
@@ -73,14 +75,17 @@ private:
             const Vector3d lower(place[0], place[1], place[2]), upper = lower + Vector3d::Ones();
             const double squared =
                 Box(lower.cwiseProduct(spacing), upper.cwiseProduct(spacing)).squaredExteriorDistance(local);
-            if (squared < best || (squared == best && (voxel < 0 || candidate < voxel)))
+            const bool is_beyond = inwards.dot((lower + upper).cwiseProduct(spacing) / 2 - local) < 0;
+            double& least = is_beyond ? best_beyond : best;
+            std::int32_t& chosen = is_beyond ? beyond : voxel;
+            if (squared < least || (squared == least && (chosen < 0 || candidate < chosen)))
             {
-              best = squared;
-              voxel = candidate;
+              least = squared;
+              chosen = candidate;
             }
           }
         }
-    return voxel;
+    return voxel >= 0 ? voxel : beyond;
   }
 
   const Model& model_;
