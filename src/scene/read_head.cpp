@@ -175,14 +175,13 @@ HeadTemplate::Solid read_solid(const Node& entry)
   return solid;
 }
 
-void read_bones(const Node& root, HeadTemplate& head)
+void read_built(const Node& node, HeadTemplate::Built& built)
 {
   using Kind = HeadTemplate::BoneStep::Kind;
   static const std::vector<std::string> kinds{ "add", "cut", "keep" };  // in the order of BoneStep::Kind
-  Mapping mapping(root);
-  for (const auto& [name, list] : mapping.required("bones", "a mapping").named_pairs())
+  for (const auto& [name, list] : node.named_pairs())
   {
-    auto& steps = head.bones.emplace_back(name, std::vector<HeadTemplate::BoneStep>()).second;
+    auto& steps = built.emplace_back(name, std::vector<HeadTemplate::BoneStep>()).second;
     for (const Node& entry : list.entries())
     {
       HeadTemplate::BoneStep step;
@@ -192,15 +191,19 @@ void read_bones(const Node& root, HeadTemplate& head)
         continue;
       step.kind = static_cast<Kind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
       const Node solids = fields.optional(kind);
-      if (solids.is_list())
-        for (const Node& solid : solids.entries())
-          step.solids.push_back(read_solid(solid));
-      else
-        step.solids.push_back(read_solid(solids));
+      for (const Node& solid : solids.is_list() ? solids.entries() : std::vector<Node>{ solids })
+        step.solids.push_back(read_solid(solid));
       step.round = read_length(fields.optional("round"), not_negative);
       steps.push_back(step);
     }
   }
+}
+
+void read_bones(const Node& root, HeadTemplate& head)
+{
+  Mapping mapping(root);
+  read_built(mapping.required("bones", "a mapping"), head.bones);
+  read_built(mapping.optional("bodies"), head.bodies);
   for (const Node& entry : mapping.required("depths", "a list of places and depths").entries())
   {
     HeadTemplate::DepthSite site;
@@ -354,8 +357,9 @@ HeadTemplate::Joint read_joint(const Node& node)
 std::vector<std::string> HeadTemplate::parts() const
 {
   std::vector<std::string> names{ "skin", "face", "visible", "eye_left", "eye_right" };
-  for (const auto& [bone, steps] : bones)
-    names.push_back(bone);
+  for (const Built* built : { &bones, &bodies })
+    for (const auto& [name, steps] : *built)
+      names.push_back(name);
   for (const bool pads : { false, true })
     for (const std::string& name : muscle_parts(pads))
       names.push_back(name);

@@ -109,12 +109,14 @@ struct HeadTemplate
   std::map<std::string, std::map<std::string, double>> ages;
   std::map<std::string, double> tissues;
   std::vector<DepthSite> depths;
-  std::vector<std::pair<std::string, std::vector<BoneStep>>> bones;
+  using Built = std::vector<std::pair<std::string, std::vector<BoneStep>>>;
+  Built bones;
+  Built bodies;  ///< made as bones are, but no bone below the soft tissue: what lips rest on and what parts them
   std::vector<Muscle> muscles;
   Vector3 eye{ 0, 0, 0 };  ///< centre of the left eyeball [m]
   double eye_radius = 0;   ///< [m]
 
-  /// Names of the surfaces that can be made: skin, bones, eyeballs and muscles.
+  /// Names of the surfaces that can be made: skin, bones, bodies, eyeballs and muscles.
   std::vector<std::string> parts() const;
   std::vector<std::string> muscle_parts(bool pads = false) const;  ///< those that are muscles, or the fat pads
 };

@@ -84,7 +84,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
 /// Of the nodes `near` a bone, those where a muscle originates: corners of its voxels at the end of its fibres (15 % of
-/// their length) that has more of them. Empty if none of its ends is near.
+/// their length) of which the larger part is near. Empty if none of its ends is near.
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 

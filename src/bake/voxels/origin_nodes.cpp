@@ -24,13 +24,19 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
         last = std::max(last, place);
       }
   std::array<std::vector<std::size_t>, 2> ends;
+  std::array<double, 2> corners{ 1, 1 };
   for (const auto& [e, place] : voxels)
     for (int end = 0; end < 2; ++end)
       if (std::abs(place - (end == 0 ? first : last)) <= end_share * (last - first))
         for (const std::int32_t node : model.voxel_nodes[e])
+        {
+          ++corners[end];
           if (near[node])
             ends[end].push_back(node);
-  return ends[0].size() >= ends[1].size() ? ends[0] : ends[1];
+        }
+  // the end that lies on the bone, even if the other one is wider and has more nodes near the bone
+  const auto share = [&](int end) { return static_cast<double>(ends[end].size()) / corners[end]; };
+  return share(0) >= share(1) ? ends[0] : ends[1];
 }
 
 }  // namespace frontalis

@@ -15,7 +15,10 @@ constexpr double smoothing = 1e-3;
 }  // namespace
 
 HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue)
-    : eye_(to_vector(head.eye)), eye_radius_(head.eye_radius), bones_(head.bones.begin(), head.bones.end())
+    : eye_(to_vector(head.eye)),
+      eye_radius_(head.eye_radius),
+      bones_(head.bones.begin(), head.bones.end()),
+      bodies_(head.bodies.begin(), head.bodies.end())
 {
   std::vector<double> value;
   const auto add = [&](Vector3d p, double v)
@@ -98,7 +101,11 @@ double HeadBones::Bone::operator()(const Vector3d& p, double hull) const
   return f;
 }
 
-double HeadBones::part(const std::string& name, const Vector3d& p) const { return bones_.at(name)(p, hull(p)); }
+double HeadBones::part(const std::string& name, const Vector3d& p) const
+{
+  const auto bone = bones_.find(name);
+  return bone != bones_.end() ? bone->second(p, hull(p)) : bodies_.at(name)(p, hull(p));
+}
 
 double HeadBones::any(const Vector3d& p) const
 {

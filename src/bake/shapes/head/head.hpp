@@ -38,7 +38,7 @@ public:
 
   /// Outer surface of skull, teeth and mandible, as if the nose's and the eyes' openings were closed.
   double hull(const Vector3d& p) const;
-  bool has(const std::string& name) const { return bones_.count(name) > 0; }
+  bool has(const std::string& name) const { return bones_.count(name) + bodies_.count(name) > 0; }
   double part(const std::string& name, const Vector3d& p) const;
   /// The bone or eyeball closest to the skin.
   double any(const Vector3d& p) const;
@@ -60,7 +60,7 @@ private:
 
   Vector3d eye_;
   double eye_radius_;
-  std::map<std::string, Bone> bones_;
+  std::map<std::string, Bone> bones_, bodies_;
   std::vector<Vector3d> centres_;
   std::vector<double> weights_;
   Eigen::Vector4d linear_{ 0, 0, 0, 0 };
