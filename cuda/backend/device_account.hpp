@@ -21,7 +21,8 @@ public:
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
   /// Adds the work that fibres did since the last call, up to displacements `u`.
   void measure(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
-  /// Called before and after each step. g.first selects the displacements before the step, then after it.
+  /// Called before and after each step. g.first selects the present displacements: in before_step() those before the
+  /// step, in after_step() those after it.
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
   /// Returns all work except that of viscous stresses. The stream must be idle.

@@ -69,7 +69,8 @@ static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int3
   return true;
 }
 
-/// A node's field minus its level at displacement `u`. Returns false if no samples are stored there.
+/// Field of a node's surface at the node's displacement `u`, minus the node's level. Returns false if no samples are
+/// stored there.
 __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
                                          const physics::Vec3<float>& u, physics::FieldValue<float>& value)
 {

@@ -30,7 +30,7 @@ struct SceneNames
 void read_frame(const Node& node, FaceFrame& frame);
 void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOptions& options, Scene& scene,
                    SceneNames& names);
-/// Reads the section, and before it the file that `tissues` names, whose materials an entry of the section replaces.
+/// Reads the file that `tissues` names, then the section, whose entries replace the file's materials of the same name.
 void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNames& names);
 void read_volumes(const Node& node, Scene& scene, SceneNames& names);
 void read_layers(const Node& node, Scene& scene, const SceneNames& names);

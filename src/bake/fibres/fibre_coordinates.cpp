@@ -133,7 +133,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     trusted = blend(grid, reach, shown, gradients);
   }
 
-  // The small isotropic part lets the field across the muscle be nearly constant along the fibres.
+  // Conduction is almost only along the fibres, so the slowest mode varies across them and hardly along them.
   std::vector<Vector3d> fibres;
   fibres.reserve(trusted.size());
   for (const SurfaceDirection& fibre : trusted)

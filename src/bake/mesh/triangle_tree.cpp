@@ -71,9 +71,9 @@ bool overlap(const std::array<Vector3d, 3>& corners, const Box& box)
   return true;
 }
 
-/// Whether the line from p along `direction` passes the edge from a to b on its left. The computation starts at the
-/// vertex of the lower number. So the two triangles of an edge, which run along it in opposite directions, get opposite
-/// answers even if the line meets the edge.
+/// Whether the line from p along `direction` passes to the left of the edge from a to b, seen against `direction`. The
+/// computation starts at the vertex of the lower number. So the two triangles of an edge, which run along it in
+/// opposite directions, get opposite answers even if the line meets the edge.
 bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, const Vector3d& b, std::int32_t number_a,
              std::int32_t number_b)
 {

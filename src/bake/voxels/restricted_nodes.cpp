@@ -284,7 +284,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   for (std::size_t n = 0; n < nodes; ++n)
     if (restrictions[n].kind == Kind::sliding)
       rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));
-  // the masters of attached nodes too, which attach_nodes() finds later
+  // add all nodes near a surface: attach_nodes() later makes some of them masters, which need the field too
   for (std::size_t s = 0; s < sheets.size() && scene.accuracy.boundary == "true"; ++s)
     for (const SlidingSurface& surface : sheets[s])
     {

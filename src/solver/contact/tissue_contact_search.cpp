@@ -19,7 +19,8 @@ constexpr double deepest_found = 0.5;
 // In barycentric coordinates, more than the error of a foot, so that none falls between two triangles.
 constexpr double foot_error = 0.02;
 
-// Cosine between the normals of a vertex and of a triangle's corner from which on they surely do not face each other.
+// If the cosine between the normals of a vertex and of a triangle's corner is greater than this, the two surely do not
+// face each other.
 constexpr double same_way = 0.5;
 
 // Way of a vertex over the surface between two steps, in triangles.
@@ -216,7 +217,7 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
                double gap;
                if (!meets(p, t, moved, gap))
                  return;
-               // it replaces the triangle of the same surface there, or the farthest
+               // if t is nearer, it replaces the found triangle that adjoins it, else the farthest one found
                std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
                for (std::size_t same = 0; same < most_pairs; ++same)
                  if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))

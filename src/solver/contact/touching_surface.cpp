@@ -45,8 +45,8 @@ std::vector<Facet> facets_of(const TriangleMesh& mesh)
   return facets;
 }
 
-// The triangle across the edge opposite to each corner, if the two are the only ones there, turn the same way and meet
-// smoothly; else -1.
+// For each corner of each triangle, the neighbour across the opposite edge; -1 if the edge does not belong to exactly
+// two triangles, if their orientations disagree or if the edge is a crease.
 std::vector<std::array<std::int32_t, 3>> smooth_neighbours(const TriangleMesh& mesh, const std::vector<Facet>& facets)
 {
   using Side = std::pair<std::int32_t, std::size_t>;  // triangle and corner

@@ -215,7 +215,7 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
         break;
     }
   }
-  // a voxel that is crushed or not finite, else the stiffest, which is then the most stretched
+  // the voxel that is crushed or not finite; if there is none, the stiffest, because that is the most stretched one
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   if (finding == Instability::past_rim)

@@ -28,7 +28,7 @@ void put(const Point& p, Real* const to[3], std::int32_t n)
   to[2][n] = static_cast<Real>(p.z);
 }
 
-/// Masses that a master moves along each axis, and the momentum that it takes with them.
+/// Sums over a master and the nodes that follow it. The velocity of the master solves mass * velocity = momentum.
 struct Balance
 {
   double mass[3][3] = {};

@@ -24,7 +24,7 @@ public:
     std::vector<Block> blocks;                    ///< of the other nodes
   };
 
-  /// The kernel may read nodes between the sliding nodes of a node plane and write them back unchanged.
+  /// `kernel` may also read the other nodes that lie between sliding nodes of a plane, and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset() override;

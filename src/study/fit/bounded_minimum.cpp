@@ -44,7 +44,7 @@ VectorXd bounded_minimum(const MatrixXd& h, const VectorXd& g, const VectorXd& l
     while (!free.empty())
     {
       const VectorXd best = minimum_of_free(h, g, x, free);
-      // go towards it until the first variable meets its limit, which is held there from then on
+      // go towards `best` until the first variable meets its limit; then hold that variable there
       double share = 1;
       Index first = -1;
       for (const Index i : free)

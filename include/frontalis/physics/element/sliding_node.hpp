@@ -11,7 +11,8 @@ namespace physics
 // One step of a node that slides on a surface: slide() moves it back to its tangent plane, rub() applies friction. On a
 // bone, the step is done in the bone's frame: relative_to() converts to it, and the pose converts back.
 
-/// Turns the velocity of a node with its plane. Returns the removed normal speed, a part of the surface's reaction.
+/// Rotates a node's velocity as its tangent plane rotates from the normal `from` to the normal `to`. Returns the normal
+/// speed that this removes, a part of the surface's reaction.
 template <class T>
 FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>& v)
 {
@@ -21,7 +22,8 @@ FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>&
 }
 
 /// Applies friction to a node with velocity v relative to the surface. response: friction_response(); reaction: normal
-/// speed that the surface removed, over dt [m/s2]; pressing: the reaction with the delay of friction, updated here.
+/// speed that the surface removed, over dt [m/s2]; pressing: the low-pass filtered reaction, from which friction
+/// follows; updated here.
 template <class T>
 FRONTALIS_LAW void rub(const T& coefficient, const T& response, const T& dt, const T& reaction, T& pressing, Vec3<T>& u,
                        Vec3<T>& v)
