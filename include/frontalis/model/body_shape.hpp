@@ -15,8 +15,9 @@ struct BodyShape
 };
 /// One per entry of touched_bodies(model).
 std::vector<BodyShape> body_shapes(const Model& model);
-/// One per bone, without a surface. Its centre is the point that the bone turns about: that of a ball that tissue slides
-/// on, else that of its first pose in the action units, expressions and demo; else the middle of the nodes that it holds.
+/// One per bone, without a surface. Its centre is the point that the bone turns about: that of a ball that tissue
+/// slides on, else that of its first pose in the action units, expressions and demo; else the middle of the nodes that
+/// it holds.
 std::vector<BodyShape> bone_shapes(const Model& model);
 
 }  // namespace frontalis

@@ -65,8 +65,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   T way = N::of(0), sum = T(1);
   for (int i = 0; i < 3; ++i)
     foot.weight[i] = foot.below[i];
-  // Each repetition reduces the error by the height over the radius of curvature. Lengths of the direction do not
-  // matter.
+  // Each repetition reduces the error by the height over the radius of curvature, however long the direction is.
   for (int repetition = 0; repetition < 2; ++repetition)
   {
     for (int i = 0; i < 3; ++i)
@@ -110,9 +109,8 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   return foot;
 }
 
-/// The force on a corner of the triangle [N] that belongs to `pressed` times the gradient of the gap on the point.
-/// Together with corner_turn() those on the three corners are opposite to that on the point, in sum and in moment, to
-/// rounding: they are gradients of the gap, which depends on relative places alone.
+/// The force on a corner of the triangle [N] that belongs to `pressed` times the gradient of the gap on the point. With
+/// corner_turn(), those on the corners are opposite to it in sum and in moment: the gap depends on relative places.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed)
@@ -121,9 +119,8 @@ FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const Sur
   return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
 }
 
-/// The force on a corner that belongs to the force `along` the surface on the point. Those on the three corners are
-/// opposite to it in sum and in moment, because forces normal to the triangle take up the couple of `along`, which acts
-/// at the height of the point.
+/// The force on a corner that belongs to the force `along` the surface on the point. Those on the corners are opposite
+/// to it in sum and in moment: forces normal to the triangle take up its couple, as it acts at the point's height.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {
