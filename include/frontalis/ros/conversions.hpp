@@ -69,8 +69,7 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 /// latest transform.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
 /// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
-/// the eyeball, its iris and its pupil. `bones`: those of a frame. Fills all but the
-/// headers.
+/// the eyeball, its iris and its pupil. `bones`: those of a frame. Fills all but the headers.
 visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more

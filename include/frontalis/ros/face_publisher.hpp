@@ -24,8 +24,8 @@ namespace frontalis
 
 /// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~eyes, ~bodies,
 /// ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory
-/// is reused once no subscriber holds it. Only one thread at a time may call these functions, except for wanted_field()
-/// shows_muscles() and shows_bone_forces().
+/// is reused once no subscriber holds it. Only one thread at a time may call these functions, except for
+/// wanted_field(), shows_muscles() and shows_bone_forces().
 class FacePublisher
 {
 public:
