@@ -38,9 +38,9 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
 /// Index of the hourglass mode yz, xz, xy or xyz (pair 0 to 3) among the transformed displacements.
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
-/// Bending stiffness of two strains that vary along the same axis, and their coupling: E / (1 - n^2) and n times it,
-/// with n = nu times the squared ratio of the shortest edge to the edge along that axis. For the shortest edge they are
-/// those of a plate.
+/// Bending stiffness of two strains that vary along the same axis, and the stiffness that couples them: E / (1 - n^2)
+/// and n times that, with n = nu times the squared ratio of the shortest edge to the edge along that axis. If that axis
+/// has the shortest edge, both are those of a plate.
 template <class T>
 struct AxisBending
 {

@@ -10,21 +10,23 @@ namespace frontalis
 namespace physics
 {
 
-/// Contact is a stiffness: a point that is g deep in a body is pushed out by the pressure
+/// Contact acts as a stiffness: a point that is g deep in a body is pushed out by the pressure
 ///   p = contact_stiffness E g / h,
-/// E Young's modulus of its voxel's mixture, h the shortest voxel edge. Under a pressure of 5 % of E it is thus 1.4 %
-/// of a voxel deep, whatever Poisson's ratio is. (A multiple of the longitudinal modulus instead would be deep in
-/// compressible tissue: 13 times as deep at a ratio of 0.3 as at 0.49.) Where nodes of nearly incompressible tissue
-/// touch, the squared frequency of the model grows by 3.5 %, and steps are 1.7 % shorter.
+/// with E Young's modulus of the mixture in its voxel and h the shortest voxel edge. A pressure of 5 % of E thus
+/// presses it 1.4 % of a voxel deep, whatever Poisson's ratio is. (With a multiple of the longitudinal modulus instead,
+/// it would be 13 times as deep at a ratio of 0.3 as at 0.49.) Where nodes of nearly incompressible tissue touch, the
+/// highest squared frequency of the model grows by 3.5 %, and steps are 1.7 % shorter.
 constexpr double contact_stiffness = 3.5;
 
-/// Stiffness along the surface of a point that sticks, over that along the normal.
+/// Stiffness along the surface at a point that sticks, over the stiffness along the normal.
 constexpr double sticking_stiffness = 0.5;
 
-/// A field is at most this much steeper than the distance: each component of a spline's gradient is a mean of slopes.
+/// Largest gradient of a field, against 1 of an exact distance: each component of a spline's gradient is a mean of
+/// slopes of at most 1, so that its norm is at most sqrt(3).
 constexpr double steepest_field = 1.7320508;
 
-/// Friction forgets the normal force on a point that has left its body when it is that of this depth [m].
+/// Friction drops the delayed normal force on a point that has left its body once it is less than that at this depth
+/// [m].
 constexpr double forgotten_depth = 1e-9;
 
 /// Whether a point touches a body.
@@ -32,7 +34,7 @@ enum class Touching : std::uint8_t
 {
   no,
   yes,
-  let_go,  ///< in this step
+  let_go,  ///< it has left the body in this step
   lost     ///< deeper in the body than its field has samples
 };
 
@@ -51,8 +53,8 @@ struct Touch
 {
   Vec3<T> force;  ///< on the point, in the body's frame [N]
   Grip<T> grip;
-  T stored;  ///< by the stiffness of contact [J]
-  T lost;    ///< dissipated by friction in this step [J]
+  T stored;  ///< energy in the stiffness of contact [J]
+  T lost;    ///< energy dissipated by friction in this step [J]
 };
 
 /// Contact and Coulomb friction of a point inside a body (field.value < 0). `x`: position in the body's frame [m];

@@ -12,10 +12,10 @@ namespace frontalis
 namespace physics
 {
 
-// A cut voxel is filled with tissue in part. Its stress is that at the centroid of the tissue, where the gradient of
-// trilinear displacements has shares of the hourglass modes. With q the transformed displacements and T q the same with
-// the gradient at the centroid in place of the mean one, the energy of a cut voxel is that of a whole one at T q. So
-// its forces are T^T times those at T q, whatever the laws are, and keep energy and momentum.
+// A cut voxel is only partly filled with tissue. Its stress is computed at the centroid of the tissue, where the
+// gradient of trilinear displacements depends on the hourglass modes too. If q are the transformed displacements, and T
+// q replaces the mean gradient in them by that at the centroid, the energy of a cut voxel is that of a whole voxel at T
+// q. So its forces are T^T times those at T q for every law, and energy and momentum are conserved.
 
 /// The centroid of the tissue in a voxel, from -1 to 1 along each axis; 0 in a whole voxel.
 template <class T>
@@ -50,10 +50,10 @@ FRONTALIS_LAW void from_tissue_centre(const TissueCentre<T>& c, T (&force)[8])
 /// With G the 8 x 3 matrix of shape function gradients in units of 1/h, a whole voxel has G^T G = 1/2, so that k bounds
 /// the quadratic form Q of its stress by Q(Z) <= 2 k |Z|^2 for every gradient Z, deformed or not. For diagonal weights
 /// w for which the largest eigenvalue of G^T w^-1 G is at most 1, displacements x have |x^T G|^2 <= sum of w_b |x_b|^2,
-/// and 2 w_b k + `hourglass` k serves corner b. Weights in proportion to |G_b| are small at corners far from the
-/// tissue, which have little mass. None is below 1/2, that of a whole voxel, because k may hold stiffness of other
-/// kinds, which acts at all corners alike. Where this lower limit applies, the other weights are reduced: a factor of
-/// the largest eigenvalue keeps it at most 1.
+/// so that 2 w_b k + `hourglass` k is a bound at corner b. Weights in proportion to |G_b| are small at corners far from
+/// the tissue, which have little mass. No weight is below 1/2, the value of a whole voxel, because k may include other
+/// stiffness, which acts at all corners alike. Where this lower limit applies, the other weights are multiplied by the
+/// largest eigenvalue, which stays at most 1.
 inline std::array<float, 8> corner_stiffness(const TissueCentre<double>& centre, double hourglass)
 {
   double gradient[8][3], length[8];

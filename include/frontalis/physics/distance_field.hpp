@@ -84,7 +84,7 @@ FRONTALIS_LAW FieldSamples gather(const float* first)
   return samples;
 }
 
-/// Moves whole cells from the offset into the cell. Returns the rest [cells], from -0.5 to 0.5 per axis.
+/// Moves whole cells from `offset` into `cell`. Returns the remaining offset [cells], from -0.5 to 0.5 per axis.
 template <class T>
 FRONTALIS_LAW Vec3<T> enter_cell(const T& inverse_spacing, const Vec3<T>& offset, std::int32_t (&cell)[3])
 {
@@ -122,8 +122,8 @@ FRONTALIS_LAW bool sample(const DistanceField& field, const FieldPoint<T>& point
   return sample(field, static_cast<T>(1 / field.spacing), point, value);
 }
 
-/// At most the distance of a point that has no samples around it from the surface, in whose frame p is [m]. reach: of
-/// the samples from the surface [m].
+/// Lower bound of the distance [m] from the surface to a point that has no samples around it. p: the point in the
+/// surface's frame [m]; reach: distance from the surface up to which samples are stored [m].
 FRONTALIS_LAW double distance_without_samples(const DistanceField& field, double reach, const Vec3<double>& p)
 {
   const double at[3] = { p.x, p.y, p.z };

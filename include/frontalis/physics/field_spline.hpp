@@ -81,9 +81,9 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
            N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)) };
 }
 
-/// Distance of a point from a sphere, in the same form. The point has gone by `way` [m] from a place that is `offset`
-/// [m] from the sphere's centre and `distance` [m] from its surface. These are found in double precision: then single
-/// precision resolves the result as finely as the way, however large the sphere is.
+/// Distance of a point from a sphere as a FieldValue. The point has moved by `way` [m] from a place that is `offset`
+/// [m] from the sphere's centre and `distance` [m] from its surface. The caller finds these two in double precision:
+/// then single precision resolves the result as finely as the way, however large the sphere is.
 template <class T>
 FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offset, const Vec3<T>& way)
 {

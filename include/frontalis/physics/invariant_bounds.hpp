@@ -24,7 +24,7 @@ FRONTALIS_LAW T second_invariant(const Matrix3<T>& C)
          C.a[1][2] * C.a[1][2] - C.a[2][0] * C.a[2][0];
 }
 
-/// Derivatives of an isochoric invariant g w with respect to F, for the bound of the time step.
+/// Derivatives of an isochoric invariant g w with respect to F, for the bound of the time step; g is IsochoricScale.
 template <class T>
 struct InvariantDerivatives
 {
@@ -32,8 +32,8 @@ struct InvariantDerivatives
   T second;         ///< bound of the second derivative along a unit change of F, term by term
 };
 
-/// For g w, where w is the trace of F^T F (lines = 3) or the squared stretch of one material line (lines = 1): D = g w'
-/// + w g' cof F with |w'|^2 = 4 w and w' : cof F = 2 lines J.
+/// Derivatives of g w, where w is the trace of F^T F (lines = 3) or the squared stretch of one material line (lines =
+/// 1). The first derivative is g w' + w g' cof F with |w'|^2 = 4 w and w' : cof F = 2 lines J.
 template <class T>
 FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>& k, const T& w, double lines)
 {
@@ -51,7 +51,7 @@ FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>&
   return { N::max(first, N::of(0)), second };
 }
 
-/// The same for g I1. The second derivative is 4 at rest, which is exact, plus the growth of its bound since.
+/// The same for g I1. The second derivative is its exact value at rest, 4, plus the growth of its bound since.
 template <class T>
 FRONTALIS_LAW InvariantDerivatives<T> first_invariant_derivatives(const Kinematics<T>& k)
 {

@@ -57,11 +57,11 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   return stress_reference * fade * (active + passive);
 }
 
-/// Largest slope of the nominal fibre stress over the stress reference against stretch, at full activation and constant
-/// volume. The nominal stress is S times stretch, J f(l) at these constants: the active curve is steepest at l = 0.6
-/// (18 * 0.2), the passive one above l = 1.4 (p1 p2 e^(0.4 p2)). The time step must allow for the active slope, or for
-/// the sum if there is a passive part. Multiplied by the deformation of the element (physics/time_step.hpp), these
-/// bounds include the contribution of f |cof F| up to stretches of 2.5.
+/// Largest slopes of the nominal fibre stress over the stress reference with respect to stretch, at full activation and
+/// constant volume. With these constants the nominal stress, S times the stretch l, is J f(l), f the tension: the
+/// active curve is steepest at l = 0.6 (18 * 0.2), the passive one above l = 1.4 (p1 p2 e^(0.4 p2)). The time step must
+/// allow for the active slope, or for the sum if there is a passive part. Multiplied by the deformation of the element
+/// (physics/time_step.hpp), these bounds include the contribution of f |cof F| up to stretches of 2.5.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

@@ -10,8 +10,8 @@ namespace mutation
 {
 
 #if defined(FRONTALIS_MUTATIONS)
-extern const bool blind_guard;         ///< "guard": it detects nothing
-extern const bool time_step_of_rest;   ///< "time_step": its bound ignores stiffening
+extern const bool blind_guard;         ///< "guard": the guard detects nothing
+extern const bool time_step_of_rest;   ///< "time_step": the bound of the time step ignores stiffening
 extern const bool laws_not_continued;  ///< "material": isochoric laws are not continued for crushed voxels
 extern const bool no_friction;         ///< "friction": no friction force
 extern const bool lost_corner;         ///< "patches": nodes of patches lack the force of one voxel

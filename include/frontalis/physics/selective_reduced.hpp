@@ -9,8 +9,8 @@ namespace physics
 
 /// Selective reduced integration of a box voxel: the isochoric stress at the eight Gauss points, the volumetric stress
 /// at the centre (Hughes 1980, Int. J. Numer. Meth. Eng. 15:1413). Here the energy is split into these two parts, so
-/// that the forces are its gradient. In the transformed displacements q the derivative along x at the point (s_x, s_y,
-/// s_z) / sqrt(3) is (q1 + s_y q3 + s_z q5 + s_y s_z q7 ...) / (4 h_x): the hourglass modes get stiffness.
+/// that the forces are its gradient. In the transformed displacements q the derivative along x at the Gauss point (s_x,
+/// s_y, s_z), s = +-1 / sqrt(3), is (q1 + s_y q3 + s_z q5 + s_y s_z q7) / (4 h_x): the hourglass modes get stiffness.
 constexpr double gauss_coordinate = 0.57735026918962576;  // 1 / sqrt(3)
 
 /// +-1/sqrt(3) along an axis at one of the eight points.
@@ -19,8 +19,8 @@ FRONTALIS_LAW constexpr double gauss_point(int point, int axis)
   return point & (1 << axis) ? gauss_coordinate : -gauss_coordinate;
 }
 
-/// Contribution of a mode to the derivative along `axis` at a point: 1 for the gradient's own mode, 0 if it is
-/// constant.
+/// Contribution of a mode to the derivative along `axis` at a point: 1 for the mode of that derivative, 0 for modes
+/// that do not vary along the axis.
 FRONTALIS_LAW constexpr double gauss_weight(int point, int axis, int mode)
 {
   double weight = mode & (1 << axis) ? 1 : 0;

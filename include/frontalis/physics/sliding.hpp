@@ -8,8 +8,9 @@ namespace frontalis
 namespace physics
 {
 
-/// A node cannot follow a gradient shorter than this: it is on a ridge, or in the middle of a furrow narrow compared
-/// with its distance from the surface. It keeps its latest tangent plane, as it does if no samples are stored there.
+/// A sliding node cannot follow a gradient shorter than this, which occurs on ridges and in furrows that are narrow
+/// compared with the node's distance from the surface. It keeps its latest tangent plane, as where no samples are
+/// stored.
 constexpr double least_gradient = 0.05;
 
 /// Tangent plane of a level set near a point: a node moves by -distance * normal to be on it.
@@ -37,11 +38,11 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   return true;
 }
 
-/// A sliding node off its plane moves back by half of the error per step. An error above twice this value is reduced to
-/// this value at once [m]: 5 um less what a plane that is kept for some steps may be off, which is plane_error and,
-/// where the curvature grows along the way, about as much again. It arises suddenly when the tangent plane of a node is
-/// replaced. Removing it within one step would add half the stiffness of the tissue times its square to the energy and
-/// excite vibrations.
+/// A sliding node off its plane moves back by half of the error per step; an error above twice this value is reduced to
+/// this value at once [m]. Such errors arise when the tangent plane of a node is replaced. Removing one within one step
+/// would add half the stiffness of the tissue times its square to the energy and excite vibrations. The value is 5 um
+/// less the error of a plane that is kept for some steps: plane_error and, where the curvature grows along the way,
+/// about as much again.
 constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.

@@ -7,8 +7,8 @@ namespace frontalis
 namespace physics
 {
 
-/// A triangle of a surface that deforms, with unit normals of the surface at its corners, on the side of their order
-/// (corner 0, 1, 2 counter-clockwise from outside).
+/// A triangle of a surface that deforms, with unit normals of the surface at its corners. The normals point to the side
+/// from which corners 0, 1, 2 are counter-clockwise.
 template <class T>
 struct SurfaceTriangle
 {
@@ -24,25 +24,25 @@ struct SurfaceFoot
   Vec3<T> gradient;  ///< of the gap: nearly the normal
   Vec3<T> normal;    ///< of the surface, unit vector: the point is x = foot + (gap + bulge) * normal
   T weight[3];       ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
-  T inside[3];       ///< the same, of the nearest point in the triangle
-  T spread[3];       ///< derivatives of the gap by the corners' normals along normal - gradient [m]
-  Vec3<T> mean_normal;  ///< interpolated there, its length not 1
-  Vec3<T> mean_place;   ///< that point
+  T inside[3];       ///< barycentric coordinates of the nearest point in the triangle
+  T spread[3];       ///< factors of normal - gradient in the gap's derivatives by the corners' normals [m]
+  Vec3<T> mean_normal;  ///< interpolated at the nearest point, not of length 1
+  Vec3<T> mean_place;   ///< the nearest point in the triangle
   // the triangle's plane
   Vec3<T> facet_normal;  ///< unit vector
   T height;              ///< of the point above the plane [m]
   T below[3];            ///< barycentric coordinates of the point's orthogonal projection
-  Vec3<T> slope[3];      ///< their gradients [1/m]
+  Vec3<T> slope[3];      ///< gradients of these coordinates [1/m]
 };
 
 /// The point's foot on a triangle, along the normal that is interpolated between those of the corners (Phong). Across
 /// the edge to a neighbour the normal and the gap are continuous: the force does not jump where a point slides on. The
-/// gap is measured from the quadratic surface that belongs to these normals. It bulges over the triangle by
+/// gap is measured from the quadratic surface that belongs to these normals, which is above the triangle by
 ///   1/2 (sum of w_i n_i . a_i - (sum of w_i n_i) . (sum of w_i a_i))
-/// (w barycentric coordinates, a corners, n normals): over a chord h of a circle of radius r by h^2 / (8 r) in the
-/// middle. Then the normal is nearly the gradient of the gap, and a point that slides over the triangles of a curved
-/// surface hardly climbs up and down. The gradient is that of the gap as it is, from the derivatives of the equation
-/// of the foot, so that forces along it add no energy.
+/// (w barycentric coordinates, a corners, n normals): in the middle of a chord h of a circle of radius r by h^2/(8r).
+/// So the normal is nearly the gradient of the gap, and a point that slides over the triangles of a curved surface
+/// hardly climbs up and down. `gradient` is the exact one, from the derivatives of the equation of the foot, so that
+/// forces along it add no energy.
 template <class T>
 FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, const Vec3<T>& x)
 {
@@ -65,14 +65,14 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   T way = N::of(0), sum = T(1);
   for (int i = 0; i < 3; ++i)
     foot.weight[i] = foot.below[i];
-  // Each repetition reduces the error by the height over the radius of curvature, however long the direction is.
+  // Each repetition multiplies the error by the height over the radius of curvature, whatever the direction's length.
   for (int repetition = 0; repetition < 2; ++repetition)
   {
     for (int i = 0; i < 3; ++i)
       foot.inside[i] = N::max(foot.weight[i], N::of(0));
     sum = foot.inside[0] + foot.inside[1] + foot.inside[2];
     direction = foot.inside[0] * n[0] + foot.inside[1] * n[1] + foot.inside[2] * n[2];
-    // less where normals and triangle disagree by more than 78 degrees
+    // the lower limit applies where the normals are more than 78 degrees off the triangle's
     way = above / N::max(dot(direction, area), N::of(0.2) * length);
     for (int i = 0; i < 3; ++i)
       foot.weight[i] = foot.below[i] - way * dot(foot.slope[i], direction);
@@ -92,7 +92,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const T bulge =
       N::of(0.5) * (foot.inside[1] * dot(n[1], ab) + foot.inside[2] * dot(n[2], ac) - dot(foot.mean_normal, mean));
   foot.gap = way * stretch - bulge;
-  // The foot solves x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; of the bulge, by each weight:
+  // The foot solves x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction. bulges: derivatives by weights
   const Vec3<T> side[3] = { { T(0), T(0), T(0) }, ab, ac };
   T bulges[3];
   for (int i = 0; i < 3; ++i)
@@ -109,8 +109,8 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   return foot;
 }
 
-/// The force on a corner of the triangle [N] that belongs to `pressed` times the gradient of the gap on the point. With
-/// corner_turn(), those on the corners are opposite to it in sum and in moment: the gap depends on relative places.
+/// Force on a corner of the triangle [N] while the force on the point is `pressed` times the gradient of the gap. With
+/// corner_turn() the corners' forces balance the point's in sum and moment, as the gap depends on relative places.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed)
@@ -119,8 +119,8 @@ FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const Sur
   return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
 }
 
-/// The force on a corner that belongs to the force `along` the surface on the point. Those on the corners are opposite
-/// to it in sum and in moment: forces normal to the triangle take up its couple, as it acts at the point's height.
+/// Force on a corner [N] while the force on the point is `along` the surface. The corners' forces balance the point's
+/// in sum and in moment: it acts at the point's height, so that forces normal to the triangle take up its couple.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {
@@ -128,8 +128,8 @@ FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const 
   return couple * foot.facet_normal - foot.below[corner] * along;
 }
 
-/// What belongs to the normal of a corner as corner_force() to its place [N m]: the gap depends on both, and these are
-/// its gradients times `pressed`, so that contact adds no energy where the surface bends.
+/// Generalised force on the normal of a corner [N m], as corner_force() is the force on its place: the gap depends on
+/// both. With both, contact adds no energy where the surface bends.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                   const T& pressed)
@@ -138,8 +138,8 @@ FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const Surf
          (Number<T>::of(-0.5) * pressed * foot.inside[corner]) * (triangle.corner[corner] - foot.mean_place);
 }
 
-/// What a corner's displacement [m] contributes to that of the triangle at the place of the point. It is zero, less the
-/// point's own, in a small rigid motion of both, and the adjoint of corner_drag().
+/// Contribution of a corner's displacement to the triangle's displacement at the point [m]; the adjoint of
+/// corner_drag(). In a small rigid motion of triangle and point, the contributions add up to the point's displacement.
 template <class T>
 FRONTALIS_LAW Vec3<T> carried(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& displacement)
 {

@@ -8,31 +8,31 @@ namespace frontalis
 namespace physics
 {
 
-// The force on a point sets in over these ranges: of the cosine between its own inward normal and the normal of the
-// surface that it touches, of that between this normal and the triangle's, and, beyond the rim of a surface, of the
-// height of the rim's triangle.
+// Ranges over which the force on a point sets in. `opposed`: of the cosine between the point's own inward normal and
+// the normal of the surface that it touches; `upright`: of the cosine between that surface normal and its triangle's;
+// `rim`: of the distance beyond the rim of a surface, over the height of the rim's triangle.
 constexpr double opposed = 0.25;
 constexpr double least_upright = 0.2, upright = 0.4;
 constexpr double rim_begin = 0.1, rim_end = 0.3;
 
-/// What is constant for a point of the tissue and a triangle of another surface of the tissue.
+/// Constants of a pair of a point of the tissue and a triangle of another surface of the tissue.
 template <class T>
 struct TouchingPair
 {
   T stiffness;  ///< of the point [N/m]
-  T softer[3];  ///< stiffness per area of the triangle's corners, over the point's
+  T softer[3];  ///< stiffness per area at the triangle's corners, over that at the point
   T inner[3];   ///< 0 if the surface ends at the edge opposite to the corner, else 1
-  T overlap;    ///< gap at rest, from which the depth counts; not positive [m]
+  T overlap;    ///< gap at rest, where the depth is 0; not positive [m]
   T friction;   ///< Coulomb's coefficient
 };
 
-/// What friction knows of a pair, kept from step to step.
+/// State of friction of a pair, kept from step to step.
 template <class T>
 struct PairGrip
 {
-  T stiffness;       ///< when it touched last [N/m]; 0: it does not touch
-  T pressed, along;  ///< Grip::normal, Grip::along
-  Vec3<T> stretch;   ///< along the surface, of the stiffness that makes the point stick [m]
+  T stiffness;       ///< of the pair when it touched last [N/m]; 0: it does not touch
+  T pressed, along;  ///< as Grip::normal, Grip::along [N]
+  Vec3<T> stretch;   ///< of the spring along the surface that makes the point stick [m]
 };
 
 template <class T>
@@ -40,8 +40,8 @@ struct PairForce
 {
   Vec3<T> point;      ///< on the point [N]
   Vec3<T> corner[3];  ///< on the triangle's corners [N]
-  Vec3<T> turn[3];    ///< that belongs to the corners' normals: corner_turn() [N m]
-  T stored, lost;     ///< stored by contact, dissipated by friction in this step [J]
+  Vec3<T> turn[3];    ///< on the corners' normals: corner_turn() [N m]
+  T stored, lost;     ///< energy stored by contact, dissipated by friction in this step [J]
 };
 
 template <class T>
@@ -51,7 +51,7 @@ FRONTALIS_LAW T ramp(const T& x)
 }
 
 /// Stiffness of a pair in contact [N/m], that of its softer side. It is 0 beyond a rim, or if the surfaces do not face
-/// each other. `normal`: the point's own.
+/// each other. `normal`: that of the tissue at the point, outward.
 template <class T>
 FRONTALIS_LAW T pair_stiffness(const TouchingPair<T>& pair, const SurfaceFoot<T>& foot, const Vec3<T>& normal)
 {
@@ -71,9 +71,9 @@ FRONTALIS_LAW T pair_stiffness(const TouchingPair<T>& pair, const SurfaceFoot<T>
   return share * pair.stiffness * N::min(N::of(1), per_area / inside);
 }
 
-/// Forces between a point and a triangle of `stiffness` pair_stiffness() whose gap is `gap`, and the update of its
-/// grip. `slip`: by how much the point has moved in this step relative to the triangle, needed if it touched before;
-/// `response`: friction_response(). Without friction (`rubs` is false) the grip has the stiffness alone.
+/// Forces between a point and a triangle, and the update of their grip. `gap`: measured from the pair's overlap;
+/// `stiffness`: pair_stiffness(); `slip`: the point's displacement relative to the triangle in this step, needed if it
+/// touched before; `response`: friction_response(). Without friction (`rubs` is false) the grip is the stiffness alone.
 template <bool rubs, class T>
 FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const SurfaceTriangle<T>& triangle,
                                       const SurfaceFoot<T>& foot, const T& gap, const T& stiffness, const Vec3<T>& slip,

@@ -12,15 +12,15 @@ namespace physics
 /// 2 mu diag(d)) <= V/2 (lambda sum d + 2 mu max d), exact on cubes. `along_fibre` [Pa] is stiffness that fibres add in
 /// one direction.
 ///
-/// It bounds the highest frequency of the model. With k_e >= the largest eigenvalue of the stiffness K_e of voxel e,
-/// and lumped masses m_n,
+/// These bounds limit the highest frequency of the model. With k_e >= the largest eigenvalue of the stiffness K_e of
+/// voxel e, and lumped masses m_n,
 ///   x^T K x = sum_e x_e^T K_e x_e <= sum_e k_e |x_e|^2 = sum_n (sum of k_e over the voxels at n) |x_n|^2,
 /// so that
 ///   omega^2 <= max_n (sum of k_e over the voxels at n) / m_n,
 /// where only nodes that can move count: x_n = 0 at the others, and constraints on x can only lower the largest
 /// Rayleigh quotient. This is the element eigenvalue inequality (Irons & Treharne 1971; Belytschko, Liu &
 /// Moran, Nonlinear Finite Elements for Continua and Structures, chapter 6) with the mass of a node split among its
-/// voxels in proportion to k_e. In a uniform block it is what a lone voxel of mass m has, 8 k / m.
+/// voxels in proportion to k_e. In a uniform block the bound is that of a lone voxel of mass m, 8 k / m.
 template <class T>
 FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T hy, T hz)
 {
@@ -44,7 +44,7 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 ///
 /// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, separately for
 /// the volumetric and the isochoric part. The growth of these bounds since rest is added to the bound at rest. The
-/// nominal stress of fibres is J f(l), f the tension over the stretch l: its derivatives by l grow with J, those by J
+/// nominal stress of fibres is J f(l), f the tension at the stretch l: its derivatives by l grow with J, those by J
 /// with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest (muscle_fibre.hpp) times
 /// the larger of J and sqrt(along I1 / 3).
 template <class T, class S>

@@ -8,7 +8,8 @@ namespace frontalis
 namespace physics
 {
 
-/// The fibres of one muscle in a voxel. T: number type of a batch of voxels; S: that of values that all of them share.
+/// The fibres of one muscle in a voxel. T: number type of a batch of voxels; S: number type of values that the batch
+/// shares.
 template <class T, class S>
 struct Fibre
 {

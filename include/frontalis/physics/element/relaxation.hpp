@@ -16,7 +16,7 @@ struct ViscousTerm
 };
 
 /// Relaxes the viscous stresses of a voxel by `elapsed` [s] towards those at k (physics/viscosity.hpp). Calls
-/// renewed(before, after) for each term.
+/// renewed(before, after) with the relaxed stress of each term.
 template <class Voxel, class T, class Renewed>
 FRONTALIS_LAW void relax_voxel(const Voxel& voxel, const T& elapsed, const Kinematics<T>& k, Renewed&& renewed)
 {

@@ -50,8 +50,8 @@ struct RelativeMotion
   Vec3<double> surface_velocity;  ///< velocity of the bone at the node, in the scene's frame [m/s]
 };
 
-/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: of the node after its
-/// update.
+/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: position and velocity of the
+/// node after its update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)
 {

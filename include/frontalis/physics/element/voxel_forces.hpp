@@ -11,7 +11,7 @@ namespace physics
 {
 
 /// Replaces transformed displacements by the forces of the isochoric stress at eight Gauss points. If `with_bound` is
-/// set, stiffness becomes the largest bound at these points if that is larger.
+/// set, `stiffness` is raised to the largest bound at these points.
 template <class Voxel, class T>
 FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool with_bound, T& stiffness)
 {
@@ -44,10 +44,10 @@ FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
       mode[m] = stiffness * mode[m];
 }
 
-/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Unless
-/// hourglass control is scalar, the modes become the forces on them; if it is, the voxel calls scalar_hourglass() here
-/// or, if one component at a time is faster, before stress_forces(). stiffness is 0 before the call; if `with_bound` is
-/// set, it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
+/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. The
+/// hourglass modes become the forces on them, except that a voxel with scalar hourglass control may call
+/// scalar_hourglass() later, before stress_forces(), if one component at a time is faster. stiffness is 0 before the
+/// call; if `with_bound` is set, it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool with_bound, T& stiffness)
 {

@@ -10,10 +10,10 @@ namespace frontalis
 namespace physics
 {
 
-// The stress of one voxel at one point, from all its effects. `Voxel` is a type of the backend that reads the data of
-// a voxel from where the backend stores it. All moduli and weights that it returns are multiplied by the tissue volume,
-// so that stresses are in N m. T is its number type: double, float or a SIMD batch of voxels. The functions of this
-// folder call these members of it, each only those that it needs:
+// The stress of one voxel at one point, from all its effects. `Voxel` is a type of the backend that reads the data of a
+// voxel from where the backend stores it. All moduli and weights that it returns are multiplied by the tissue volume,
+// so that stresses are in N m. T is its number type: double, float or a SIMD batch of voxels. Each function of this
+// folder calls some of the following members of `Voxel`:
 //
 //   scale(), stretch_weight(), stretch_half_sum(), hourglass_weight()   geometry, as in kinematics(),
 //                                       voxel_stiffness_now() and hourglass_forces()
@@ -25,7 +25,7 @@ namespace physics
 //   has_laws(), each_law(visit)         laws beyond neo-Hookean: add_stress(k, P), stiffening(k), energy(k)
 //   each_fibre(visit)                   Fibre<T, S> of each muscle for which has_stress() is true
 //   viscous_terms(), viscous_term(n)    Prony series; ViscousTerm<T>
-//   relaxed(n), keep_relaxed(n, H)      its stresses: relaxed_tensors() of them
+//   relaxed(n), keep_relaxed(n, H)      reads, stores one of its relaxed_tensors() stresses
 //
 // The following members decide whether an effect is computed at all, and whether its code is inlined. Each calls the
 // function of the same name in this folder: add_laws(k, P), law_stiffening(k), add_fibres(k, P), add_viscosity(k, P),

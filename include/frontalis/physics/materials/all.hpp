@@ -69,7 +69,7 @@ FRONTALIS_LAW void visit_listed(Law law, const T* numbers, Visit&& visit, Materi
          ...);
 }
 
-/// The same for the whole table, or from index `First` onwards.
+/// Calls visit with the law's solid from the whole table, or from the table's index `First` onwards.
 template <int First = 0, class T, class Visit>
 FRONTALIS_LAW void visit_table(Law law, const T* numbers, Visit&& visit)
 {

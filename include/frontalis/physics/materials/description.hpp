@@ -56,7 +56,7 @@ struct Parameter
   double example = 0;  ///< value for a soft tissue, in SI units
 };
 
-/// What scenes, models and tests need to know of a law: plain data beside its formulas, as its member `description`.
+/// What scenes, models and tests need to know of a law, as plain data: the member `description` of its struct.
 struct MaterialDescription
 {
   const char* name;           ///< value of `law` in a scene

@@ -8,7 +8,7 @@ namespace frontalis::physics
 {
 
 /// Isochoric Fung-type exponential solid: psi = mu / (2 b) (e^(b (g I1 - 3)) - 1), g = J^(-2/3) (Demiray 1972, J.
-/// Biomech. 5:309), continued below a small J with g.
+/// Biomech. 5:309). Below a small J, g is continued (IsochoricScale).
 template <class T>
 struct FungExponential
 {

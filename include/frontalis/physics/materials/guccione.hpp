@@ -9,7 +9,7 @@ namespace frontalis::physics
 
 /// Transversely isotropic Fung-type solid (Guccione, McCulloch & Waldman 1991, J. Biomech. Eng. 113:42) of the
 /// isochoric strain: psi = c/2 (e^Q - 1), Q = bf Eff^2 + bt (Ess^2 + Enn^2 + 2 Esn^2) + 2 bfs (Efs^2 + Efn^2), E = (g
-/// F^T F - 1) / 2, f along the fibre. Continued below a small J with g.
+/// F^T F - 1) / 2, f along the fibre. Below a small J, g is continued (IsochoricScale).
 template <class T>
 struct Guccione
 {
@@ -108,8 +108,8 @@ FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, cons
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F,
-/// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact. d2Q is bounded by the norms of dE and d2E; the squared norm of dE is 1 at rest,
-/// which is exact, plus the growth of its bound since.
+/// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact. d2Q is bounded by the norms of dE and d2E, and the squared norm of dE by its
+/// exact value at rest, 1, plus the growth of its bound since.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {

@@ -9,7 +9,7 @@ namespace frontalis::physics
 
 /// Two dispersed families of collagen fibres in an isochoric neo-Hookean matrix (Gasser, Ogden & Holzapfel 2006, J. R.
 /// Soc. Interface 3:15): psi = mu/2 (g I1 - 3) + sum k1 / (2 k2) (e^(k2 E^2) - 1), E = d (g I1 - 3) + (1 - 3 d) (g I4 -
-/// 1). Fibres carry tension only (E > 0). Continued below a small J with g.
+/// 1). Fibres carry tension only (E > 0). Below a small J, g is continued (IsochoricScale).
 template <class T>
 struct HolzapfelGasserOgden
 {

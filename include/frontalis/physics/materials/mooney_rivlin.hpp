@@ -6,8 +6,8 @@
 namespace frontalis::physics
 {
 
-/// Isochoric Mooney-Rivlin solid: psi = c1 (g I1 - 3) + c2 (g^2 I2 - 3), g = J^(-2/3) (Bonet & Wood, 6.5), continued
-/// below a small J with g.
+/// Isochoric Mooney-Rivlin solid: psi = c1 (g I1 - 3) + c2 (g^2 I2 - 3), g = J^(-2/3) (Bonet & Wood, 6.5). Below a
+/// small J, g is continued (IsochoricScale).
 template <class T>
 struct MooneyRivlin
 {
@@ -59,7 +59,7 @@ FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
-/// For g^2 I2, I2 = |cof F|^2, it is 4 at rest, which is exact, plus the growth of its term-by-term bound since.
+/// For g^2 I2, I2 = |cof F|^2, it is the exact value at rest, 4, plus the growth of its term-by-term bound since.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 {

@@ -7,8 +7,9 @@ namespace frontalis::physics
 {
 
 /// Compressible neo-Hookean solid with isochoric split: psi = mu/2 (g(J) I1 - 3) + kappa/2 (J - 1)^2 with g = J^(-2/3)
-/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5), continued below a small J. It
-/// includes the volumetric part of all materials; with kappa = 0 it is purely isochoric like the other laws.
+/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5). Below a small J, g is continued
+/// (IsochoricScale). The solid includes the volumetric part of all materials; with kappa = 0 it is purely isochoric
+/// like the other laws.
 template <class T>
 struct NeoHookean
 {

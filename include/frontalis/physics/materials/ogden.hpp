@@ -56,7 +56,7 @@ FRONTALIS_LAW OgdenTerms<T> terms_of(const Ogden<T>& material)
   return { { { material.mu1, material.alpha1 }, { material.mu2, material.alpha2 } } };
 }
 
-/// Multiple of the identity that is added to C below the continuation: value and derivative with respect to J.
+/// Multiple of the identity that is added to C below continuation_jacobian: value and derivative with respect to J.
 template <class T>
 FRONTALIS_LAW IsochoricScale<T> eigenvalue_shift(T J)
 {
