@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// The library's only exception type. Its text names the file, line or key, what was found and what would be right.
+/// Base of the library's exceptions. The text names the file, line or key, what was found and what would be right.
 class Error : public std::runtime_error
 {
 public:

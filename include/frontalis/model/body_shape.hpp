@@ -5,19 +5,19 @@
 namespace frontalis
 {
 
-/// A body that tissue touches, as it is shown.
+/// A body that tissue touches, or a bone, with what a viewer needs to show it.
 struct BodyShape
 {
-  std::string name;                       ///< of its constraint, or of the bone
-  std::string frame;                      ///< body/NAME or bone/NAME: its frame, below the face frame
-  std::array<double, 3> centre;           ///< at rest, local: origin of the frame in which it is published [m]
-  const TriangleMesh* surface = nullptr;  ///< of the model, at rest, local [m]; may be empty
+  std::string name;                       ///< name of its constraint, or of the bone
+  std::string frame;                      ///< name of its frame, below the face frame: body/NAME or bone/NAME
+  std::array<double, 3> centre;           ///< origin of that frame at rest, local [m]
+  const TriangleMesh* surface = nullptr;  ///< surface at rest, local [m], owned by the model; may be null or empty
 };
-/// One per entry of touched_bodies(model).
+/// The shapes of touched_bodies(model), in the same order.
 std::vector<BodyShape> body_shapes(const Model& model);
-/// One per bone, without a surface. Its centre is the point that the bone turns about: that of a ball that tissue
-/// slides on, else that of its first pose in the action units, expressions and demo; else the middle of the nodes that
-/// it holds.
+/// One shape per bone, without a surface. Its centre is the point about which the bone turns: the centre of a ball that
+/// tissue slides on, else that of the bone's first pose in the action units, expressions and demo, else the middle of
+/// the nodes that the bone holds.
 std::vector<BodyShape> bone_shapes(const Model& model);
 
 }  // namespace frontalis

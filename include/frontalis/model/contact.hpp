@@ -13,23 +13,23 @@ namespace frontalis
 /// A rigid body that tissue may touch and leave, and the points of the tissue that touch it.
 struct Contact
 {
-  std::string name;                ///< of the constraint in the scene
-  std::int32_t bone = -1;          ///< index into Model::bones of the body; -1: the body stands still
-  double friction = 0;             ///< Coulomb's coefficient
-  SampledField field;              ///< distance from the body, negative inside
-  double reach = 0;                ///< samples are stored at least this far from the surface [m]
-  std::array<double, 3> centre{};  ///< of the body at rest, local: origin of the frame in which it is published [m]
+  std::string name;        ///< of the constraint in the scene
+  std::int32_t bone = -1;  ///< index into Model::bones of the bone that moves the body; -1: the body stands still
+  double friction = 0;     ///< Coulomb's coefficient
+  SampledField field;      ///< distance from the body, negative inside
+  double reach = 0;        ///< samples are stored at least this far from the surface [m]
+  std::array<double, 3> centre{};  ///< origin of the body's published frame at rest, local [m]
   TriangleMesh shape{};            ///< the body's surface at rest, local, to be shown [m]; may be empty
 
-  // a body that is pushed: it does not turn against its bone, but moves freely against it
-  double mass = 0;                ///< [kg]; 0: it is not pushed, but goes where its bone is
+  // a body that is pushed: it may shift relative to its bone, but turns with it
+  double mass = 0;                ///< [kg]; 0: the body is not pushed, but moves with its bone
   std::array<double, 3> force{};  ///< constant, local axes [N]
-  double spring = 0;              ///< stiffness of the spring to where its bone holds it [N/m]
-  double damping = 0;             ///< force over velocity against that place [N s/m]
+  double spring = 0;              ///< stiffness of the spring to the body's place on its bone [N/m]
+  double damping = 0;             ///< damping force over the body's velocity relative to that place [N s/m]
 
   // points of the tissue: vertices of its surface
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
-  std::vector<double> area;                   ///< of the surface, a third of each triangle at the vertex [m2]
+  std::vector<double> area;                   ///< area of each point [m2]: vertex_areas()
   Binding binding;                            ///< one entry per point
 };
 

@@ -31,7 +31,7 @@ bool is_viscous(const Model& model, std::size_t voxel);
 struct TouchedBody
 {
   std::string name;
-  std::int32_t bone = -1;  ///< index into Model::bones of the body; -1: it stands still
+  std::int32_t bone = -1;  ///< index into Model::bones of the bone that moves the body; -1: the body stands still
 };
 /// All bodies that the model's tissue may touch, in the order of Solver::reactions().
 std::vector<TouchedBody> touched_bodies(const Model& model);

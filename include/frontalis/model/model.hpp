@@ -16,9 +16,9 @@
 namespace frontalis
 {
 
-/// Everything that the solver needs, constant while it runs. Plain arrays in SI units, in a local frame whose origin
-/// lies within the model (float keeps its precision) and whose x axis is the one with the longest rows of voxels: an
-/// even permutation of the scene's axes, which keeps the handedness.
+/// Everything that the solver needs, constant while it runs: plain arrays in SI units, in a local frame. The origin
+/// lies within the model, so that float is precise. The x axis is the one with the longest rows of voxels, by an even
+/// permutation of the scene's axes, which keeps the handedness.
 struct Model : ModelPresets
 {
   // grid: node (i,j,k) rests at (i,j,k) * spacing from the local origin
@@ -28,7 +28,8 @@ struct Model : ModelPresets
   // voxels, ordered by k, then j, then i; lower corner at node (i,j,k)
   std::vector<std::array<std::int32_t, 3>> voxels;
   std::vector<float> fill;  ///< proportion of the voxel that is tissue, 0..1: scales stiffness and mass
-  /// Empty, or per voxel the centroid of its tissue, from -1 to 1 along each axis: where its stress is found.
+  /// Empty, or per voxel the centroid of its tissue, from -1 to 1 along each axis: the point where its stress is
+  /// computed.
   std::vector<std::array<float, 3>> tissue_centre;
 
   // mixture of voxel e: entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1
@@ -37,7 +38,7 @@ struct Model : ModelPresets
   std::vector<std::int16_t> mixture_material;
   std::vector<float> mixture_proportion;
   /// Empty, or two directions per voxel (local axes, length 1) that replace those of its materials with fibres; a
-  /// material with one direction uses the first. Zero: the material's own directions hold.
+  /// material with one direction uses the first. If a direction is zero, the material's own direction applies.
   std::vector<std::array<float, 6>> material_directions;
 
   // muscles of voxel e: entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1
@@ -51,19 +52,19 @@ struct Model : ModelPresets
   std::vector<std::array<std::int32_t, 3>> nodes;
   std::vector<std::array<std::int32_t, 8>> voxel_nodes;  ///< corner b = i + 2j + 4k
 
-  /// Planes of the grid with tissue from the second side of a gap, so that it shares no node with the first side: what
-  /// has k >= first rests `shift` planes lower.
+  /// Planes of the grid with tissue from the second side of a gap, so that this tissue shares no node with the first
+  /// side: voxels and nodes with k >= first rest `shift` planes lower.
   struct Flap
   {
     std::int32_t first = 0;
     std::int32_t shift = 0;
   };
   std::vector<Flap> flaps;  ///< ascending; empty without gaps
-  /// Two nodes that are one: where a flap continues in other tissue. Both rest at one place.
+  /// Two nodes that move as one, where a flap continues in other tissue. Both rest at one place.
   struct Joint
   {
     std::int32_t node = 0;
-    std::int32_t master = 0;  ///< not the node of another joint; it may have several nodes
+    std::int32_t master = 0;  ///< not the node of another joint; several joints may have the same master
   };
   std::vector<Joint> joints;
 
@@ -96,9 +97,9 @@ struct Model : ModelPresets
   std::string face_frame = "face";
 
   // time
-  double damping = 0;  ///< mass-proportional damping coefficient [1/s]
-  double time_scaling = 1;
-  double frame_rate = 30;  ///< [1/s] of wall time
+  double damping = 0;       ///< mass-proportional damping coefficient [1/s]
+  double time_scaling = 1;  ///< seconds of activations and frames per second of the solver's time
+  double frame_rate = 30;   ///< [1/s] of wall time
   /// Fastest change of a muscle's activation [1/s of simulated time]; 0: no limit.
   double activation_slew = 0;
   double time_step_share = 0.9;
@@ -114,7 +115,8 @@ struct Model : ModelPresets
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 };
 
-/// Where a voxel or a node of the grid rests, in voxel edges from the origin: its own place, unless it is in a flap.
+/// Rest position of the voxel or node at `place` in the grid, in voxel edges from the origin: `place`, unless it is in
+/// a flap.
 inline std::array<std::int32_t, 3> rest_place(const Model& model, std::array<std::int32_t, 3> place)
 {
   for (auto flap = model.flaps.rbegin(); flap != model.flaps.rend(); ++flap)

@@ -46,17 +46,17 @@ struct SlidingNode
   std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
 };
 
-/// Node near the surface of a bone or beyond it, whose motion is extrapolated from that of a free node, so that tissue
-/// is attached at the surface itself and not where the node happens to be. Held: its displacement relative to the bone
-/// is `ratio` times the master's. Sliding: its level is `ratio` times the master's level, and it is free along the
-/// surface.
+/// Node near the surface of a bone or beyond it, whose motion is extrapolated from that of a free node, its master, so
+/// that tissue is attached at the surface itself and not where the node happens to be. A held node's displacement
+/// relative to the bone is `ratio` times its master's. A sliding node's distance from the surface is `ratio` times its
+/// master's; along the surface it is free.
 struct AttachedNode
 {
   std::int32_t node = 0;
-  std::int32_t master = 0;       ///< a node that is not restricted; it may have several such nodes
-  double ratio = 0;              ///< of their distances from the surface at rest, -1..1; negative beyond the surface
-  std::int32_t bone = -1;        ///< held: index into Model::bones; -1: still
-  std::int32_t surface = -1;     ///< sliding: index into Model::constraint_surfaces; -1: held
+  std::int32_t master = 0;  ///< a node that is not restricted; it may have several such nodes
+  double ratio = 0;         ///< of distances from the surface at rest, node's over master's, -1..1; negative beyond it
+  std::int32_t bone = -1;   ///< of a held node: index into Model::bones; -1: it stands still
+  std::int32_t surface = -1;     ///< of a sliding node: index into Model::constraint_surfaces; -1: the node is held
   std::int32_t constraint = -1;  ///< constraint that attaches it, in Model::constraints; -1: unknown
 };
 

@@ -11,24 +11,24 @@ namespace frontalis
 struct SurfaceDistance
 {
   SurfaceDistance(double signed_distance, double past = 0) : value(signed_distance), past_rim(past) {}
-  double value;     ///< signed; past the rim of an open surface, from the surface's tangent plane at the rim
+  double value;     ///< signed distance; past the rim of an open surface it is that from the tangent plane at the rim
   double past_rim;  ///< how far the point is past the rim of an open surface; 0 beside or above the surface
 };
 /// The distance of a point in local coordinates.
 using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 
-/// Calls body(0) .. body(count - 1), in any order or at once.
+/// Calls body(0) .. body(count - 1), in any order or in parallel.
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Samples a distance every `spacing` [m], in all bricks that sliding nodes can reach: those within `travel` [m] of a
-/// node's rest position in which the distance is between the least and the largest of such nodes, with a margin of one
-/// spacing, and which are not past the rim.
+/// Samples a distance every `spacing` [m], in all bricks (physics/distance_field.hpp) that sliding nodes can reach:
+/// those within `travel` [m] of a node's rest position where the distance is between the smallest and the largest
+/// distance of such nodes, with a margin of one spacing. Bricks past the rim are left out.
 SampledField sample_field(const std::vector<std::array<double, 3>>& rest, const Distance& distance, double spacing,
                           double travel, const Loop& loop = one_by_one);
 
-/// Samples a distance in all bricks that come within `reach` [m] of a surface, on its inner side within `inside` [m] if
-/// that is more. `lower`, `upper`: corners of a box around the surface.
+/// Samples a distance in all bricks within `reach` [m] of a surface; on its inner side within `inside` [m] if that is
+/// more. `lower`, `upper`: corners of a box around the surface.
 SampledField sample_band(const std::array<double, 3>& lower, const std::array<double, 3>& upper,
                          const Distance& distance, double spacing, double reach, const Loop& loop = one_by_one,
                          double inside = 0);
@@ -40,14 +40,14 @@ physics::DistanceField view(const SampledField& field);
 
 /// Value of the field at p [m]; NaN if no samples are stored there.
 double level_at(const SampledField& field, const std::array<double, 3>& p);
-/// Whether samples are stored within the distance `way` of p [m].
+/// Whether samples are stored within `way` [m] of the point p [m].
 bool has_samples_near(const SampledField& field, const std::array<double, 3>& p, double way);
 
 /// For models made by programs: adds a surface without friction that does not move, and lets the given nodes slide
 /// along it, each at its distance at rest. Returns the index of the surface.
 std::int32_t slide_on(Model& model, const std::string& name, SampledField field,
                       const std::vector<std::int32_t>& nodes);
-/// The same, for a surface given by its distance, which is sampled here.
+/// The same for a surface that is given by its distance function, which is sampled here.
 std::int32_t slide_on(Model& model, const std::string& name, const Distance& distance,
                       const std::vector<std::int32_t>& nodes, double spacing = 0.5e-3, double travel = 20e-3);
 

@@ -12,7 +12,7 @@ struct SelfContact
 {
   std::string name;      ///< of the constraint in the scene
   double friction = 0;   ///< Coulomb's coefficient
-  TriangleMesh surface;  ///< all of them at rest, local; where they join they share vertices
+  TriangleMesh surface;  ///< all these surfaces at rest, local [m]; where two of them join they share vertices
   Binding binding;       ///< of its vertices
 };
 

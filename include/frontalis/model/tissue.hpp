@@ -14,12 +14,13 @@ struct Material
 {
   std::string name;
   Law law = Law::neo_hookean;
-  /// Parameters of the law in its own order, with the bulk modulus [Pa] between the first and the second, then its
-  /// fibre directions (local axes, length 1) from `physics::first_direction` on.
+  /// Parameters of the law in the law's own order, with the bulk modulus [Pa] between the first and the second, then
+  /// the fibre directions (local axes, length 1) from `physics::first_direction` on.
   std::array<double, physics::parameter_slots> parameters{};
   double density = 0;  ///< [kg/m3]
   /// Viscosity of the isochoric part as a Prony series of up to two terms: the share of the instantaneous stress that
-  /// relaxes (their sum below 1), and its time constant [s]. Share 0: no such term. The moduli are the instantaneous.
+  /// relaxes (their sum below 1), and its time constant [s]. Share 0: no such term. `parameters` are the instantaneous
+  /// ones.
   std::array<double, 2> viscous_share{};
   std::array<double, 2> viscous_time{};
 };
@@ -47,7 +48,7 @@ struct MassScalingSettings
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::int32_t> materials;  ///< selective: voxels that contain one of these; empty: all
-  double time_step = 0;                 ///< selective: step that they must allow [s]; 0: as long as other voxels allow
+  double time_step = 0;                 ///< selective: critical time step to reach [s]; 0: that of the other voxels
 };
 
 /// How the hourglass modes, which one-point quadrature leaves without stiffness, are stiffened.
@@ -77,7 +78,8 @@ enum class Precision : std::uint8_t
 enum class TimeStepEstimate : std::uint8_t
 {
   element,   ///< bounded at nodes from the stiffness of their voxels: always safe
-  assembled  ///< by power iteration on the assembled model, repeated as it stiffens; longer if few voxels are stiff
+  assembled  ///< by power iteration on the assembled model, repeated as it stiffens; the step is longer if few voxels
+             ///< are stiff
 };
 
 }  // namespace frontalis

@@ -16,14 +16,14 @@ void set_activations(const Model& model, const std::map<std::string, double>& na
 /// All muscles at their tone and all bones at rest: the expression `relax`.
 Controls rest_controls(const Model& model);
 
-/// A named expression of the model, added to rest_controls(); activations are limited to 0..1. A name with _left or
-/// _right at its end that no expression has is the half of an expression: it moves what is of that side, half as much
-/// what has no side, and nothing of the other. Throws an Error that lists the existing expressions if there is none of
+/// A named expression of the model, added to rest_controls(); activations are limited to 0..1. If no expression has the
+/// name and it ends in _left or _right, it means half of an expression: what is of that side moves fully, what has no
+/// side half as much, and the other side not. Throws an Error that lists the existing expressions if there is none of
 /// this name.
 Controls expression_controls(const Model& model, const std::string& name);
 
-/// The same for a sum of action units, intensities (0..1) by names such as AU12 or AU12_left. FACS's letters A to E in
-/// a name (AU12C, AU12C_left) stand for 0.2, 0.4, 0.6, 0.8 and 1 of the intensity.
+/// Like expression_controls() for a sum of action units: intensities (0..1) by names such as AU12 or AU12_left. FACS's
+/// letters A to E in a name (AU12C, AU12C_left) stand for 0.2, 0.4, 0.6, 0.8 and 1 of the intensity.
 Controls action_unit_controls(const Model& model, const std::map<std::string, double>& intensities);
 
 /// Named values added to rest_controls(): an activation (0..1) by the name of its muscle, and a part of a bone's motion
@@ -39,21 +39,21 @@ void take_pose(const Model& model, const Controls& pose, Controls& controls);
 void set_bone_motion(const Model& model, const std::string& name, const RigidTransform& motion,
                      std::vector<RigidTransform>& bones);
 
-/// The same in the other direction: the motion of a bone in the face frame from that in the local frame.
+/// The motion of a bone in the face frame, from its motion in the local frame.
 RigidTransform motion_in_face(const Model& model, const RigidTransform& local);
 
 /// Controls over time, linear between knots and constant after the last one.
 struct ControlCurve
 {
-  std::vector<double> time;  ///< not descending, from 0 [s], on the clock of the activations
+  std::vector<double> time;  ///< not descending, from 0 [s]; simulated time times Model::time_scaling
   std::vector<Controls> controls;
 
   Controls at(double seconds) const;
 };
 
-/// One round of the model's demo from given controls: each phase ramps from those at the end of the phase before. A
-/// ramp that is longer than its phase is shortened to the phase. The last knot is the end; a model without a demo has
-/// none but the first.
+/// One round of the model's demo from given controls: each phase ramps from the controls at the end of the previous
+/// one. A ramp that is longer than its phase is shortened to the phase. The last knot is the end of the round; a model
+/// without a demo has only the first knot.
 ControlCurve demo_curve(const Model& model, const Controls& begin);
 
 }  // namespace frontalis

@@ -17,7 +17,7 @@ namespace frontalis
 /// The state of a face that is published once per frame. Positions are in the face frame [m].
 struct Frame
 {
-  double time = 0;              ///< simulated time since the latest reset [s], on the clock of the activations
+  double time = 0;              ///< simulated time since the latest reset times Model::time_scaling [s]
   double wall_time = 0;         ///< wall time since the runner started [s]
   double real_time_factor = 0;  ///< simulated over wall time, over about the last second
   double time_step = 0;         ///< of the solver [s]
@@ -57,7 +57,7 @@ struct RunnerSettings
   std::function<std::optional<SkinField>()> wanted_field{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, no displacements are copied.
   std::function<bool()> wants_displacements{};
-  /// The same for the forces on bones.
+  /// The same as wants_displacements for the forces on bones.
   std::function<bool()> wants_bone_forces{};
 };
 

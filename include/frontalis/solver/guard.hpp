@@ -17,7 +17,7 @@ enum class Instability
   none,
   not_finite,  ///< a displacement is NaN or Inf
   energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
-  hourglass,   ///< the same, in hourglass modes only
+  hourglass,   ///< more energy in hourglass modes alone than that
   inverted,    ///< more voxels are inverted than allowed
   time_step,   ///< steps were longer than critical
   past_rim,    ///< a sliding node is far past the rim of its surface's field
@@ -33,7 +33,7 @@ struct GuardSettings
   double slower = 0.5;           ///< factor on the time step after a finding, applied once per try
   int recovery = 4;              ///< checks without a finding before the full time step is used again
   int tries = 3;                 ///< failed tries in a row after which the motion is stopped
-  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), or as at the last good check
+  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), or that of the last good check
   bool ledger = false;           ///< judges energy by the ledger's imbalance; needs SolverSettings::ledger
 };
 
@@ -74,10 +74,11 @@ public:
 /// keeps a snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
 ///
 /// Energy is judged by a bound if there is no ledger. Let E be the kinetic, internal and hourglass energy at the last
-/// good check. After a further time t it may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f is
-/// gravity and surface loads on a node of mass m, and W is the sum of
+/// good check. At a time t later the energy may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f
+/// is gravity and surface loads on a node of mass m, and W is the sum of
 /// - the energy of a strain of 1e-4 everywhere;
-/// - what fibres can give: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive too;
+/// - the work that fibres can do: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive
+/// too;
 /// - what bones and prescribed nodes can have brought: with d the length of their paths in that time, d^2 times four
 ///   times the bound of the stiffness of the voxels at them;
 /// - what viscous stresses can give back.
@@ -96,7 +97,8 @@ public:
   void advance(double seconds, const Controls& target);
   /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
-  /// Like Solver::settle, with checks as in advance() except that of the ledger, which starts anew. Throws as both do.
+  /// Like Solver::settle, with the checks of advance() but for the ledger's: the ledger is opened again. Throws as both
+  /// do.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
   /// Accepts the present state as good without a check. Call it after reset(), or after displacements were set.

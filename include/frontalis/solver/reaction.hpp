@@ -9,7 +9,7 @@ namespace frontalis
 struct Reaction
 {
   std::array<double, 3> force{};   ///< [N]
-  std::array<double, 3> moment{};  ///< [N m] about the origin of the local frame, carried along by the body
+  std::array<double, 3> moment{};  ///< [N m] about the body's point that rests at the origin of the local frame
 };
 
 }  // namespace frontalis

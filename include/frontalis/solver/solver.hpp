@@ -112,7 +112,7 @@ public:
   /// The effects of the model that are switched on. reset() does not change them.
   virtual EffectSet effects() const = 0;
   /// An effect that is off takes no time and keeps its memory. When it is switched on again, its history (viscous
-  /// stresses, friction) is lost. Time step and ledger start anew. Throws Error if the model does not have the effect,
+  /// stresses, friction) is lost. Opens the ledger again. Throws Error if the model does not have the effect,
   /// if another effect needs it, or if it cannot be switched while running.
   virtual void switch_effect(Effect effect, bool on) = 0;
   /// Memory of the solver's arrays, without the model.
@@ -127,7 +127,7 @@ public:
   virtual EnergyLedger ledger() = 0;
   /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Present poses of these bodies, in the local frame; none if the backend does not compute them.
+  /// Present poses of touched_bodies(model), in the local frame; none if the backend does not compute them.
   virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 

@@ -37,7 +37,7 @@ struct Monitor
   double step_share = 0;             ///< latest time step over the present critical one (model's TimeStepEstimate)
   std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
   std::int32_t lost_node = -1;       ///< a node that is more than 4 mm past the rim; -1: none
-  std::int64_t lost_points = 0;      ///< of contact, deeper in a body than its field reaches: nothing pushes them out
+  std::int64_t lost_points = 0;  ///< contact points deeper in a body than its field reaches: nothing pushes them out
   bool finite = true;
 };
 
