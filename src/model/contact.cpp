@@ -127,7 +127,7 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
 namespace
 {
 
-/// A place of the face frame in the local frame [m].
+/// Converts a place from the face frame to the local frame [m].
 std::array<double, 3> local_place(const Model& model, const std::array<double, 3>& p)
 {
   const RigidTransform& to_face = model.to_face;

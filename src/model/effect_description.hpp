@@ -40,7 +40,7 @@ EffectDescription cut_voxels_description();
 /// Removes the attached nodes that slide, or those that are held.
 void remove_attached(Model& model, bool sliding);
 
-/// These call the `write`, `read` or `check` of all effects.
+/// Call the functions `write`, `read` or `check` of all effects.
 void exchange_effects(ModelWriter& archive, const Model& model);
 void exchange_effects(ModelReader& archive, Model& model);
 void check_effects(const Model& model);

@@ -14,7 +14,7 @@ namespace
 
 using physics::DistanceField;
 
-// A point of the lattice of samples. Bricks share those on their faces.
+// A point of the lattice of samples. Bricks share the points on their faces.
 using Place = std::array<std::int32_t, 3>;
 
 class Lattice
@@ -28,8 +28,8 @@ public:
             { { b % field.bricks[0], b / field.bricks[0] % field.bricks[1], b / field.bricks[0] / field.bricks[1] } });
   }
 
-  // Two neighbours that differ by more than the spacing move towards each other by half of what is too much, and their
-  // own neighbours are looked at next.
+  // Two neighbours that differ by more than the spacing move towards each other by half of the excess each. Then their
+  // own neighbours are checked.
   void limit()
   {
     std::vector<Place> now = steep_places(), next;
@@ -118,8 +118,8 @@ private:
     return found;
   }
 
-  // Places that differ from a neighbour by too much, some of them repeatedly. Neighbours are always together in one of
-  // the bricks.
+  // Places that differ from a neighbour by too much, some of them repeatedly. Any two neighbours are together in at
+  // least one of the bricks.
   std::vector<Place> steep_places() const
   {
     std::vector<Place> places;

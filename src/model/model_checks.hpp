@@ -56,7 +56,7 @@ inline void check_proportion(const std::string& array, std::size_t at, double va
     fail(array, "entry {} is {}; proportions lie between 0 and 1", at, value);
 }
 
-/// The check that an index is below `count` and not below `lowest`.
+/// Returns a check that an index is at least `lowest` and below `count`.
 inline auto index_below(std::size_t count, std::ptrdiff_t lowest = 0)
 {
   return [=](const std::string& array, std::size_t at, std::ptrdiff_t index)

@@ -81,7 +81,7 @@ SampledField empty_field(const Point& lower, const Point& upper, double spacing)
   return field;
 }
 
-// Index in the table of the brick `way` bricks from the one at `place` along each axis; -1 if there is none.
+// Index in the table of the brick that is `way` bricks along each axis from the brick at `place`; -1 if there is none.
 std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std::array<int, 3>& way)
 {
   const std::size_t row = place / field.bricks[0];
@@ -99,8 +99,8 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 
 constexpr int width = DistanceField::brick_row;
 
-// Calls visit(sample, way) for the samples of a brick. way: to the brick whose cell the sample is the centre of. Rows
-// are visited forwards and backwards in turn, so that the next sample is always a neighbour.
+// Calls visit(sample, way) for the samples of a brick. way: from the brick to the one that owns the cell around the
+// sample. Rows are visited forwards and backwards in turn, so that the next sample is always a neighbour.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {
@@ -114,7 +114,7 @@ void visit_samples(const Visit& visit)
       }
 }
 
-// Samples the bricks in which the distance reaches the brick's band. What bricks share is sampled once.
+// Samples the bricks in which the distance reaches the brick's band. Samples that bricks share are found once.
 void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
 {
   const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;
@@ -122,7 +122,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
   for (std::size_t b = 0; b < bands.size(); ++b)
     if (bands[b].least < bands[b].largest)
       places.push_back(b);
-  // where the lattice point `at` of a brick is, which may lie between two of them
+  // the place at lattice coordinates (i, j, k) of a brick, which may be between two samples
   const auto point_of = [&](std::size_t place, double i, double j, double k)
   {
     const std::size_t row = place / field.bricks[0];
@@ -140,7 +140,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
          wanted[n] =
              band.home || reaches(distance, band, point_of(places[n], middle, middle, middle), edge, spacing) ? 1 : 0;
        });
-  std::vector<std::size_t> stored;  // their places in the table
+  std::vector<std::size_t> stored;  // indices in the table
   for (std::size_t n = 0; n < places.size(); ++n)
     if (wanted[n] != 0)
     {

@@ -31,7 +31,7 @@ void check(const Model& model)
   }
 }
 
-// Writes or reads them in a model file. A model without any stores nothing.
+// Writes or reads the self-contacts of a model file. A model without any stores nothing.
 template <class Archive, class Contacts>
 void exchange(Archive& archive, Contacts& contacts)
 {
