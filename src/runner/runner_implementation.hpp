@@ -64,7 +64,7 @@ struct Runner::Implementation
 
   /// Wall time per frame [s].
   double period() const { return 1 / frame_rate; }
-  /// Simulated time on the clock of the activations [s]. With time scaling it differs from the solver's time.
+  /// Simulated time times Model::time_scaling, as for activations and frames [s].
   double time() const { return solver->time() * model->time_scaling; }
   /// Simulated duration of a slice [s], in which the solver does not look at requests or at the wall clock.
   double slice() const;

@@ -49,7 +49,7 @@ void Runner::Implementation::fail(const std::string& reason)
   frame.failure = reason;
 }
 
-// Advances by `seconds` on the clock of the activations. If the motion fails, the face stops until it is reset.
+// Advances time() by `seconds`. If the motion fails, the face stops until it is reset.
 void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
