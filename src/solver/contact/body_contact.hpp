@@ -41,7 +41,7 @@ public:
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
-  // For a backend that has the points in a memory of its own, finds their forces there, and leaves the account here.
+  // For a backend that keeps the points in a memory of its own, finds their forces there, and has them summed here:
 
   using Vector = physics::Vec3<double>;
   struct Point
@@ -65,7 +65,7 @@ public:
   };
   /// Sorted by voxel.
   const std::vector<Point>& points() const { return points_; }
-  /// Largest ratio of a point's way to that of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to those of the nodes of its voxel.
   double spread() const { return nodes_.spread(); }
   /// Takes over what a step has found, one entry per point, and adds up the reactions and energies.
   void follow(const std::vector<Found>& found, const ConstraintStep& step);
@@ -88,7 +88,7 @@ private:
   static constexpr std::int32_t chunk_size = 64;
   struct Chunk
   {
-    double due = 0;            // BodyState::way at which the first of its points is due
+    double due = 0;            // BodyState::way at which the first of its points must be evaluated
     std::int64_t touches = 0;  // not 0: one of its points touches
   };
   /// Calls visit(p) for the points in [first, last) that touch.
@@ -131,7 +131,7 @@ private:
   const Model& model_;
   bool runs_ = true, any_pushed_ = false;
   std::vector<Point> points_;               // sorted by voxel
-  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels, then twice the number of points
+  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels; last two entries: their number
   BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
   // values of the present step

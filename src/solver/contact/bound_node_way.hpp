@@ -16,10 +16,10 @@ public:
   BoundNodeWay() = default;
   BoundNodeWay(const Model& model, const Binding& points);
 
-  /// Longest way [m] of a bound node in a plane of nodes, from displacements before and after the step.
+  /// Longest displacement [m] of a bound node of a plane in a step, from displacements before and after it.
   template <class Real>
   double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
-  /// Largest ratio of a point's way to that of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to those of the nodes of its voxel.
   double spread() const { return spread_; }
   void list_arrays(ArrayList& list, Effect effect) const;
 
@@ -31,7 +31,7 @@ private:
   };
   double spread_ = 1;
   std::vector<Run> runs_;                 // runs that contain all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;  // first run in each plane of nodes, then twice the number of runs
+  std::vector<std::int32_t> plane_runs_;  // first run in each plane of nodes; last two: number of runs
 };
 
 }  // namespace frontalis

@@ -17,8 +17,9 @@ namespace frontalis
 namespace
 {
 
-// Where other nodes bound the frequency, contact is stiffer than its law asks for, up to this factor: thin tissue on
-// bone resists a finger several times as much as its Young's modulus says. Bounds stay below this share of the largest.
+// Where other nodes set the bound of the highest frequency, contact is stiffer than its law, up to `stiffest_factor`:
+// thin tissue on bone resists a finger several times as much as its Young's modulus says. Bounds of the nodes in
+// contact stay below `share_of_largest` of the largest.
 constexpr double stiffest_factor = 10;
 constexpr double share_of_largest = 0.95;
 
@@ -40,8 +41,8 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
     : bodies_(model.contacts.size())
 {
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  // Of each node: the bound of the stiffness of its voxels, and the stiffness of contact if it were on a flat side of
-  // whole voxels, whose four at the node carry a quarter of an edge^2 each.
+  // For each node, the bound of the stiffness of its voxels, and the stiffness of contact if the node were on a flat
+  // side of whole voxels: each of four voxels then contributes a quarter of an edge^2.
   std::vector<double> of_voxels(model.nodes.size(), 0), of_flat_side(model.nodes.size(), 0);
   std::vector<double> per_area(model.voxels.size());
   voxels_.resize(model.voxels.size());
@@ -74,7 +75,7 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
   share_out(model, of_voxels);
 }
 
-// What contact adds to a node is shared by its voxels in proportion to their own bounds, which voxels_ holds before.
+// Shares what contact adds to a node among its voxels in proportion to their own bounds, which voxels_ holds before.
 void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
 {
   share_rows(model, rows(model, false), of_voxels, voxels_);
@@ -91,7 +92,7 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
 {
   if (bodies_ == 0)
     return;
-  // bounds of nodes with and without contact; held ones count for nothing
+  // bounds of nodes with and without contact; 0 for held nodes
   std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
   VoxelProperties properties;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
@@ -107,7 +108,7 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
   }
   for (const auto node : discretisation.held)
     squared[node] = 0;
-  // If no voxel's bound grows by more than its nodes and those of its neighbours allow, no node's does.
+  // A voxel's bound may grow as far as all nodes of it and of its neighbours allow; then no node's bound is too large.
   const double limit = share_of_largest * discretisation.frequency_squared_max;
   std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
   for (const auto& nodes : model.voxel_nodes)

@@ -7,15 +7,15 @@ namespace frontalis
 
 class Discretisation;
 
-/// Stiffness of contact (physics/contact.hpp), and what it adds to the bound of the highest frequency, as if all points
-/// touched at once: the bound is right at the moment when a point touches.
+/// Stiffness of contact (physics/contact.hpp), and what it adds to the bound of the highest frequency. All points count
+/// as if they touched, so that the bound already holds when one begins to touch.
 class ContactStiffness : public AddedStiffness
 {
 public:
   /// From the mixtures of the points' voxels, with bounds of their stiffness that do not include contact.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
-  /// Makes points up to ten times as stiff, of Model::contacts alone.
+  /// Makes points of Model::contacts, not those of self-contact, up to ten times as stiff.
   void stiffen(const Model& model, const Discretisation& discretisation) override;
 
   /// Stiffness [N/m] of a point of one of Model::contacts.
@@ -30,7 +30,7 @@ public:
   void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                   std::vector<std::array<double, 3>>& forces) const override;
 
-  /// That of bodies that are pushed.
+  /// Longest stable step of bodies that are pushed [s].
   double longest_step() const override { return longest_step_; }
 
 private:
@@ -46,7 +46,7 @@ private:
   /// `alone`: as if the other side stood still.
   std::vector<double> rows(const Model& model, bool alone) const;
 
-  std::vector<Surface> surfaces_;  // first those of bodies
+  std::vector<Surface> surfaces_;  // of Model::contacts, then of Model::self_contacts
   std::size_t bodies_;
   std::vector<float> voxels_;  // [N/m]
   double longest_step_ = std::numeric_limits<double>::infinity();

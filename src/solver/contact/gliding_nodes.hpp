@@ -21,8 +21,8 @@ inline physics::Pose pose_of(const RigidTransform& from)
 }
 
 /// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
-/// precision, in the frame of the bone. Their planes are found anew in each step, because friction follows the reaction
-/// of the surface, which jumps where a plane that was kept for several steps is replaced.
+/// precision, in the frame of the bone. Their tangent planes are found in each step: if a plane were kept for several
+/// steps, its replacement would make the surface's reaction jump, which friction follows.
 template <class Real>
 class GlidingNodes
 {

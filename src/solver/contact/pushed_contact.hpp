@@ -16,23 +16,23 @@ struct BodyState
   double dt;    ///< length of the step [s]; 0: there was none
   double kick;  ///< for how long forces change velocities in it [s]
   // of a body that is pushed
-  physics::Vec3<double> held_at;   ///< where its bone would have its centre [m]
+  physics::Vec3<double> held_at;   ///< place of its centre if it kept its pose relative to its bone [m]
   physics::Vec3<double> velocity;  ///< half a step before [m/s]
 };
 
 /// Where a bone holds a body.
 RigidTransform held_pose(const Contact& contact, const std::vector<RigidTransform>& bones);
 
-/// Pose, place and velocity at the end of a step; what a time step needs besides stays 0. A body that is not pushed
-/// goes where its bone is. One that is pushed does not turn against it, and its centre moves by central differences, as
-/// nodes do: the tissue's impulse on it in a step is exactly the opposite of its own on the tissue. Damping counts half
-/// with the new velocity, so that it sets no limit to the step. `reaction`: of the tissue at the start of the step.
+/// The body at the end of a step; `dt` and `kick` stay 0. A body that is not pushed moves with its bone. A pushed body
+/// turns with its bone, and its centre moves by central differences, as nodes do: the tissue's impulse on it in a step
+/// is exactly the opposite of its own on the tissue. Half of the damping acts on the new velocity, so that it sets no
+/// limit to the step. `reaction`: of the tissue at the start of the step.
 BodyState moved_on(const Contact& contact, const BodyState& before, const Reaction& reaction,
                    const std::vector<RigidTransform>& bones);
 
-/// By how much the bound of the tissue's frequency counts the stiffness of contact with a body that is pushed. A
-/// spring between a node and a body stores k (a - b)^2 / 2 <= (1 + s) k a^2 / 2 + (1 + 1 / s) k b^2 / 2, so that the
-/// two are bounded apart, the body by longest_pushed_step().
+/// Factor on the stiffness of contact with a pushed body in the bound of the tissue's frequency: 1 + s, s =
+/// pushed_share. A spring between a node and a body stores k (a - b)^2 / 2 <= (1 + s) k a^2 / 2 + (1 + 1 / s) k b^2 /
+/// 2, so that node and body are bounded separately, the body by longest_pushed_step().
 constexpr double pushed_share = 0.1;
 inline double counted(const Contact& contact) { return contact.mass > 0 ? 1 + pushed_share : 1; }
 

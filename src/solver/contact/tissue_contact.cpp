@@ -15,16 +15,17 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Lengths in shortest voxel edges: how far from a triangle a vertex finds it, and how deep behind it it is held.
+// In shortest voxel edges: how far from a triangle a vertex forms a pair with it, and up to which depth behind it.
 constexpr double reach_share = 0.5;
 constexpr double deepest_held = 1;
-// After this way a vertex that is behind a triangle, but beyond its rim or not opposite to it, is looked at again.
+// In shortest voxel edges: how far a vertex behind a triangle that it does not touch, because it is beyond the rim or
+// does not face it, moves until the pair is checked again.
 constexpr double patience = 0.02;
 
 // Share of the reach that vertices may move before the search is repeated.
 constexpr double renewal_share = 0.8;
 
-// The thread's part of a number of blocks.
+// The range of blocks that a thread processes.
 std::pair<std::int32_t, std::int32_t> part_of(std::size_t blocks, const NodeShare& share)
 {
   return { static_cast<std::int32_t>(blocks * share.thread / share.threads),
@@ -125,7 +126,7 @@ void TissueContact<Real>::reset()
   const std::size_t count = surface_.vertices.size(), planes = static_cast<std::size_t>(model_.size[2]);
   if (count == 0)
     return;
-  // the pairs of a vertex are in one block, so that each may lose a lane
+  // the pairs of a vertex are in one block, so that a block may leave a lane empty
   const std::size_t blocks = (most_pairs * count) / (touch_width - 1) + 1;
   moved_.assign((6 + Moved::stride + (rubs_ ? 4 : 0)) * stride(), 0);
   live_.assign(vertex_blocks_.size(), 1);
@@ -253,7 +254,7 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
 {
   const auto begin = static_cast<std::uint32_t>(plane_points_[std::max(share.first_plane - 1, 0)]);
   const auto count = static_cast<std::uint32_t>(plane_points_[share.end_plane]) - begin;
-  // all numbers of a record are read first, so that compilers can take them as one
+  // all numbers of a record are read first, so that compilers can load them together
   const auto add = [](Real sign, const Real* from, Real* to)
   {
     const Real record[4] = { to[0] + sign * from[0], to[1] + sign * from[1], to[2] + sign * from[2],
@@ -352,7 +353,7 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   if (idle())
     return;
   double lost = std::accumulate(lost_.begin(), lost_.end(), 0.0), stored = 0;
-  // The sums end at the start of the latest step. The rest is what the next step will add.
+  // The sums end at the start of the latest step. The rest is what the next step would add.
   std::vector<Real> components = moved_;
   std::vector<PairVertices> pair_vertices = pair_vertices_;
   std::vector<PairBlock<Real>> pairs = pairs_;

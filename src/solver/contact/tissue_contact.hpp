@@ -18,14 +18,13 @@ namespace frontalis
 /// side has half of the stiffness, because both are pushed out of the other.
 ///
 /// A vertex forms pairs with at most `most_pairs` triangles that face it and follows the surface from one triangle to
-/// the next. They are found with a grid, in three steps: in the first all triangles are sorted into cells, in the
-/// second each vertex looks at those near it, in the third the pairs are put into blocks. This is renewed when nodes
-/// have moved by so much that a vertex and a triangle that were farther apart than the search reaches could touch.
-/// Between two renewals the pairs of a block that are `d` apart are not looked at before vertices have moved by that
-/// much, and vertices far from all pairs are not placed.
+/// the next. Pairs are found with a grid, in three steps: the first sorts all triangles into cells, the second searches
+/// near each vertex, the third puts the pairs into blocks. The search is repeated when nodes have moved so far that a
+/// vertex and a triangle out of its reach could touch. Until then, a block whose pairs are `d` apart is skipped until
+/// vertices have moved by that much, and vertices far from all pairs are not placed.
 ///
-/// Threads first place the vertices: prepare_step(). Each then finds the forces of its part of the pairs:
-/// before_step(), and adds those on nodes of its planes in the order of the pairs: add_forces().
+/// In prepare_step() the threads place the vertices. In before_step() each finds the forces of its part of the pairs,
+/// and in add_forces() it adds those on nodes of its planes in the order of the pairs.
 template <class Real>
 class TissueContact : public NodePart<Real>
 {
@@ -54,15 +53,15 @@ private:
 
   enum class Stage : std::int32_t
   {
-    sort,     // triangles, in the next step
-    search,   // among them, in the step after that
-    collect,  // the pairs that were found, at the start of the step after that
+    sort,     // sort triangles, in the next step
+    search,   // search among them, in the step after that
+    collect,  // collect the pairs that were found, at the start of the step after that
     hold
   };
   struct Clock
   {
-    double way = 0;       // by which a vertex and a triangle can have come closer to each other [m]
-    double earliest = 0;  // due_ of all blocks
+    double way = 0;       // bound of how much closer a vertex and a triangle can have come to each other [m]
+    double earliest = 0;  // smallest due_ of all blocks
     double renewal = 0;   // way at which the search is repeated
     double dt = 0;        // of the latest step [s]; 0: there was none
     Stage stage = Stage::sort;
@@ -73,13 +72,13 @@ private:
     std::array<std::int32_t, most_pairs> triangle{ { -1, -1 } };  // -1: none
     std::array<double, most_pairs> away{};                        // [m]
   };
-  // A pair and what friction knows of it.
+  // A pair and its state of friction.
   struct Pair
   {
     std::int32_t vertex, triangle;
     Real held, pressed, along, stretch[3];
   };
-  // What finding the forces of pairs needs and changes.
+  // Arrays that finding the forces of pairs reads and changes.
   struct Arena
   {
     std::vector<PairVertices>& pair_vertices;
@@ -128,16 +127,16 @@ private:
   double reach_;                  // how far from a triangle a vertex finds it [m]
   std::vector<float> stiffness_;  // of each vertex [N/m]
   std::vector<float> per_area_;   // the same over its area [N/m3]
-  std::vector<float> overlap_;    // of each vertex at rest, from which its depth counts; not positive [m]
+  std::vector<float> overlap_;    // of each vertex: gap at rest, where its depth is 0; not positive [m]
   std::vector<VertexBlock<Real>> vertex_blocks_;
   std::vector<std::int32_t> bound_nodes_;   // ascending
-  std::vector<std::int32_t> plane_points_;  // first vertex in each plane of voxels, twice more their number
+  std::vector<std::int32_t> plane_points_;  // first vertex in each plane of voxels; last two entries: their number
   BoundNodeWay nodes_;
   // of the step under way
   std::vector<PairForceBlock<Real>> forces_;
   std::vector<std::uint32_t> touches_;             // PairArguments::touches
   std::vector<std::vector<Real>> sums_;            // of forces and turns of vertices, one list per thread
-  std::vector<std::vector<std::uint8_t>> summed_;  // whether a block of vertices has some, one list per thread
+  std::vector<std::vector<std::uint8_t>> summed_;  // whether a block of vertices has forces, one list per thread
   std::vector<Real> node_forces_;                  // on bound nodes, four numbers each [N]
   Clock next_;
 
@@ -146,12 +145,12 @@ private:
   std::vector<std::uint8_t> live_;  // whether a block of vertices is near one that it may touch
   std::vector<PairVertices> pair_vertices_;
   std::vector<PairBlock<Real>> pairs_;
-  std::vector<double> due_;  // Clock::way at which a block of pairs is looked at again
+  std::vector<double> due_;  // Clock::way at which a block of pairs is evaluated again
   std::vector<Found> found_;
   std::vector<Clock> clock_;      // one entry
   std::vector<double> node_way_;  // longest way of a bound node in the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // to friction, one per plane of voxels [J]
-  std::vector<double> opened_;    // what that came to when the account was opened; one entry
+  std::vector<double> opened_;    // sum of lost_ when the account was opened; one entry
   TriangleGrid grid_;
 };
 

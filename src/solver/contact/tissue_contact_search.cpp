@@ -12,24 +12,24 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// How deep behind a triangle a vertex is found, in shortest voxel edges: deeper than in one motion between two
-// searches.
+// Depth behind a triangle up to which the search finds a vertex, in shortest voxel edges: more than a vertex moves
+// between two searches.
 constexpr double deepest_found = 0.5;
 
-// In barycentric coordinates, more than the error of a foot, so that none falls between two triangles.
+// Tolerance in barycentric coordinates, above the error of a foot, so that no foot falls between two triangles.
 constexpr double foot_error = 0.02;
 
 // If the cosine between the normals of a vertex and of a triangle's corner is greater than this, the two surely do not
 // face each other.
 constexpr double same_way = 0.5;
 
-// Way of a vertex over the surface between two steps, in triangles.
+// Most triangles that a vertex crosses in a step.
 constexpr int most_hops = 16;
 
-// Triangles around one of a pair, whose corners are placed in each step.
+// Rings of triangles around that of a pair whose corners are placed in each step.
 constexpr int rings = 3;
 
-// Motion between the sorting of triangles and the search, over the reach.
+// Factor on the reach that allows for motion between the sorting of triangles and the search.
 constexpr double margin = 1.1;
 
 template <class Real>
@@ -66,7 +66,7 @@ physics::SurfaceTriangle<double> TissueContact<Real>::triangle(std::int32_t t, c
   return out;
 }
 
-// The surface's triangle under x, from one near it. Triangles whose corners are not placed are not entered.
+// Moves t to the surface's triangle under x, from one near it. Does not enter triangles whose corners are not placed.
 template <class Real>
 typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, const Vector& x,
                                                                const Moved& moved) const
@@ -95,7 +95,7 @@ typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, 
   return foot;
 }
 
-// Called by the kernel. Pairs of a vertex are neighbours in a block; where both come to the same triangle, the second
+// Called by the kernel. The pairs of a vertex are neighbours in a block; if both reach the same triangle, the second
 // ends.
 template <class Real>
 void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
@@ -301,7 +301,7 @@ void TissueContact<Real>::mark_live()
       }
 }
 
-// Surfaces that meet at rest, such as closed lips, may overlap by as much as their triangles err.
+// Surfaces that meet at rest, such as closed lips, may overlap by the error of their triangulation.
 template <class Real>
 void TissueContact<Real>::find_overlap_at_rest()
 {

@@ -15,8 +15,8 @@ namespace
 
 using Vector = TouchingSurface::Vector;
 
-// Lengths in voxel edges: parts of a surface that are nearer to each other along it never touch; points at most this
-// far behind a triangle at rest may touch it, those that are deeper and within the reach of a sheet are its other side.
+// Lengths in voxel edges. Parts of a surface within joined_within along it never touch. Points at most overlap_at_rest
+// behind a triangle at rest may touch it; those deeper, up to thickest_sheet, are the other side of its sheet.
 constexpr double joined_within = 2;
 constexpr double overlap_at_rest = 0.25;
 constexpr double thickest_sheet = 3;
@@ -24,12 +24,12 @@ constexpr double thickest_sheet = 3;
 // Cosine of the angle from a triangle's inward normal within which the other side of its sheet lies.
 constexpr double across_sheet = 0.5;
 
-// Cosine of the angle between two triangles from which on their edge is a crease: there the surface has two normals.
+// If the cosine of the angle between two triangles is below this, their edge is a crease, with two normals.
 constexpr double crease = 0.5;
 
 struct Facet
 {
-  Vector area;    // normal as long as the triangle is large [m2]
+  Vector area;    // normal, its length the triangle's area [m2]
   Vector normal;  // unit vector
 };
 
@@ -151,7 +151,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
   join(mesh, first_source, joined_within * *std::max_element(model_.spacing.begin(), model_.spacing.end()));
 }
 
-// The shortest ways along edges from each vertex, as far as `within` [m].
+// The shortest paths along edges from each vertex, up to `within` [m].
 void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, double within)
 {
   std::vector<std::vector<std::int32_t>> around(mesh.vertices.size());

@@ -20,7 +20,7 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source_in_contact;    // the vertex of the contact's surface that it is
+    std::int32_t source_in_contact;    // its vertex of the contact's surface
     std::int32_t source;               // the same, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
     float area_share;                  // of its source's area
@@ -36,7 +36,7 @@ public:
   };
   explicit TouchingSurface(const Model& model);
 
-  /// Whether a vertex and a triangle never touch: they are joined along the surface by less than `joined_within`, or
+  /// Whether a vertex and a triangle never touch: their distance along the surface is below `joined_within`, or they
   /// are two sides of one sheet of tissue.
   bool inseparable(std::size_t v, std::int32_t t) const;
 

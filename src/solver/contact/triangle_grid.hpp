@@ -22,7 +22,7 @@ public:
   /// Sorts points into cells of edge `reach` [m].
   void build(double reach, const std::vector<Vector>& points);
   double reach() const { return edge_[0]; }
-  /// Calls visit(index) for all points within the reach of p, and others; some twice.
+  /// Calls visit(index) for all points within the reach of p, and for some farther ones; for some twice.
   template <class Visit>
   void near(const Vector& p, const Visit& visit) const
   {
@@ -40,7 +40,7 @@ public:
 private:
   std::array<std::int64_t, 3> cell(const Vector& p) const
   {
-    // what is not finite is anywhere
+    // coordinates that are not finite are in cell 0
     const auto index = [&](double x)
     { return std::abs(x) < 1e9 * edge_[0] ? static_cast<std::int64_t>(std::floor(x / edge_[0])) : std::int64_t(0); };
     return { { index(p.x), index(p.y), index(p.z) } };
