@@ -9,7 +9,7 @@ namespace frontalis
 /// are copies of the first one.
 constexpr int attach_width = 16;
 
-/// Tangent planes of the levels of nodes: at displacement u the level is gradient . u + level.
+/// Levels of one node per lane, to first order: at displacement u the level is gradient . u + level [m].
 template <class Real>
 struct LevelPlanes
 {
@@ -20,8 +20,8 @@ struct LevelPlanes
   std::int32_t surface[attach_width];  ///< index into Model::constraint_surfaces; -1: none
 };
 
-/// A node per lane that is held and follows the master of the lane, or a copy of another one of its master, of weight
-/// 0.
+/// Held nodes that follow the masters of the lanes, one per lane. A lane without one has a copy of another node, with
+/// weight 0.
 template <class Real>
 struct HeldRow
 {
@@ -30,13 +30,13 @@ struct HeldRow
   Real weight[attach_width];  ///< mass times ratio
 };
 
-/// A node per lane that slides, likewise.
+/// Sliding nodes that follow the masters of the lanes, likewise.
 template <class Real>
 struct LevelRow
 {
   std::int32_t node[attach_width];
   Real ratio[attach_width], weight[attach_width];
-  Real offset[attach_width];  ///< of the levels from their ratio at rest [m]
+  Real offset[attach_width];  ///< level_offset() [m]
   LevelPlanes<Real> planes;
   Real u[3][attach_width], v[3][attach_width];  ///< before the constraints
 };
@@ -48,11 +48,11 @@ struct MasterBlock
   std::int32_t held_begin, held_end;    ///< range of AttachArguments::held
   std::int32_t level_begin, level_end;  ///< range of AttachArguments::levels
   Real held_mass[attach_width];         ///< sum of mass times squared ratio of the nodes that are held [kg]
-  Real mass[attach_width];              ///< the same and the master's own [kg]
+  Real mass[attach_width];              ///< held_mass plus the master's own [kg]
   LevelPlanes<Real> planes;
 };
 
-/// Plain pointers, as for CpuKernel.
+/// Plain pointers, for the reason given at CpuKernelArguments.
 template <class Real>
 struct AttachArguments
 {
@@ -63,7 +63,7 @@ struct AttachArguments
   Real* v[3];
   Real dt;
   Real error_left;  ///< physics/sliding.hpp
-  /// Finds the plane of a lane anew at displacement u.
+  /// Finds a new plane for a lane at displacement u.
   void (*renew)(void* context, LevelPlanes<Real>& planes, int lane, std::int32_t node, const Real u[3]);
   void* context;
 };

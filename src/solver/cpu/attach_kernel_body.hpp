@@ -98,7 +98,7 @@ struct AttachKernelBody
     along(row.planes, row.u, level);
     for (int l = 0; l < width; ++l)
     {
-      // an error is removed as that of other sliding nodes is (physics/sliding.hpp)
+      // an error is removed as for other sliding nodes (physics/sliding.hpp)
       const Real change = row.ratio[l] * master_speed[l] - speed[l];
       const Real apart =
           level[l] + row.planes.level[l] + g.dt * change - row.ratio[l] * master_level[l] - row.offset[l];

@@ -306,7 +306,7 @@ struct CpuElement
       }
     }
   }
-  // not inlined, so that the code of whole voxels stays as it is
+  // not inlined, so that the code for whole voxels does not change
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_cut_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                        const std::int32_t* base)

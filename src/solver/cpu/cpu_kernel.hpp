@@ -20,7 +20,7 @@ struct FibreMemory
 template <class Real>
 struct CpuKernelArguments : physics::Kick<Real>
 {
-  const Real* u[3];           ///< displacements [m]; readable Tile::width numbers past the end
+  const Real* u[3];           ///< displacements [m]; Tile::width numbers beyond the end can be read
   Real* next[3];              ///< displacements after the step [m]
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< rounding errors of the displacements [m]; null without compensated precision

@@ -40,7 +40,7 @@ struct CpuKernelBody
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // one maximum per lane, so that the loop is vectorised; `odd` becomes NaN if a stiffness is
+    // one maximum per lane, so that the loop is vectorised; `odd` becomes NaN if a stiffness is NaN
     Real most[lanes] = {}, odd[lanes] = {};
     const auto take = [&](std::int32_t n, int lane)
     {
@@ -106,7 +106,7 @@ struct CpuKernelBody
     const std::int32_t used = (with_bound ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
-    // Voxel plane k lies between node planes k and k + 1. The plane below the first serves only its upper nodes.
+    // Voxel plane k lies between node planes k and k + 1. The lowest one serves only its upper nodes.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
       clear(above, used);

@@ -23,7 +23,7 @@ struct OneLane
 
   static FRONTALIS_LAW std::uint32_t positive(Number x) { return x > 0 ? 1 : 0; }
 
-  // as RecordLanes
+  // See RecordLanes::gather_two().
   static FRONTALIS_LAW void gather_two(const Number* p, const std::int32_t* index, Number& first, Number& second)
   {
     first = p[*index];

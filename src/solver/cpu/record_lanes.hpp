@@ -21,7 +21,7 @@ struct RecordLanes
   static FRONTALIS_LAW void store(const Batch& x, float* p) { x.store_unaligned(p); }
   static FRONTALIS_LAW bool any_positive(const Batch& x) { return xsimd::any(x > Batch(0.0f)); }
 
-  /// A bit for each lane.
+  /// One bit per lane.
   static FRONTALIS_LAW std::uint32_t positive(const Batch& x)
   {
     alignas(64) float lane[count];
@@ -53,7 +53,7 @@ struct RecordLanes
 #endif
   }
 
-  /// Gathers the vectors of records at numbers stride * index.
+  /// Gathers the vectors of the records that begin at p[stride * index].
   static FRONTALIS_LAW Vector gather_records(const float* p, std::ptrdiff_t stride, const std::int32_t* index)
   {
 #if defined(__SSE2__)
@@ -112,7 +112,7 @@ private:
     return _mm_loadh_pi(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(first))),
                         reinterpret_cast<const __m64*>(second));
   }
-  // Sets each 128 bits to make(number of its first lane).
+  // Sets each 128-bit part of a register to make(index of its first lane).
   template <class Register, class Make>
   static FRONTALIS_LAW void each_quarter(Register& to, const Make& make)
   {
@@ -131,7 +131,7 @@ private:
     }
 #endif
   }
-  // _mm_shuffle_ps in each 128 bits.
+  // _mm_shuffle_ps in each 128-bit part.
   template <int mask>
   static FRONTALIS_LAW Batch shuffled(const Batch& a, const Batch& b)
   {

@@ -17,7 +17,7 @@ struct SlidingBlock
   Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: no plane yet
 };
 
-/// Moves the sliding nodes of blocks [first, last) back onto their planes. Plain pointers, as for CpuKernel.
+/// Moves the sliding nodes of blocks [first, last) back onto their planes. Plain pointers: see CpuKernelArguments.
 template <class Real>
 struct SlideArguments
 {

@@ -30,7 +30,8 @@ struct MovedVertices
 
   Real* record;  ///< displacement [m] and normal
   Real* change;  ///< of the displacement in the latest step, if there is friction [m]; else null
-  /// To the tangents: the normal turns by minus their sum, each times normal . tangent's change. [block][6][lane]
+  /// Dual vectors of the tangents: the normal changes by minus the sum of dual times (normal . change of the tangent).
+  /// [block][6][lane]
   Real* dual;
 };
 
@@ -54,8 +55,9 @@ struct PairBlock
   Real pressed[touch_width], along[touch_width], stretch[3][touch_width];
 };
 
-/// Forces of pairs on the triangle's corners [N], and what belongs to the corners' normals [N m]. That on the point is
-/// the opposite of the first three. The record of lane l begins at number record[l] of its list (TouchKernels).
+/// Forces of pairs on the triangle's corners [N] and on the corners' normals (physics::corner_turn) [N m]. The force on
+/// the point is minus the sum of the former. The record of lane l begins at number record[l] of its list
+/// (TouchKernels).
 template <class Real>
 struct PairForceBlock
 {
@@ -63,7 +65,7 @@ struct PairForceBlock
   Real stored[touch_width], lost[touch_width];  // [J]
 };
 
-/// Plain pointers, as for CpuKernel.
+/// Plain pointers, for the reason given at CpuKernelArguments.
 template <class Real>
 struct PairArguments
 {
@@ -73,10 +75,11 @@ struct PairArguments
   double* due;             ///< of each block: way at which its pairs are looked at again [m]
   std::uint32_t* touches;  ///< bits of the lanes that touch, and bit touch_width if friction has lost energy
   MovedVertices<Real> vertices;
-  double way;  ///< by which a vertex and a triangle can have come closer to each other [m]
+  double way;  ///< bound of how much closer a vertex and a triangle can have come to each other [m]
   Real response;
   Real deepest;   ///< depth to which points are held [m]
-  Real patience;  ///< way after which a point that is behind a triangle but does not touch it is looked at again [m]
+  Real patience;  ///< motion after which a pair with a point behind its triangle that does not touch it is checked
+                  ///< again [m]
   bool rubs;      ///< whether there is friction
   /// Lets a pair whose foot lies beyond its triangle's edge go on to the triangle there.
   void (*go_on)(void* context, std::int32_t block, int lane);
@@ -89,10 +92,10 @@ struct TouchKernels
   /// Places vertices of blocks [first, last) at the displacements u of nodes.
   void (*place)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices,
                 const std::array<const Real*, 3>& u, std::int32_t first, std::int32_t last);
-  /// Finds the forces of pairs in blocks [first, last) that are due.
+  /// Finds the forces of the pairs in those of the blocks [first, last) for which `due` is reached.
   void (*touch)(const PairArguments<Real>& arguments, std::int32_t first, std::int32_t last);
   /// Adds forces of vertices of a block to those of bound nodes in planes [first_plane, end_plane), which are records.
-  /// `sums`: of each vertex, force and what belongs to its normal; they are set to 0.
+  /// `sums`: force on each vertex and on its normal; set to 0 afterwards.
   void (*spread)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices, Real* sums, Real* node_forces,
                  std::int32_t block, std::int32_t first_plane, std::int32_t end_plane);
   std::array<std::int32_t, touch_width> record;

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// The kernels, for lanes of a kind that loads, gathers and stores them. The kind is part of every type, so that
-/// instruction sets share no template instantiation.
+/// The kernels. `Lanes` loads, gathers and stores batches; it is part of every type, so that instruction sets share no
+/// template instantiation.
 template <class Lanes>
 struct TouchKernelBody
 {
@@ -31,14 +31,14 @@ struct TouchKernelBody
     Lanes::store(v.z, p[2] + lane);
   }
 
-  // Components of the dual of tangent t of vertices from `at` on.
+  // Components of the dual vector of tangent t of vertices from `at` on.
   static FRONTALIS_LAW std::array<Real*, 3> dual(const Moved& vertices, std::ptrdiff_t at, int t)
   {
     Real* const first = vertices.dual + (6 * (at / touch_width) + 3 * t) * touch_width + at % touch_width;
     return { first, first + touch_width, first + 2 * touch_width };
   }
 
-  // Vectors of records that follow each other.
+  // Loads vectors from consecutive records.
   static FRONTALIS_LAW Vector consecutive(const Real* p, std::ptrdiff_t stride)
   {
     std::int32_t index[Lanes::count];
@@ -145,7 +145,8 @@ struct TouchKernelBody
     return out;
   }
 
-  // Lets pairs go on whose foot is farther beyond an edge than rounding errors. Returns whether one did.
+  // Moves pairs to the next triangle if their foot is beyond an edge by more than `edge_error`. Returns whether one
+  // moved.
   static bool go_on(const PairArguments<Real>& g, std::int32_t block, int lane, const Batch (&weight)[3])
   {
     PairBlock<Real>& b = g.pairs[block];
@@ -170,9 +171,9 @@ struct TouchKernelBody
   // The result of a batch of pairs.
   struct Result
   {
-    Batch wait;             // the way after which they are to be looked at again [m]
-    std::uint32_t touches;  // bits of the lanes that do
-    bool loses;             // energy to friction
+    Batch wait;             // motion after which the pairs must be checked again [m]
+    std::uint32_t touches;  // bits of the lanes that touch
+    bool loses;             // whether friction dissipates energy
   };
 
   template <bool rubs>
@@ -322,8 +323,8 @@ struct TouchKernelBody
   }
 
 private:
-  // In barycentric coordinates; more than the rounding errors of a foot, so that points on an edge do not go to and
-  // fro.
+  // Tolerance in barycentric coordinates, above the rounding errors of a foot, so that points on an edge do not go to
+  // and fro.
   static constexpr double edge_error = 3e-5;
 };
 

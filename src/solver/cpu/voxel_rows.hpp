@@ -59,7 +59,7 @@ struct FibreSlot
 struct LawSlot
 {
   Law law;
-  std::int32_t material;                                    ///< as in LawPart
+  std::int32_t material;                                    ///< LawPart::material
   float weight[Tile::width];                                ///< fraction times tissue volume [m3]
   float per_tangent[Tile::width];                           ///< LawPart::per_tangent [m]
   float at_rest[Tile::width];                               ///< tangent stiffness at rest [Pa]
