@@ -35,8 +35,8 @@ public:
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
   /// Adds the step's work in planes [first, last). damping [1/s], dt [s]; kick: time over which forces changed
   /// velocities [s]; u_before, u: displacements before and after the step [m]. If constraints moved a node by d in
-  /// addition to dt v, the other forces worked along d too, with the mean of this step's and the next, and the
-  /// constraints absorbed that work.
+  /// addition to dt v, the mean of the other forces in this step and the next did work along d too, which the
+  /// constraints absorbed.
   void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
              const Real* const v[3], double damping, double dt, double kick);
   /// Adds the friction work in plane k. `restricted`: a RestrictedNodes<Real>.

@@ -116,7 +116,8 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
 }
 
 // The account ends at the time of the velocities, half a step before the displacements. The work of that half step is
-// that of the present forces. Nodes that do not follow the forces keep their velocity, at the expense of constraints.
+// that of the present forces. Nodes that do not follow the forces keep their velocity: constraints do the opposite
+// work.
 void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
 {
   NodalVectors u, v, internal;

@@ -8,9 +8,9 @@
 namespace frontalis
 {
 
-/// The arrays of a solver that are not empty, with the effect that each of them serves, and whether it is state of the
-/// motion; all other values are constant or computed anew in each step. Solver::allocations() and snapshots both use
-/// this list. Arrays that every model has, whatever its effects, are attributed to elasticity.
+/// The arrays of a solver that are not empty, each with the effect that it serves and whether it is state of the
+/// motion; all other values are constant or computed in each step. Solver::allocations() and snapshots both use this
+/// list. Arrays that every model has, whatever its effects, are attributed to elasticity.
 class ArrayList
 {
 public:
@@ -78,7 +78,7 @@ public:
   /// Follows a change of the running effects. An effect that is switched off is set to its state at rest, so that it
   /// starts without a history when it is switched on again.
   virtual void run(EffectSet running) = 0;
-  /// Sets its state to that at rest.
+  /// Sets the effect's state to that at rest.
   virtual void reset() = 0;
 
 protected:

@@ -8,7 +8,7 @@ namespace frontalis
 namespace
 {
 
-// A power iteration approaches its eigenvalue from below, and the model may stiffen until the next search.
+// Margins are needed: power iteration finds too low an eigenvalue, and the model may stiffen until the next search.
 constexpr double margin = 1.05;               // factor on the squared frequency
 constexpr double margin_after_change = 1.25;  // the same in the first search, and after recent changes of activation
 constexpr std::int64_t longest_valid = 2000;  // steps; a search costs about 1 % of 2000 steps

@@ -179,7 +179,7 @@ void AttachedBlocks<Real>::constrain(const NodeShare& share, Real* const u[3], R
           first_block(share.thread, share.threads), first_block(share.thread + 1, share.threads));
 }
 
-// Where the field ends or has no direction, the old plane stays.
+// Where the field ends or its gradient is too short, the old plane stays.
 template <class Real>
 void AttachedBlocks<Real>::renew(void* self, Planes& planes, int lane, std::int32_t node, const Real u[3])
 {

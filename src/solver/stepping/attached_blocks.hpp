@@ -13,22 +13,22 @@ namespace frontalis
 /// Position of a node at rest.
 physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
 
-/// Level of an attached node at rest less its ratio times its master's [m]; 0 where the field ends.
+/// Level of an attached node at rest minus `ratio` times its master's [m]; 0 where the field ends.
 double level_offset(const Model& model, const AttachedNode& node);
 
-/// Groups of attached nodes that are held by what is still, or slide on one surface that is still. Sixteen masters form
-/// a block; the nodes that follow them are in rows of sixteen. No node is in two groups, so that any thread may process
-/// any block.
+/// Groups of a master and attached nodes that are held by what does not move, or slide on one surface that does not
+/// move. Sixteen masters form a block; the nodes that follow them are in rows of sixteen. No node is in two groups, so
+/// that any thread may process any block.
 template <class Real>
 class AttachedBlocks
 {
 public:
   AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
 
-  /// Adds a master without a prescribed path and its nodes, if they are of this kind; in ascending order of masters.
-  /// Returns whether they are.
+  /// Adds a master without a prescribed path and its nodes, if they form such a group, in ascending order of masters.
+  /// Returns whether they do.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
-  /// Forms the blocks.
+  /// Forms the blocks, after the last add_group().
   void finish();
 
   bool empty() const { return masters_.empty(); }
@@ -57,7 +57,7 @@ private:
   std::vector<MasterBlock<Real>> masters_;
   std::vector<HeldRow<Real>> held_;
   std::vector<LevelRow<Real>> levels_;
-  std::vector<std::size_t> rows_before_{ 0 };  // rows of the blocks before each block, and of all
+  std::vector<std::size_t> rows_before_{ 0 };  // rows before each block; the last entry is the number of all rows
 };
 
 }  // namespace frontalis

@@ -67,7 +67,7 @@ struct Balance
     mass[axis][axis] = 1;
     momentum[axis] = velocity;
   }
-  /// By elimination; the matrix is symmetric and positive definite.
+  /// Solves by elimination; the matrix is symmetric and positive definite.
   Point velocity()
   {
     for (int p = 0; p < 3; ++p)
@@ -94,7 +94,7 @@ struct Balance
 template <class Real>
 struct AttachedNodes<Real>::Bones
 {
-  std::vector<physics::Pose> now, before;  // the last one is that of what stays
+  std::vector<physics::Pose> now, before;  // one per bone; the last one stands still
   double dt;
 
   explicit Bones(const ConstraintStep& step) : dt(step.dt)
@@ -151,7 +151,7 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
   const auto position = [&] { return static_cast<std::int32_t>(ties_.size()); };
   Group group{ master, position(), 0, { fixed[0], fixed[1], fixed[2] } };
   const auto master_planes = static_cast<std::int32_t>(planes_.size());
-  std::vector<std::int32_t> surfaces;  // of those planes
+  std::vector<std::int32_t> surfaces;  // the surface of each of the master's planes
   for (const AttachedNode* node = begin; node != end; ++node)
     if (node->surface >= 0 && std::find(surfaces.begin(), surfaces.end(), node->surface) == surfaces.end())
     {
@@ -209,7 +209,7 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
     follow_on_bones(*group, u, v, bones);
 }
 
-// Finds the plane anew where the old one no longer holds. Where the field ends or has no direction, it stays.
+// Finds a new plane where the old one is no longer valid. Where the field ends or has no direction, the old one stays.
 template <class Real>
 void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point& place) const
 {
@@ -257,7 +257,7 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     const Point v_s = point_of(v, tie.node);
     if (tie.surface < 0)
     {
-      // r times its velocity apart from the bone's is the master's
+      // its velocity relative to the bone's is r times the master's
       const Point apart = v_s - bones.velocity(tie.bone, tie.rest);
       balance.add(r * r * tie.mass, bones.velocity(tie.bone, rest));
       balance.add_momentum(r * tie.mass, apart);
@@ -296,7 +296,7 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     const double speed =
         r * dot(at_m.gradient, now - at_m.surface_velocity) - dot(s.gradient, v_s - s.surface_velocity);
     const double apart = s.level + bones.dt * speed - r * (at_m.level + dot(at_m.gradient, shift)) - tie.offset;
-    // an error is removed as that of other sliding nodes is (physics/sliding.hpp)
+    // an error is removed as for other sliding nodes (physics/sliding.hpp)
     const double left = std::clamp(0.5 * apart, -physics::error_left, physics::error_left);
     put(v_s + (speed / steepness) * s.gradient, v, tie.node);
     put(u_s + ((bones.dt * speed - (apart - left)) / steepness) * s.gradient, u, tie.node);

@@ -51,7 +51,7 @@ private:
     std::int32_t plane, master_plane;  // in planes_; -1: held
     double ratio, mass;
     Point rest;
-    double offset;  // of the levels from their ratio at rest [m]
+    double offset;  // level_offset() [m]
   };
   // the level of a node, to first order about a place in the frame of the surface
   struct Plane
@@ -71,7 +71,7 @@ private:
   const std::vector<double>& mass_;
   std::vector<physics::DistanceField> fields_;  // of the model's surfaces
   AttachedBlocks<Real> blocks_;
-  std::vector<Group> groups_;  // the others, ascending by master
+  std::vector<Group> groups_;  // groups that are not in blocks_, ascending by master
   std::vector<Tie> ties_;
   std::vector<Plane> planes_;
 };

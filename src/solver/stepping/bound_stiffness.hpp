@@ -7,10 +7,10 @@
 namespace frontalis
 {
 
-/// Stiffness of points that are bound to voxels, for the bound of the highest frequency (physics/time_step.hpp). The
-/// stiffness of a point on the nodes of its voxel is k w w^T, w its weights. The rows of these matrices, added over all
-/// points, bound the eigenvalues of their sum divided by the masses (Gershgorin). Adds factor times the rows to `rows`,
-/// one per node. `stiffness`: k of each point [N/m].
+/// Stiffness of points that are bound to voxels, for the bound of the highest frequency (physics/time_step.hpp). A
+/// point with the weights w has the stiffness k w w^T on the nodes of its voxel. By Gershgorin, the rows of these
+/// matrices, added over all points and divided by the masses, bound the eigenvalues of their sum. Adds factor times the
+/// rows to `rows`, one per node. `stiffness`: k of each point [N/m].
 void add_stiffness_rows(const Model& model, const Binding& points, const std::vector<float>& stiffness, double factor,
                         std::vector<double>& rows);
 

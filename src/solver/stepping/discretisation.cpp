@@ -52,7 +52,7 @@ physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, co
   return parameters;
 }
 
-// Adds a material to the voxel's part with its law.
+// Adds a material to the voxel's part that has its law.
 void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
@@ -166,11 +166,11 @@ Discretisation::Discretisation(const Model& model)
       }
   added = added_stiffness(model, *this);
   VoxelProperties v;
-  const EffectSet running = std::exchange(running_, EffectSet());  // the share of hourglass control without fibres
+  const EffectSet running = std::exchange(running_, EffectSet());  // stiffness without fibres
   for (std::size_t e = 0; e < model.tissue_centre.size(); ++e)
   {
     mix(e, v);
-    // of assumed strain at most twice that of scalar control, which is eight times the stiffness on each mode
+    // largest eigenvalue: scalar control has eight times its stiffness; assumed strain has at most twice that
     const double hourglass = assumed_strain ? 16 * v.hourglass / physics::assumed_strain_floor : 8 * v.hourglass;
     corner_stiffness.push_back(physics::corner_stiffness(v.centre, hourglass / v.stiffness));
   }
@@ -216,10 +216,10 @@ Discretisation::Discretisation(const Model& model)
   bound_at_rest();
 }
 
-// A node that slides into a voxel of which little is tissue, such as a sliver of tendon below a bone's surface, may
-// have a higher frequency than all nodes that are not attached. It gets inertia against that, at most a fifth of the
-// mass of a whole voxel. A node that is held follows its master, so that only the sums of stiffness and mass over the
-// group count; the masses for the bound are in proportion to stiffness within the group.
+// A node that slides into a voxel with little tissue, such as a sliver of tendon below a bone's surface, may have a
+// higher frequency than all nodes that are not attached. It gets extra inertia, at most a fifth of the mass of a whole
+// voxel. A held node follows its master, so that only the sums of stiffness and mass over the group count; the masses
+// for the bound are in proportion to stiffness within the group.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);

@@ -51,7 +51,7 @@ double shear_at_rest(const Material& material);
 class Discretisation
 {
 public:
-  /// The model must outlive it. Throws Error if a voxel has no stiffness or no mass.
+  /// The model must outlive this object. Throws Error if a voxel has no stiffness or no mass.
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;

@@ -10,9 +10,9 @@ namespace
 {
 
 constexpr double clear_change = 1e-4;  // relative change of displacements that exceeds rounding errors
-constexpr double slow_share = 0.05;    // of the highest speed so far; below it rounding errors mask the frequency
-constexpr double getting_going = 4;    // phase [rad] of the slowest motion before which the residual is not trusted
-constexpr int enough_windows = 4;      // number of consecutive windows within the tolerance
+constexpr double slow_share = 0.05;  // of the highest speed so far; at lower speeds rounding errors mask the frequency
+constexpr double getting_going = 4;  // phase [rad] of the slowest motion before which the residual is not trusted
+constexpr int enough_windows = 4;    // number of consecutive windows within the tolerance
 
 }  // namespace
 

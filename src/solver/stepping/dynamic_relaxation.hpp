@@ -21,7 +21,7 @@ public:
     int longest_window;  ///< in calls of observe()
   };
 
-  /// Starts at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive it.
+  /// Starts at a time [s], with displacements u and internal forces f. `mass` [kg] per node must outlive this object.
   DynamicRelaxation(const Settings& settings, const std::vector<double>& mass, double time, NodalVectors u,
                     NodalVectors f);
 

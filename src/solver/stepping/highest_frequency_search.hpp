@@ -35,10 +35,10 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 
-/// Squared highest frequency [1/s2] of the assembled model at displacements u: power iteration on M^-1/2 K M^-1/2 from
-/// `mode`, the result of the latest search; empty at first. Products with K are differences of internal forces, so that
-/// they include every law and fibre. Held nodes stay, and attached ones that are held follow their masters; other
-/// constraints could only lower the frequency and are omitted.
+/// Squared highest frequency [1/s2] of the assembled model at displacements u, by power iteration on M^-1/2 K M^-1/2.
+/// `mode`: start of the iteration, empty at first; receives the mode found. Products with K are differences of internal
+/// forces, so that they include every law and fibre. Held nodes do not move, and attached nodes that are held follow
+/// their masters; other constraints could only lower the frequency and are omitted.
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
                                  int most_iterations, NodalVectors& mode);

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Nodes with selectively scaled mass, whose weight would be too large.
+/// Nodes with selectively scaled mass, whose weight would otherwise be too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// Force that corrects gravity on such a node [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);

@@ -52,8 +52,8 @@ private:
   Real* v_[3] = {};
 };
 
-/// The part of a host backend that serves an effect on nodes. In each step, each thread calls its functions in the
-/// order of this list, for its own nodes. By default they do nothing. Real is the backend's number type.
+/// The part of a host backend that serves an effect on nodes. In each step, each thread calls these functions in the
+/// order of their declaration, for its own nodes. By default they do nothing. Real is the backend's number type.
 template <class Real>
 class NodePart : public EffectPart
 {
@@ -64,7 +64,7 @@ public:
   virtual bool prepares() const { return false; }
   /// Whether add_forces() adds any. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// Both are called with the displacements at the start of the step.
+  /// prepare_step() and before_step() are called with the displacements at the start of the step.
   virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
@@ -75,8 +75,8 @@ public:
   }
   /// Whether constrain_groups() is needed. If so, threads wait for each other before and after it.
   virtual bool groups() const { return false; }
-  /// Overwrites displacements and velocities of groups of nodes, which may belong to several threads: each group is
-  /// that of one thread.
+  /// Overwrites displacements and velocities of groups of nodes, which may belong to several threads. One thread
+  /// processes each group.
   virtual void constrain_groups(const NodeShare& /*share*/, Real* const /*u*/[3], Real* const /*v*/[3],
                                 const ConstraintStep& /*step*/)
   {
@@ -85,21 +85,21 @@ public:
   virtual void after_step(const NodeShare& /*share*/, const Real* const /*before*/[3], const Real* const /*after*/[3])
   {
   }
-  /// Adds its work in the step. `kick`: time over which forces changed velocities [s].
+  /// Adds the effect's work in the step. `kick`: time over which forces changed velocities [s].
   virtual void account(const NodeShare& /*share*/, EnergyAccount<Real>& /*account*/, const Real* const /*v*/[3],
                        double /*kick*/)
   {
   }
 
-  /// Adds its present energies to terms of the ledger, and its present forces [N] to `forces` if that is not empty.
-  /// `open`: works and losses count from now on. `bones`: present poses.
+  /// Adds the effect's present energies to terms of the ledger, and its present forces [N] to `forces` if that is not
+  /// empty. `open`: works and losses count from now on. `bones`: present poses.
   virtual void add_energies(const Real* const /*u*/[3], const std::vector<RigidTransform>& /*bones*/, bool /*open*/,
                             std::vector<std::array<double, 3>>& /*forces*/, EnergyLedger& /*ledger*/)
   {
   }
   /// Reactions of the latest step, one per entry of touched_bodies(model) that belongs to this effect.
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Present poses of these bodies, from those of the bones.
+  /// Present poses of the bodies of reactions(), from those of the bones.
   virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
   /// Monitor::lost_points.
   virtual std::int64_t lost_points() const { return 0; }

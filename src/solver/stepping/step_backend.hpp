@@ -33,7 +33,7 @@ struct BackendState
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
-  /// A plan lasts this long [s] if the number of its steps stays within the two bounds.
+  /// A plan lasts this long [s] if its number of steps stays within the next two values.
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
@@ -47,7 +47,7 @@ struct BackendInput
   const Model& model;
   const Discretisation& discretisation;
   const Conditions& conditions;
-  const SolverSettings& settings;  ///< the other three outlive the backend, this one does not
+  const SolverSettings& settings;  ///< the only member that need not outlive the backend
 };
 
 /// Makes time steps, with nodes and voxels in its own memory; TimeStepper makes a Solver of it. Initially at rest.
@@ -72,7 +72,7 @@ public:
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
-  /// Internal forces [N] at these displacements; null: at the present ones.
+  /// Internal forces [N] at `displacements`; null: at the present ones.
   virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
   /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed, if the backend
   /// can search for it faster than internal_forces() allows.
@@ -85,7 +85,7 @@ public:
   virtual std::vector<Reaction> reactions() const { return {}; }
   /// Monitor::lost_points.
   virtual std::int64_t lost_points() const { return 0; }
-  /// Present poses of the same bodies. One that is pushed has a pose of its own.
+  /// Present poses of the bodies of reactions(). The pose of a pushed body differs from its bone's.
   virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual void skin(SkinState& out) = 0;
 

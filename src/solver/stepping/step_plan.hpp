@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Inputs of steps other than a plan's. The time stepper changes them between two plans; backends read them.
+/// Inputs of steps that are not part of a plan. The time stepper changes them between two plans; backends read them.
 struct Conditions
 {
   EffectSet running;
@@ -32,10 +32,10 @@ struct StepPlan
   /// Duration for which forces change velocities in the first step [s]. It differs from dt if the previous step had
   /// another length, because velocities are those half a step before the displacements.
   double first_kick = 0;
-  double time = 0;                        ///< at its begin [s]
+  double time = 0;                        ///< at its start [s]
   bool bound_every_step = false;          ///< true: find the frequency bound in every step; false: in the last one only
   bool bound_awaited = false;             ///< true: run() must return the bound of this plan, not of the previous one
-  double alarming_frequency_squared = 0;  ///< if the previous bound is above it, run() waits for this one [1/s2]
+  double alarming_frequency_squared = 0;  ///< if the previous plan's bound is above it, run() waits for its own [1/s2]
   Controls begin, end;                    ///< activations as fibres feel them
   std::vector<double> relaxation;         ///< one per step: by how much viscous stresses relax after it [s]
 

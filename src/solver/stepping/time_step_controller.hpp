@@ -55,11 +55,11 @@ public:
   /// Records the largest bound found in the latest plan, or in the previous one.
   void observe(double frequency_squared, int steps);
   /// Whether a muscle is switched between these activations. If so, becomes cautious: the muscle's voxels stiffen at
-  /// once, and a little later those that it pulls on.
+  /// once, and the voxels that it pulls on a little later.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
   /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Starts anew after displacements were set from outside; `frequency_squared`: their bound at nodes [1/s2].
+  /// Resets the controller after displacements were set from outside; `frequency_squared`: their bound at nodes [1/s2].
   void displacements_set(double frequency_squared);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }

@@ -76,7 +76,7 @@ private:
   void renew_assembled_estimate(const std::vector<float>& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
-  /// Starts time step and ledger anew.
+  /// Resets the choice of the time step and opens the ledger again.
   void displacements_were_set();
   void open_ledger();
   double ledger_step() const;
