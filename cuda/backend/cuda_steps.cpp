@@ -271,7 +271,7 @@ void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& led
   device_.touching()->add_energies(u, conditions_.bone, open, forces, ledger);
 }
 
-// With a ledger the host has followed every step.
+// With a ledger the host has already followed every step (DevicePart::follow).
 std::vector<Reaction> CudaSolver::reactions() const
 {
   DevicePart* const contact = device_.touching();

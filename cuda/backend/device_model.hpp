@@ -61,7 +61,7 @@ public:
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
-  /// The same with the points of contact, also where contact is switched off.
+  /// launch() with the points of contact, even while contact is switched off.
   StepLaunch launch_with_contact() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }

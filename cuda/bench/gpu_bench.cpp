@@ -1,4 +1,4 @@
-// Kernel time of the CUDA backend on models made in code and on baked models, beside that of copies and dense blocks.
+// Measures kernel time of the CUDA backend on models made in code and on baked models, and the device's bandwidth.
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -28,7 +28,7 @@ struct Scene
   int steps;
 };
 
-// Activations rise linearly to the wanted ones within 0.3 s, as in the published set-up.
+// Activations rise linearly to `wanted` within 0.3 s, as in the published set-up.
 Controls ramped(const Controls& wanted, double time)
 {
   Controls now = wanted;
@@ -179,7 +179,7 @@ int run(int count, char** arguments)
   const std::vector<std::string> wanted(arguments + 1, arguments + count);
   const auto is_wanted = [&](const std::string& name)
   {
-    // the largest runs only if named, because it takes minutes to build
+    // the largest model runs only if it is named, because it takes minutes to build
     return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
   if (is_wanted("copy"))

@@ -17,21 +17,21 @@ __device__ __forceinline__ Function* aside(Function* function)
   return reinterpret_cast<Function*>(address);
 }
 
-/// The samples of a field around a node or a point, read from a copy of its own in loads that the threads of a warp
-/// share (see sample_words). In most steps it stays in its cell and the copy is valid.
+/// The samples of a field around a node or a point, in a copy of its own, which the threads of a warp load together
+/// (see sample_words). In most steps the node or point stays in its cell, so that the copy is valid.
 struct KeptSamples
 {
   float4* words;
-  std::uint32_t count, index;  ///< of all copies; of this one
+  std::uint32_t count, index;  ///< number of all copies; index of this one
 
-  /// The n-th of its 28 numbers.
+  /// The n-th of the copy's 28 numbers.
   __device__ __forceinline__ float& number(int n) const
   {
     return reinterpret_cast<float*>(words + n / 4 * count + index)[n % 4];
   }
 
-  /// Copies the samples of a cell, given by its code from `home`, minus a level. Returns false, and copies nothing, if
-  /// none are stored there.
+  /// Copies the samples of a cell, minus a level. `code`: the cell relative to `home` (middle_cell). Returns false, and
+  /// copies nothing, if none are stored there.
   __device__ __forceinline__ bool copy(const physics::DistanceField& field, const std::int32_t (&home)[3],
                                        std::uint32_t code, float level) const
   {
@@ -47,8 +47,8 @@ struct KeptSamples
     return true;
   }
 
-  /// The field at `offset` from the cell at home. `kept`: code of the cell whose samples are here; enter(code) copies
-  /// those of another. Returns false if no samples are stored there.
+  /// The field at `offset` from the cell of the rest position. `kept`: code of the cell whose samples are in the copy;
+  /// enter(code) copies those of another cell. Returns false if no samples are stored there.
   template <class Enter>
   __device__ __forceinline__ bool value_at(float inverse_spacing, const physics::Vec3<float>& offset,
                                            std::uint32_t kept, physics::FieldValue<float>& value,

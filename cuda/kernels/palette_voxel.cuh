@@ -138,7 +138,7 @@ static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, s
   physics::gauss_forces(palette_voxel<float>(g, palette), mode, with_bound, stiffness);
 }
 
-/// Relaxes viscous stresses, rarely within a step. Works on a copy, so that other voxels stay in registers.
+/// Relaxes viscous stresses within a step, which is rare. Works on a copy, so that other voxels stay in registers.
 template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t palette, std::uint32_t viscous,
                                                float elapsed, const physics::Kinematics<float>& k)

@@ -104,7 +104,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: the sum over its voxels, in the order of their corner 0 .. 7 that the node is.
+/// Force on a node: the sum over its voxels, in the order of the number that the node has among their corners.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];

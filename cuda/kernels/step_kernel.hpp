@@ -225,7 +225,7 @@ inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// The effects of a set that a voxel without fibres and viscosity may have, with those of nodes.
+/// The effects of a set that a voxel without fibres and viscosity may have, with the set's effects of nodes.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact);
 /// Effects of voxels in a set.

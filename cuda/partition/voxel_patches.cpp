@@ -156,8 +156,8 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
   return best;
 }
 
-// Class of each node: 2 if it only slides on a still surface, 1 if it has other effects. Classes are numbered
-// contiguously, because a warp takes as long for one such node as for 32.
+// Class of each node: 2 if it only slides on a still surface, 1 if it has other effects, else 0. Nodes of a class get
+// contiguous numbers, because a warp takes as long for one node with effects as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
