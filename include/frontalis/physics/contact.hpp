@@ -51,7 +51,7 @@ struct Grip
 template <class T>
 struct Touch
 {
-  Vec3<T> force;  ///< on the point, in the body's frame [N]
+  Vec3<T> force;  ///< force on the point, in the body's frame [N]
   Grip<T> grip;
   T stored;  ///< energy in the stiffness of contact [J]
   T lost;    ///< energy dissipated by friction in this step [J]

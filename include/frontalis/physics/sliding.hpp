@@ -18,7 +18,7 @@ template <class T>
 struct LevelPlane
 {
   Vec3<T> normal;  ///< unit vector towards larger distances from the surface
-  T distance;      ///< of the point from the level set along the normal, to first order [m]
+  T distance;      ///< distance of the point from the level set along the normal, to first order [m]
   T slip;          ///< how far the node may move before the plane's error exceeds plane_error, to second order [m]
 };
 

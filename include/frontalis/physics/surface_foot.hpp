@@ -20,17 +20,17 @@ struct SurfaceTriangle
 template <class T>
 struct SurfaceFoot
 {
-  T gap;             ///< from the surface, negative behind it [m]
-  Vec3<T> gradient;  ///< of the gap: nearly the normal
-  Vec3<T> normal;    ///< of the surface, unit vector: the point is x = foot + (gap + bulge) * normal
+  T gap;             ///< distance of the point from the surface, negative behind it [m]
+  Vec3<T> gradient;  ///< derivative of the gap with respect to the point: nearly the normal
+  Vec3<T> normal;    ///< unit normal of the surface: the point is x = foot + (gap + bulge) * normal
   T weight[3];       ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
   T inside[3];       ///< barycentric coordinates of the nearest point in the triangle
-  T spread[3];       ///< factors of normal - gradient in the gap's derivatives by the corners' normals [m]
+  T spread[3];  ///< factors of (normal - gradient) in the gap's derivatives with respect to the corners' normals [m]
   Vec3<T> mean_normal;  ///< interpolated at the nearest point, not of length 1
   Vec3<T> mean_place;   ///< the nearest point in the triangle
   // the triangle's plane
   Vec3<T> facet_normal;  ///< unit vector
-  T height;              ///< of the point above the plane [m]
+  T height;              ///< height of the point above the plane [m]
   T below[3];            ///< barycentric coordinates of the point's orthogonal projection
   Vec3<T> slope[3];      ///< gradients of these coordinates [1/m]
 };

@@ -30,17 +30,17 @@ struct TouchingPair
 template <class T>
 struct PairGrip
 {
-  T stiffness;       ///< of the pair when it touched last [N/m]; 0: it does not touch
+  T stiffness;       ///< stiffness of the pair when it touched last [N/m]; 0: it does not touch
   T pressed, along;  ///< as Grip::normal, Grip::along [N]
-  Vec3<T> stretch;   ///< of the spring along the surface that makes the point stick [m]
+  Vec3<T> stretch;   ///< displacement along the surface of the spring that makes the point stick [m]
 };
 
 template <class T>
 struct PairForce
 {
-  Vec3<T> point;      ///< on the point [N]
-  Vec3<T> corner[3];  ///< on the triangle's corners [N]
-  Vec3<T> turn[3];    ///< on the corners' normals: corner_turn() [N m]
+  Vec3<T> point;      ///< force on the point [N]
+  Vec3<T> corner[3];  ///< forces on the triangle's corners [N]
+  Vec3<T> turn[3];    ///< moments on the corners' normals: corner_turn() [N m]
   T stored, lost;     ///< energy stored by contact, dissipated by friction in this step [J]
 };
 
