@@ -41,7 +41,7 @@ struct ModelPresets
   struct AccuracyProfile
   {
     std::string name;
-    double error = 0;     ///< of the skin, RMS [m]; 0: not measured
+    double error = 0;     ///< RMS error of the skin [m]; 0: not measured
     double cost = 0;      ///< wall seconds per simulated second; 0: not measured
     std::string machine;  ///< on which it was measured
   };

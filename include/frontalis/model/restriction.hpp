@@ -53,9 +53,9 @@ struct SlidingNode
 struct AttachedNode
 {
   std::int32_t node = 0;
-  std::int32_t master = 0;  ///< a node that is not restricted; it may have several such nodes
-  double ratio = 0;         ///< of distances from the surface at rest, node's over master's, -1..1; negative beyond it
-  std::int32_t bone = -1;   ///< of a held node: index into Model::bones; -1: it stands still
+  std::int32_t master = 0;       ///< a node that is not restricted; it may have several such nodes
+  double ratio = 0;              ///< node's over master's distance from the surface at rest, -1..1; negative beyond it
+  std::int32_t bone = -1;        ///< of a held node: index into Model::bones; -1: it stands still
   std::int32_t surface = -1;     ///< of a sliding node: index into Model::constraint_surfaces; -1: the node is held
   std::int32_t constraint = -1;  ///< constraint that attaches it, in Model::constraints; -1: unknown
 };

@@ -13,7 +13,7 @@ struct SelfContact
   std::string name;      ///< of the constraint in the scene
   double friction = 0;   ///< Coulomb's coefficient
   TriangleMesh surface;  ///< all these surfaces at rest, local [m]; where two of them join they share vertices
-  Binding binding;       ///< of its vertices
+  Binding binding;       ///< of the surface's vertices
 };
 
 }  // namespace frontalis

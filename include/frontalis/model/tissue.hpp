@@ -19,8 +19,7 @@ struct Material
   std::array<double, physics::parameter_slots> parameters{};
   double density = 0;  ///< [kg/m3]
   /// Viscosity of the isochoric part as a Prony series of up to two terms: the share of the instantaneous stress that
-  /// relaxes (their sum below 1), and its time constant [s]. Share 0: no such term. `parameters` are the instantaneous
-  /// ones.
+  /// relaxes (their sum below 1), and its time constant [s]. Share 0: no such term. The moduli are instantaneous.
   std::array<double, 2> viscous_share{};
   std::array<double, 2> viscous_time{};
 };
@@ -78,8 +77,7 @@ enum class Precision : std::uint8_t
 enum class TimeStepEstimate : std::uint8_t
 {
   element,   ///< bounded at nodes from the stiffness of their voxels: always safe
-  assembled  ///< by power iteration on the assembled model, repeated as it stiffens; the step is longer if few voxels
-             ///< are stiff
+  assembled  ///< by power iteration on the assembled model, repeated as it stiffens; allows longer steps
 };
 
 }  // namespace frontalis

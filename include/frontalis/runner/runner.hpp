@@ -27,7 +27,7 @@ struct Frame
   std::vector<float> field;  ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
   /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
   std::vector<std::array<double, 3>> displacements;
-  std::vector<BodyFrame> bodies;  ///< that tissue touches, one per entry of touched_bodies(model)
+  std::vector<BodyFrame> bodies;  ///< bodies that tissue touches, one per entry of touched_bodies(model)
   std::vector<BodyFrame> bones;   ///< one per bone
   bool has_bone_forces = false;   ///< while RunnerSettings::wants_bone_forces; else reactions of bones are 0
   std::vector<float> activation;  ///< present activation of each muscle, 0..1

@@ -32,7 +32,7 @@ struct Monitor
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
   std::int64_t inverted = 0;         ///< voxels with J <= 0
-  double critical_time_step = 0;     ///< present value, bounded at nodes [s] (physics/time_step.hpp)
+  double critical_time_step = 0;     ///< present value from the bound at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
   double step_share = 0;             ///< latest time step over the present critical one (model's TimeStepEstimate)
   std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
