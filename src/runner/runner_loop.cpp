@@ -133,7 +133,7 @@ void Runner::Implementation::publish(bool renew_monitor)
 }
 
 // Controls at the end of the next slice. They approach their targets gradually, so that they do not jump within a time
-// step: a slice covers three times its share of a frame, so that a frame covers 95 % of the way (1 - exp(-3)).
+// step: each slice covers a part of the remaining way, so that a frame covers 95 % of it (1 - exp(-3)).
 Controls Runner::Implementation::controls_after(double seconds) const
 {
   Controls next = target;
