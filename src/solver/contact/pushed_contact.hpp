@@ -14,7 +14,7 @@ struct BodyState
   RigidTransform pose;
   double way;   ///< bound of how far any point and body have approached each other so far [m]
   double dt;    ///< length of the step [s]; 0: there was none
-  double kick;  ///< for how long forces change velocities in it [s]
+  double kick;  ///< time over which forces change velocities in the step [s]
   // of a body that is pushed
   physics::Vec3<double> held_at;   ///< place of its centre if it kept its pose relative to its bone [m]
   physics::Vec3<double> velocity;  ///< half a step before [m/s]

@@ -63,9 +63,9 @@ private:
     double way = 0;       // bound of how much closer a vertex and a triangle can have come to each other [m]
     double earliest = 0;  // smallest due_ of all blocks
     double renewal = 0;   // way at which the search is repeated
-    double dt = 0;        // of the latest step [s]; 0: there was none
+    double dt = 0;        // length of the latest step [s]; 0: there was none
     Stage stage = Stage::sort;
-    std::int32_t blocks = 0;  // of pairs
+    std::int32_t blocks = 0;  // number of blocks of pairs
   };
   struct Found
   {
@@ -135,7 +135,7 @@ private:
   // of the step under way
   std::vector<PairForceBlock<Real>> forces_;
   std::vector<std::uint32_t> touches_;             // PairArguments::touches
-  std::vector<std::vector<Real>> sums_;            // of forces and turns of vertices, one list per thread
+  std::vector<std::vector<Real>> sums_;            // forces on vertices and on their normals, one list per thread
   std::vector<std::vector<std::uint8_t>> summed_;  // whether a block of vertices has forces, one list per thread
   std::vector<Real> node_forces_;                  // on bound nodes, four numbers each [N]
   Clock next_;

@@ -245,7 +245,7 @@ void TissueContact<Real>::collect_pairs()
                          from.along[l],
                          { from.stretch[0][l], from.stretch[1][l], from.stretch[2][l] } });
   std::int32_t blocks = 0;
-  std::size_t lanes = touch_width;  // of the last block
+  std::size_t lanes = touch_width;  // number of lanes used in the last block
   auto next = held.begin();
   for (std::int32_t p = 0; p < static_cast<std::int32_t>(found_.size()); ++p)
   {

@@ -23,7 +23,7 @@ public:
     std::int32_t source_in_contact;    // its vertex of the contact's surface
     std::int32_t source;               // the same, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
-    float area_share;                  // of its source's area
+    float area_share;                  // share of its source's area
     Vector rest;
     Vector normal;                  // at rest, unit vector
     std::array<Vector, 2> tangent;  // their cross product is the normal
@@ -53,7 +53,7 @@ private:
   void sort_vertices();
 
   const Model& model_;
-  std::vector<std::int32_t> joined_begin_, joined_;  // of each source: the sources near it along the surface, ascending
+  std::vector<std::int32_t> joined_begin_, joined_;  // sources near each source along the surface, ascending
 };
 
 }  // namespace frontalis

@@ -18,7 +18,7 @@ struct VertexBlock
   std::int32_t bound[4][touch_width];  ///< the same, counted over the nodes that vertices are bound to
   Real coordinates[3][touch_width];    ///< in the voxel
   Real tangent[2][3][touch_width];     ///< at rest
-  std::int32_t plane[touch_width];     ///< of the voxel; -2: the lane is empty
+  std::int32_t plane[touch_width];     ///< plane of the vertex's voxel; -2: the lane is empty
   Real inverse_spacing[3];             ///< of the grid [1/m]
 };
 
@@ -29,7 +29,7 @@ struct MovedVertices
   static constexpr std::ptrdiff_t stride = 8;
 
   Real* record;  ///< displacement [m] and normal
-  Real* change;  ///< of the displacement in the latest step, if there is friction [m]; else null
+  Real* change;  ///< change of the displacement in the latest step [m]; null without friction
   /// Dual vectors of the tangents: the normal changes by minus the sum of dual times (normal . change of the tangent).
   /// [block][6][lane]
   Real* dual;
@@ -72,14 +72,13 @@ struct PairArguments
   const PairVertices* pair_vertices;
   PairBlock<Real>* pairs;
   PairForceBlock<Real>* forces;
-  double* due;             ///< of each block: way at which its pairs are looked at again [m]
+  double* due;             ///< per block, the value of `way` at which its pairs are evaluated again [m]
   std::uint32_t* touches;  ///< bits of the lanes that touch, and bit touch_width if friction has lost energy
   MovedVertices<Real> vertices;
   double way;  ///< bound of how much closer a vertex and a triangle can have come to each other [m]
   Real response;
   Real deepest;   ///< depth to which points are held [m]
-  Real patience;  ///< motion after which a pair with a point behind its triangle that does not touch it is checked
-                  ///< again [m]
+  Real patience;  ///< motion after which a pair behind its triangle that does not touch is checked again [m]
   bool rubs;      ///< whether there is friction
   /// Lets a pair whose foot lies beyond its triangle's edge go on to the triangle there.
   void (*go_on)(void* context, std::int32_t block, int lane);

@@ -17,11 +17,11 @@ public:
   /// A part of the motion, and the inputs that may have driven it.
   struct Interval
   {
-    double energy = 0;              ///< at its start [J]
+    double energy = 0;              ///< energy at the start of the interval [J]
     double begin = 0, end = 0;      ///< [s]
     std::vector<float> activation;  ///< largest activation of each muscle
     std::vector<double> bone_way;   ///< length of each bone's path [m]
-    double largest_internal = 0;    ///< largest internal energy before its start [J]
+    double largest_internal = 0;    ///< largest internal energy before the interval [J]
   };
   double most(const Interval& interval) const;  ///< [J]
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]

@@ -14,7 +14,7 @@ constexpr double margin_after_change = 1.25;  // the same in the first search, a
 constexpr std::int64_t longest_valid = 2000;  // steps; a search costs about 1 % of 2000 steps
 constexpr std::int64_t shortest_valid = 200;  // steps after a change of activation; doubled by each search
 constexpr float activation_allowed = 0.1F;    // change of a muscle's activation since the search
-constexpr double growth_allowed = 1.02;       // of the bound at nodes, squared, since the search
+constexpr double growth_allowed = 1.02;       // of the squared frequency bound at nodes since the search
 // A search starts from the mode of the previous one; the first search, from random numbers, needs more iterations.
 constexpr int iterations = 16;
 constexpr int first_iterations = 300;

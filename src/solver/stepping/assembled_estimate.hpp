@@ -29,8 +29,8 @@ public:
 
 private:
   double share_ = 1;
-  double bound_ = 0;              // at nodes when the ratio was found [1/s2]; 0: not found
-  std::int64_t steps_ = 0;        // since then, or since activations changed
+  double bound_ = 0;              // bound at nodes when the ratio was found [1/s2]; 0: not found
+  std::int64_t steps_ = 0;        // steps since then, or since activations changed
   std::int64_t steps_valid_ = 0;  // number of steps for which the ratio is valid
   std::vector<float> activation_;
 };

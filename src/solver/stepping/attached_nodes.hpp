@@ -29,7 +29,7 @@ public:
 
   bool idle() const override { return groups_.empty() && blocks_.empty(); }
   bool groups() const override { return true; }
-  /// Applies the constraints of the groups whose masters are in the share. Their other nodes are in no other group.
+  /// Applies the constraints of the groups whose masters are in the share. The groups have no nodes in common.
   void constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
                         const ConstraintStep& step) override;
 
@@ -42,13 +42,13 @@ private:
   struct Group
   {
     std::int32_t master;
-    std::int32_t begin, end;  // in ties_
+    std::int32_t begin, end;  // range of ties_
     bool fixed[3];            // axes along which the master has a prescribed path
   };
   struct Tie
   {
     std::int32_t node, bone, surface;
-    std::int32_t plane, master_plane;  // in planes_; -1: held
+    std::int32_t plane, master_plane;  // indices into planes_; -1: the node is held
     double ratio, mass;
     Point rest;
     double offset;  // level_offset() [m]

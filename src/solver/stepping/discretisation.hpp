@@ -96,7 +96,7 @@ public:
   std::vector<std::array<float, 8>> corner_stiffness;  ///< factors on the bounds of voxels at their corners; empty: 1
   std::vector<float> weight_share;                     ///< mass before mass scaling over node_mass; empty: 1
   std::vector<std::int32_t> held;                      ///< nodes whose motion is prescribed along all axes, ascending
-  std::vector<std::shared_ptr<AddedStiffness>> added;  ///< in the bounds, whether it acts at present or not
+  std::vector<std::shared_ptr<AddedStiffness>> added;  ///< included in the bounds whether it acts at present or not
   double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

@@ -39,7 +39,7 @@ private:
   Settings settings_;
   const std::vector<double>& mass_;
   double begin_, window_begin_;  // [s]
-  NodalVectors u_, f_, f_now_;   // at the start of the window; forces at its end
+  NodalVectors u_, f_, f_now_;   // displacements and forces at the start of the window; forces at its end
   int observations_ = 0;         // calls of observe() in this window
   double damping_;
   double lowest_ = 0;     // lowest squared frequency found [1/s2]

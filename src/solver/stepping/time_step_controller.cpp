@@ -15,8 +15,8 @@ namespace
 
 // These numbers are empirical: the hard cases of doc/stability.md hold with them.
 constexpr double cautious_share = 0.55;  // of the critical step, instead of the model's time_step_share
-constexpr int cautious_plan = 8;         // steps
-constexpr int vibration_plan = 32;       // steps at most
+constexpr int cautious_plan = 8;         // steps in a plan
+constexpr int vibration_plan = 32;       // most steps in a plan
 // signs of fast change, and the number of steps of caution after each
 constexpr double growth_allowed = 1.1;  // ratio of squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
