@@ -32,7 +32,7 @@ struct NodeTask
   std::int32_t of[node_effects];  ///< index of each NodeEffect; negative if the node does not have it
 };
 
-/// Whether the node slides on a fixed surface and has no other effect.
+/// Whether the node slides on a still surface and has no other effect.
 __host__ __device__ inline bool slides_only(const NodeTask& task)
 {
   static_assert(node_effects == 5, "each of them is tested below");
@@ -126,10 +126,10 @@ struct StepArguments : physics::Kick<float>
   bool selective_reduced;              ///< isochoric stress at eight points
   const std::uint32_t* viscous_words;  ///< 1 + viscous voxel or 0, laid out as slots or patch_properties; null if none
   float* relaxed;  ///< [term, then their sum if there are two][component][viscous voxel] times tissue volume [N m]
-  const float4* viscous_properties;  ///< of each viscous voxel: fraction of two terms, rate of two terms [1/s]
+  const float4* viscous_properties;  ///< of each viscous voxel: fractions of its two terms, then their rates [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
-  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: they do not
+  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: they do not relax
   const std::uint32_t* fibre_words;
   const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
   const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
@@ -151,7 +151,7 @@ struct StepArguments : physics::Kick<float>
   std::uint32_t sliding_count;
   float4* sliding_at;     ///< offset of the rest position in its cell [m], or from a sphere's centre; bits of the cell
   float4* samples;        ///< see sample_words
-  float4* planes;         ///< of the latest step, normal . u = offset: normal and offset; 0: none yet
+  float4* planes;         ///< tangent planes of the latest step, normal . u = offset: normal and offset; 0: none yet
   const float* friction;  ///< coefficient, of the first `rubbing_count` nodes
   float* pressing;        ///< their reaction per mass with the delay of friction [m/s2]
   std::uint32_t rubbing_count;
@@ -177,7 +177,7 @@ struct StepArguments : physics::Kick<float>
   float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
   double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
   std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
-  ContactArguments contact;                  ///< with bodies
+  ContactArguments contact;                  ///< contact with bodies
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -211,7 +211,7 @@ enum class Effects : std::uint8_t
   fibres = 1,
   viscosity = 2,
   general_element = 4,  ///< other laws, hourglass controls and integrations
-  sliding = 8,          ///< on surfaces
+  sliding = 8,          ///< nodes that slide on surfaces
   tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
   friction = 32,        ///< of sliding nodes
   contact = 64          ///< with bodies, in patches; always set with all effects of nodes

@@ -43,7 +43,7 @@ struct VoxelPatches
   std::vector<std::uint32_t> halo;                   ///< device nodes
   /// For each device node, the voxels of its patch of which it is corner 0 .. 7; most_voxels if there is none.
   std::vector<std::array<std::uint16_t, 8>> node_voxel;
-  std::vector<std::uint32_t> device_node;  ///< of each model node
+  std::vector<std::uint32_t> device_node;  ///< number of each model node on the device
 
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches

@@ -61,7 +61,7 @@ struct Piece
   std::int32_t j;                     // first own row
   std::int32_t k, planes;             // first plane; number of planes, including the halo
   std::int32_t own_k, own_planes;     // first plane and number of planes that it owns
-  double cost;                        // in planes without fibres
+  double cost;                        // in units of a plane without fibres
 };
 
 struct Builder

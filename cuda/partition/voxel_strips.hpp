@@ -52,7 +52,7 @@ struct VoxelStrips
   std::vector<Strip> strips;  ///< in descending order of cost
   std::vector<StripSlot> slots;
   std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of each entry; 0: none
-  std::vector<std::uint32_t> device_node;    ///< of each model node
+  std::vector<std::uint32_t> device_node;    ///< number of each model node on the device
   std::vector<std::uint32_t> strip_of_node;  ///< strip that owns each model node
 
   /// Fraction of the entries that hold a voxel.
