@@ -21,7 +21,7 @@ namespace frontalis
 /// permutation of the scene's axes, which keeps the handedness.
 struct Model : ModelPresets
 {
-  // grid: node (i,j,k) rests at (i,j,k) * spacing from the local origin
+  // grid: node (i,j,k) rests at rest_place() * spacing from the local origin, which is (i,j,k) * spacing but for flaps
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  ///< voxel edges [m]
   std::array<std::int32_t, 3> size{ { 0, 0, 0 } };        ///< voxels of the bounding grid along x, y, z
 

@@ -21,8 +21,8 @@ constexpr double contact_stiffness = 3.5;
 /// Stiffness along the surface at a point that sticks, over the stiffness along the normal.
 constexpr double sticking_stiffness = 0.5;
 
-/// Largest gradient of a field, against 1 of an exact distance: each component of a spline's gradient is a mean of
-/// slopes of at most 1, so that its norm is at most sqrt(3).
+/// Largest norm of a field's gradient; that of an exact distance is 1. Each component of a spline's gradient is a mean
+/// of slopes of at most 1, so that its norm is at most sqrt(3).
 constexpr double steepest_field = 1.7320508;
 
 /// Friction drops the delayed normal force on a point that has left its body once it is less than that at this depth
