@@ -12,7 +12,7 @@ class Discretisation;
 class ContactStiffness : public AddedStiffness
 {
 public:
-  /// From the mixtures of the points' voxels, with bounds of their stiffness that do not include contact.
+  /// Finds it from the mixtures of the points' voxels. The discretisation's bounds must not include contact yet.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
   /// Makes points of Model::contacts, not those of self-contact, up to ten times as stiff.

@@ -30,9 +30,10 @@ RigidTransform held_pose(const Contact& contact, const std::vector<RigidTransfor
 BodyState moved_on(const Contact& contact, const BodyState& before, const Reaction& reaction,
                    const std::vector<RigidTransform>& bones);
 
-/// Factor on the stiffness of contact with a pushed body in the bound of the tissue's frequency: 1 + s, s =
-/// pushed_share. A spring between a node and a body stores k (a - b)^2 / 2 <= (1 + s) k a^2 / 2 + (1 + 1 / s) k b^2 /
-/// 2, so that node and body are bounded separately, the body by longest_pushed_step().
+/// Factor 1 + s, s = pushed_share, on the stiffness of contact with a pushed body in the bound of the tissue's
+/// frequency. A spring between a node and a body stores
+///   k (a - b)^2 / 2 <= (1 + s) k a^2 / 2 + (1 + 1 / s) k b^2 / 2,
+/// so that node and body are bounded separately, the body by longest_pushed_step().
 constexpr double pushed_share = 0.1;
 inline double counted(const Contact& contact) { return contact.mass > 0 ? 1 + pushed_share : 1; }
 

@@ -62,7 +62,7 @@ struct AttachArguments
   Real* u[3];
   Real* v[3];
   Real dt;
-  Real error_left;  ///< physics/sliding.hpp
+  Real error_left;  ///< physics::error_left [m]
   /// Finds a new plane for a lane at displacement u.
   void (*renew)(void* context, LevelPlanes<Real>& planes, int lane, std::int32_t node, const Real u[3]);
   void* context;

@@ -21,7 +21,7 @@ struct RecordLanes
   static FRONTALIS_LAW void store(const Batch& x, float* p) { x.store_unaligned(p); }
   static FRONTALIS_LAW bool any_positive(const Batch& x) { return xsimd::any(x > Batch(0.0f)); }
 
-  /// One bit per lane.
+  /// One bit per lane: whether it is positive.
   static FRONTALIS_LAW std::uint32_t positive(const Batch& x)
   {
     alignas(64) float lane[count];

@@ -30,8 +30,8 @@ struct MovedVertices
 
   Real* record;  ///< displacement [m] and normal
   Real* change;  ///< change of the displacement in the latest step [m]; null without friction
-  /// Dual vectors of the tangents: the normal changes by minus the sum of dual times (normal . change of the tangent).
-  /// [block][6][lane]
+  /// Dual vectors of a vertex's tangents: the change of the normal is minus the sum over both tangents of their dual
+  /// times (normal . change of the tangent). [block][6][lane]
   Real* dual;
 };
 

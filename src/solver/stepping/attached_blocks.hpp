@@ -25,8 +25,8 @@ class AttachedBlocks
 public:
   AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
 
-  /// Adds a master without a prescribed path and its nodes, if they form such a group, in ascending order of masters.
-  /// Returns whether they do.
+  /// Adds a master and its nodes if it has no prescribed path and they are held, or slide on one surface, without
+  /// moving bones. Returns whether it was added. Add masters in ascending order.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
   /// Forms the blocks, after the last add_group().
   void finish();

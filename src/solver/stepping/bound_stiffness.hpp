@@ -14,8 +14,8 @@ namespace frontalis
 void add_stiffness_rows(const Model& model, const Binding& points, const std::vector<float>& stiffness, double factor,
                         std::vector<double>& rows);
 
-/// Shares what is added to nodes, `rows`, among their voxels in proportion to the voxels' own bounds, which `voxels`
-/// holds before and whose sums at nodes are `of_voxels` [N/m].
+/// Shares what is added to nodes, `rows`, among their voxels in proportion to the voxels' own bounds, whose sums at
+/// nodes are `of_voxels` [N/m]. `voxels` holds these bounds at first, then the shares.
 void share_rows(const Model& model, const std::vector<double>& rows, const std::vector<double>& of_voxels,
                 std::vector<float>& voxels);
 
