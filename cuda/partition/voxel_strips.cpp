@@ -13,7 +13,7 @@ namespace
 {
 
 constexpr int lanes = 32;
-// Additional cost of a plane with fibres, in planes without. (The most expensive strips start first.)
+// Additional cost of a plane with fibres, in units of a plane without. (The most expensive strips start first.)
 constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
