@@ -75,7 +75,7 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
   share_out(model, of_voxels);
 }
 
-// Shares what contact adds to a node among its voxels in proportion to their own bounds, which voxels_ holds at first.
+// Distributes what contact adds to nodes to their voxels, whose own bounds voxels_ holds at first.
 void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
 {
   share_rows(model, rows(model, false), of_voxels, voxels_);

@@ -14,8 +14,8 @@ namespace frontalis
 void add_stiffness_rows(const Model& model, const Binding& points, const std::vector<float>& stiffness, double factor,
                         std::vector<double>& rows);
 
-/// Shares what is added to nodes, `rows`, among their voxels in proportion to the voxels' own bounds, whose sums at
-/// nodes are `of_voxels` [N/m]. `voxels` holds these bounds at first, then the shares.
+/// Distributes what is added to nodes, `rows`, to voxels: each gets its own bound, which `voxels` holds at first, times
+/// the largest ratio of `rows` to `of_voxels`, the sum of the voxels' bounds [N/m], at one of its nodes.
 void share_rows(const Model& model, const std::vector<double>& rows, const std::vector<double>& of_voxels,
                 std::vector<float>& voxels);
 
