@@ -42,12 +42,12 @@ TEST(SampleField, HasTheSlopesOfAQuadraticFunctionInFloatAndDouble)
   const Vec3<double> rest{ 1e-3, 2e-3, 3e-3 };
   for (int i = -10; i <= 10; ++i)
   {
-    // points on the level set, in several bricks
+    // the points lie on the level set, in several bricks of samples
     const Vec3<double> moved{ 0.8e-3 * i, 0.6e-3 * i, 0.05e-3 * i };
     const Point p{ { rest.x + moved.x, rest.y + moved.y, rest.z + moved.z } };
     const auto found = value_at<double>(field, rest, moved);
     const double x = p[0], y = p[1], z = p[2];
-    // the value has an offset: the Laplacian times the squared spacing over 8
+    // the spline's value has an offset of the Laplacian times the squared spacing over 8
     EXPECT_NEAR(found.value, quadratic(p) + 26 * 0.25e-6 / 8, 1e-8) << i;
     EXPECT_NEAR(found.gradient.x, 0.3 + 16 * x + 4 * y, 5e-5);
     EXPECT_NEAR(found.gradient.y, -0.4 - 6 * z + 4 * x, 5e-5);
@@ -104,7 +104,7 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
   }
 }
 
-// The nearest point of a surface may jump.
+// The nearest point of a surface may jump, but the field must be continuous.
 TEST(SampleField, MakesASlopeOfAJump)
 {
   const auto jumps = [](const Point& p) { return 0.5 * p[2] + (p[0] > 5.1e-3 ? 2e-3 : 0); };
