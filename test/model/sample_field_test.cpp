@@ -69,7 +69,7 @@ TEST(SampleField, CoversWhereNodesMayComeAndNoMore)
     for (double y = -10e-3; y <= 10e-3; y += 0.9e-3)
       for (const double z : { 0.6e-3, 1.4e-3, 1.6e-3, 2.4e-3 })
       {
-        // samples cover the level of each node, z, within the travel of 10 mm
+        // samples cover the level z of each of the two nodes, up to the travel of 10 mm from the node
         const bool covered = z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3;
         if (covered)
         {
@@ -94,7 +94,7 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
     const auto here = value_at<double>(field, { rest[0], rest[1], rest[2] }, { 20e-6, 0.4e-3, -0.3e-3 });
     physics::LevelPlane<double> plane{};
     ASSERT_TRUE(physics::level_plane(here, level, plane));
-    // slip also ends where the samples of the cell no longer describe the field
+    // the plane is valid at most as far as the samples of the cell describe the field
     EXPECT_LT(plane.slip, 100e-6);
     EXPECT_GT(plane.slip, field.radius > 0 ? 80e-6 : 15e-6);
     const Vec3<double> along = plane.slip * Vec3<double>{ -plane.normal.y, plane.normal.x, 0 };

@@ -263,7 +263,7 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   switch_off(off, EffectSet().with(Effect::contraction).with(Effect::fibre_stiffness));
   auto without_fibres = bytes_of(*make(off)),
        never = bytes_of(*make(scene_of(everything & ~(contraction | passive_fibres))));
-  // the controls differ, because muscles keep their names and accept activations
+  // the memory of controls differs, because muscles keep their names and accept activations
   without_fibres.erase("elasticity: controls");
   never.erase("elasticity: controls");
   EXPECT_EQ(without_fibres, never);

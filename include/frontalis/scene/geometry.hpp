@@ -45,7 +45,7 @@ struct Shape
   double minor_radius = 0;
   double length = 0;
   double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size
-  std::string part;  ///< forehead and head only
+  std::string part;  ///< name of the part (forehead and head only)
   std::shared_ptr<const HeadTemplate> head;
   /// Dimensions of the generated forehead or head [m] by name; dimensions that are not given have their defaults.
   std::map<std::string, double> dimensions;

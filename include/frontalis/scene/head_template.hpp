@@ -101,11 +101,11 @@ struct HeadTemplate
   std::vector<std::string> files;                    ///< every file that the template consists of
   std::string cage;                                  ///< OBJ file of the left half of the skin's control cage
   double unit = 1;                                   ///< metres per unit of the cage
-  std::map<std::string, int> landmarks;              ///< index of a vertex of the cage
+  std::map<std::string, int> landmarks;              ///< vertices of the cage, by the name of the landmark
   std::map<std::string, std::vector<Point>> points;  ///< sets of landmarks: `anthropometric` and those of the files
   std::map<std::string, Joint> joints;               ///< joints by the name of the bone
   std::vector<Dimension> dimensions;
-  /// Presets: the addition of an age to each dimension [m], and the ratio of a tissue thickness to the normal one.
+  /// Presets: for each age the increase of dimensions [m], and for each amount of tissue the factor on its thickness.
   std::map<std::string, std::map<std::string, double>> ages;
   std::map<std::string, double> tissues;
   std::vector<DepthSite> depths;

@@ -49,7 +49,7 @@ struct Layer
 /// Origin or insertion of a muscle's fibres: the region of the muscle nearest to a surface or to a polyline.
 struct MuscleEnd
 {
-  std::string surface;          ///< empty: `points` are used
+  std::string surface;          ///< surface at this end; empty: `points` are used
   std::vector<Vector3> points;  ///< vertices of the polyline [m]
 
   bool given() const { return !surface.empty() || !points.empty(); }

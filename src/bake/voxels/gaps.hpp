@@ -25,7 +25,7 @@ public:
   /// nothing if there is no gap.
   void part(Voxels& voxels, BakeMonitor& monitor);
 
-  /// The voxel to whose tissue a point near a gap, in or just beside the tissue, belongs.
+  /// The voxel whose tissue contains a point near a gap, or is nearest to it.
   struct Owner
   {
     Vector3d centre{ 0, 0, 0 };  ///< centre of the voxel, scene coordinates [m]

@@ -92,8 +92,8 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
 /// constraints without a `within` of their own.
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
-/// With `boundary: true`, turns the rigid and sliding nodes of those constraints into attached nodes. To find the
-/// master of a node, goes along the surface's normal, one to three voxel edges high, to the first voxel with free
+/// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. To find
+/// the master of a node, goes along the surface's normal, one to three voxel edges high, to the first voxel with free
 /// corners only, and takes one of them. If there is none, tissue is too thin: nodes up to half an edge above the
 /// surface stay restricted, and the others become free. Nodes that slide with friction are not attached.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,

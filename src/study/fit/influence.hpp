@@ -48,7 +48,7 @@ struct Influence
 {
   struct Column
   {
-    std::array<double, 2> at{};                ///< values of the unknown
+    std::array<double, 2> at{};                ///< values of the unknown at which it is measured
     std::array<Eigen::VectorXd, 2> displaced;  ///< displacements from `rest`
   };
   Eigen::VectorXd rest;  ///< places in equilibrium with all unknowns at rest
