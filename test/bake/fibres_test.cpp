@@ -227,7 +227,7 @@ TEST(Fibres, RunFromOriginToInsertion)
       },
       5);
 
-  // wider than long, so that its shape alone does not determine the direction
+  // this muscle is wider than long, so that its shape alone does not determine the direction
   scene = muscle_scene(fan(45), 1e-3);
   for (int k = -4; k <= 4; ++k)
   {

@@ -26,7 +26,7 @@ struct MeshFaults
   Kind crossings;  ///< pairs of triangles that cross
   double crossing_extent = 0;        ///< box diagonal of the widest connected group of crossing triangles [m]
   std::vector<Hole> holes;           ///< longest first
-  std::vector<std::int32_t> piece;   ///< for each triangle the index of its component, which edges connect
+  std::vector<std::int32_t> piece;   ///< for each triangle the index of its edge-connected component
   std::vector<bool> crossing_piece;  ///< for each component whether one of its triangles crosses another
 };
 
