@@ -18,7 +18,7 @@ inline SampledField plate(double z, int side)
 }
 
 /// The lower or upper side of a block as points that touch a body. Each square has a vertex at its centre, so that a
-/// uniform pressure gives each of its nodes a quarter of its force.
+/// uniform pressure gives each node of the square a quarter of the square's force.
 inline Contact touching_side(const Model& model, bool upper, const SampledField& field)
 {
   Contact contact;

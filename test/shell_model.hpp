@@ -13,8 +13,8 @@ namespace test
 
 struct ShellSettings
 {
-  double height = 4e-3;  ///< of the shell in the block [m]
-  double edge = 1.2e-3;  ///< of its triangles along x and y, about [m]
+  double height = 4e-3;  ///< height of the shell in the block [m]
+  double edge = 1.2e-3;  ///< approximate edge of its triangles along x and y [m]
   double thickness = 0.1e-3;
   double young = 1e6;
   double poisson = 0.4;

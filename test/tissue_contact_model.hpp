@@ -13,9 +13,9 @@ namespace frontalis
 namespace test
 {
 
-/// Adds a piece of surface over part of a grid: `places` gives the position [m] of a point (x, y), `voxel` the one that
-/// moves it. Squares of the grid have a vertex in the middle, so that a uniform pressure gives each node its share. The
-/// surface faces along x cross y, or, if it is `turned`, the other way.
+/// Adds a piece of surface over part of a grid. `places` gives the position [m] of a point (x, y), `voxel` the voxel
+/// that moves it. Squares have a vertex in the middle, so that a uniform pressure gives each of the four nodes a
+/// quarter. The surface faces along x cross y, or the other way if it is `turned`.
 inline void add_surface(const Model& model, SelfContact& contact, std::int32_t nx, std::int32_t ny, bool turned,
                         const std::function<std::array<double, 3>(double, double)>& place,
                         const std::function<std::array<std::int32_t, 3>(double, double)>& voxel)
@@ -52,7 +52,7 @@ inline void add_surface(const Model& model, SelfContact& contact, std::int32_t n
     }
 }
 
-/// The upper or lower side of the voxels of layer k from column `begin` to `end`, moved outwards by `beyond` voxel
+/// Adds the upper or lower side of the voxels of layer k from column `begin` to `end`, moved outwards by `beyond` voxel
 /// edges.
 inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper, double beyond = 0,
                      std::int32_t begin = 0, std::int32_t end = -1)
@@ -72,8 +72,8 @@ inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, b
       });
 }
 
-/// Two blocks, one voxel edge apart along z, whose facing sides touch. Each is `settings.voxels` large. `beyond`: how
-/// far the surfaces are outside of the voxels, in voxel edges.
+/// Two blocks of `settings.voxels` voxels each, one voxel edge apart along z, whose facing sides may touch. `beyond`:
+/// distance of the surfaces outside the voxels, in voxel edges.
 inline Model two_blocks(BlockSettings settings, double friction = 0, double beyond = 0)
 {
   const std::int32_t height = settings.voxels[2];
@@ -89,8 +89,8 @@ inline Model two_blocks(BlockSettings settings, double friction = 0, double beyo
   return model;
 }
 
-/// Adds a sphere whose vertices are bound to the nearest voxels: an octahedron, its triangles divided by four four
-/// times.
+/// Adds a sphere whose vertices are bound to the nearest voxels: an octahedron, each triangle of which is divided into
+/// four, four times in succession.
 inline void add_sphere(const Model& model, SelfContact& contact, const std::array<double, 3>& centre, double radius)
 {
   using Point = std::array<double, 3>;
@@ -148,7 +148,7 @@ inline void add_sphere(const Model& model, SelfContact& contact, const std::arra
   }
 }
 
-/// Makes one surface of pieces that join: vertices at the same place become one.
+/// Joins adjacent pieces to one surface: vertices at the same place become one.
 inline void join(SelfContact& contact)
 {
   std::map<std::array<double, 3>, std::int32_t> first;
@@ -172,8 +172,8 @@ inline void join(SelfContact& contact)
   contact = joined;
 }
 
-/// A sheet of one voxel along x, folded over a slit one voxel wide: two arms, joined at the end of x. All its sides
-/// along z touch, and the end of the slit.
+/// A sheet along x, one voxel thick, folded over a slit of one voxel: two arms, joined at the upper end of x. The
+/// surface that may touch itself has all sides along z, and the end of the slit.
 inline Model folded_sheet(BlockSettings settings, std::int32_t slit, double friction = 0)
 {
   settings.voxels[2] = 3;

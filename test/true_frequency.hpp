@@ -44,7 +44,7 @@ inline double largest_eigenvalue(const std::vector<std::vector<double>>& K)
   return value - shift;
 }
 
-// Square of the true highest frequency over its bound, at given displacements, with every muscle at full activation.
+// The true highest squared frequency over its bound, at given displacements, with every muscle at full activation.
 // `mass` [kg] of each node; `free`: indices of the free degrees of freedom.
 inline double true_over_bound(const Model& model, const Vectors& u, const std::vector<double>& mass,
                               const std::vector<std::size_t>& free)

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-/// Throws Error for a volume outside the tissue, and reports how much of each muscle was clipped.
+/// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)

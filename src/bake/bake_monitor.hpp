@@ -17,7 +17,7 @@ class BakeMonitor
 public:
   BakeMonitor(BakeReport* report, const BakeProgress& progress) : report_(report), progress_(progress) {}
 
-  /// Ends the current stage, if any, and begins this one.
+  /// Ends the current stage, if any, and begins `stage`.
   void begin(const std::string& stage);
   /// Reports the proportion of the stage that is done. Throws Error("interrupted") if the caller stops the bake.
   void advance(double done);
@@ -36,9 +36,9 @@ private:
   std::chrono::steady_clock::time_point begin_;
 };
 
-/// Calls body(0) .. body(count - 1) on all cores, about `grain` of them per task. The calls must be independent: each
-/// writes only data of its own index. Meanwhile the calling thread reports progress; if that interrupts the bake, no
-/// further task begins. If calls throw, the exception of the lowest index is rethrown.
+/// Calls body(0) .. body(count - 1) on all cores, about `grain` calls per task. Each call may write only data of its
+/// own index. Meanwhile the calling thread reports progress; if the caller then interrupts the bake, no further task
+/// begins. If calls throw, the exception of the lowest index is rethrown.
 void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t)>& body);
 

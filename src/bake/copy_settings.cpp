@@ -93,7 +93,7 @@ void copy_presets(const Scene& scene, Model& model)
 void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
-  // both enumerations are none, uniform, selective
+  // both enumerations have the values none, uniform, selective
   model.mass_scaling = { static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step };
   for (const std::string& name : from.materials)
     model.mass_scaling.materials.push_back(index_of(model.materials, name, scene.file + ": mass_scaling", "material"));
@@ -146,7 +146,7 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
 }
 
-/// The pose, in the face frame, of a bone, or of its joint at an angle.
+/// The pose of a bone in the face frame: its shift and turn, or those of its joint at the pose's angle.
 static Model::BonePose pose_of(const Scene& scene, const BonePose& pose, std::int32_t bone)
 {
   const auto has_bone = [&](const SceneJoint& joint) { return joint.bone == pose.bone; };

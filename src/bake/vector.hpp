@@ -12,7 +12,7 @@
 namespace frontalis
 {
 
-// The bake computes with Eigen's vectors and boxes [m]; scenes and models hold plain arrays.
+// The bake uses Eigen's vectors and boxes [m]; scenes and models hold plain arrays.
 using Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 
@@ -34,7 +34,7 @@ inline double squared_distance_to_segment(const Vector3d& p, const Vector3d& a, 
 /// sequences, 2018).
 inline Vector3d spread_point(const Box& box, int i)
 {
-  // 1/g, 1/g^2, 1/g^3 with g^4 = g + 1
+  // the steps along the axes are 1/g, 1/g^2 and 1/g^3 with g^4 = g + 1
   const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
   Vector3d p;
   for (int a = 0; a < 3; ++a)

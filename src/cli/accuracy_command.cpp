@@ -42,7 +42,7 @@ struct AccuracyOptions
 Scene scene_with(Scene scene, const AccuracySetting& setting)
 {
   scene.accuracy = setting.profile;
-  // clear names and measured figures: they do not change the model, and would make equal variants differ
+  // clear names and measured figures, which do not change the model: equal variants must have equal content
   scene.accuracy.name = "standard";
   scene.accuracy.measured = {};
   scene.profiles.clear();
@@ -54,7 +54,7 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   return scene;
 }
 
-// the profile called standard; the scene's selected one if it was chosen by name or there is no standard
+// the profile named `standard`; if the user chose a profile or there is no standard, the scene's selected profile
 AccuracyProfile standard_profile(const Scene& scene, bool chosen)
 {
   if (!chosen)
@@ -64,7 +64,7 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
   return scene.accuracy;
 }
 
-// an expression's activations; without expressions all muscles at 0.75
+// the activations of an expression; in a model without expressions 0.75 for all muscles
 std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
 {
   if (!options.expression.empty())
@@ -122,7 +122,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
     plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
   take_options(options, plan);
 
-  // the meshes' content is the same for all settings and is hashed once
+  // hash the meshes once, because they are the same for all settings
   Scene bare = scene_with(scene, {});
   const std::string meshes = bare.content;
   bare.surfaces.clear();
@@ -131,7 +131,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
                     [scene](const AccuracySetting& setting) {
                       return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
                     } };
-  // use the coarsest model, which is baked fastest, for the names of the muscles: all models have the same
+  // all models have the same muscles: take their names from the coarsest model, which is baked fastest
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
   plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
@@ -188,7 +188,7 @@ void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& opti
   write_text(path + ".csv", table.csv());
   write_text(path + ".json", table.json());
   write_text(path + ".md", report + "\n![" + title + "](accuracy.png)\n");
-  // the paragraphs of the report between its title and its table
+  // print the paragraphs of the report between title and table
   const std::size_t begin = report.find("\n\n") + 2;
   fmt::print("\n{}\nreference {}\n\nwritten   {}.csv, .json, .md", table.text(),
              report.substr(begin, report.find("\n\n|") - begin), path);

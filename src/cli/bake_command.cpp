@@ -24,7 +24,7 @@ struct BakeOptions
   bool report = false;
 };
 
-// reports, before a long bake, faults that would prevent writing its result
+// throws Error, before a long bake, if its result could not be written
 void check_output(const BakeOptions& options)
 {
   const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
@@ -37,7 +37,7 @@ void check_output(const BakeOptions& options)
     throw Error(options.output + ": is the scene itself; must be another file");
 }
 
-// prints how many nodes each constraint holds, with the constraint's number in the file
+// prints the number and name of each constraint, and how many nodes it holds
 void print_constraints(const Model& model)
 {
   for (std::size_t c = 0; c < model.constraints.size(); ++c)

@@ -49,7 +49,7 @@ double resident_bytes()
 
 std::string percent(double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 2 : 0); }
 
-// times of five repetitions, ascending [s]
+// wall times of five repetitions of a task, ascending [s]
 template <class Task>
 std::vector<double> times_of(const Task& task)
 {
@@ -64,7 +64,7 @@ std::vector<double> times_of(const Task& task)
   return times;
 }
 
-// the time of the guard's checks and snapshots over that of the steps between them
+// the time of a check and a snapshot of the guard over the time of the steps between two checks
 double guard_share(Solver& solver, double step)
 {
   std::unique_ptr<Snapshot> snapshot;
@@ -77,8 +77,8 @@ double guard_share(Solver& solver, double step)
   return times_of(check)[2] / (solver.steps_per_check() * step);
 }
 
-// the share of a step's time that the CPU needs to find the critical time step, which it does once in 32 steps: motions
-// of a single step find it in each step
+// the share of the time per step in which the CPU finds the critical time step. It does so once in 32 steps; a motion
+// of a single step does so in each step, and the difference is the cost.
 double bound_share(Solver& solver, const Controls& controls, double step)
 {
   const double dt = 0.999 * solver.time_step();
@@ -91,14 +91,14 @@ double bound_share(Solver& solver, const Controls& controls, double step)
   return std::max(0.0, looking / 16 / step - 1) / 31;
 }
 
-// seconds per step in five repetitions, ascending
+// wall seconds per step in five repetitions, ascending
 std::vector<double> time_steps(Solver& solver, const Controls& controls, double seconds)
 {
   const double dt = solver.time_step();
   solver.advance(8 * dt, controls);
   const auto steps = [&] { return static_cast<double>(solver.profile().steps); };
   double start = wall_seconds(), before = steps();
-  // several plans of steps, since a GPU solver queues some without waiting for them
+  // advance by several plans of steps, since a GPU solver queues some plans without waiting for them
   do
     solver.advance(32 * dt, controls);
   while (wall_seconds() - start < 0.05);
@@ -117,8 +117,8 @@ std::vector<double> time_steps(Solver& solver, const Controls& controls, double 
 
 constexpr const char* row_format = "{:<12} {:>10}  {:>9}  {:>9}  {:>6}  {:>6}  {:>7}  {:>7}  {:>7}  {}\n";
 
-// Prints a row and returns the voxels per second; `block_rate` are those of the dense block that others are compared
-// with, or 0 for that block itself.
+// Prints a row and returns the voxels per second. `block_rate`: voxels per second of the dense block to compare with,
+// or 0 for that block itself.
 double bench_model(const std::string& name, const std::shared_ptr<const Model>& model, const BenchOptions& options,
                    double block_rate)
 {

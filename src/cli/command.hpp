@@ -19,7 +19,7 @@ enum ExitCode : int
   exit_interrupted = 130  ///< Ctrl-C; no file is left half written
 };
 
-/// Options that are wrong, or that do not go together.
+/// Thrown for options that are wrong or do not go together.
 class WrongUsage : public std::runtime_error
 {
 public:

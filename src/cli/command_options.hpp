@@ -22,7 +22,7 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& val
   return command.add_option(name, value, text)->check(CLI::PositiveNumber);
 }
 
-/// Declares --backend; its default is what `backend` holds. `automatic`: "auto" is allowed too.
+/// Declares --backend; the default is the value of `backend`. `automatic`: "auto" is allowed too.
 void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
 
 /// Declares --backend and --threads.
@@ -32,7 +32,7 @@ void add_solver_options(CLI::App& command, SolverSettings& settings);
 void check_seconds(double seconds);
 
 /// The path of --plot FILE.png without its extension, for write_plot(); empty without the option. Throws WrongUsage on
-/// another extension.
+/// an extension other than .png.
 std::string plot_path(const std::string& option);
 
 /// The cases that `only` names, in the order of `cases`; if it is empty, the short cases, or all cases with `all`.

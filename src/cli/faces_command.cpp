@@ -21,7 +21,7 @@ namespace
 struct FacesOptions
 {
   ModelSource source;
-  std::string people;  ///< file; empty: config/people.yaml
+  std::string people;  ///< file of published motions; empty: config/people.yaml
   std::vector<std::string> only;
   bool all_landmarks = false;
   bool measured_only = false;
@@ -32,7 +32,7 @@ struct FacesOptions
 
 using Pictures = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>;
 
-/// Those of the model, in the order of the people's file; the others after them.
+/// The chosen expressions of the model: first those in the file of published motions, in its order, then the others.
 std::vector<std::string> chosen_expressions(const FacesOptions& options, const Model& model,
                                             const std::vector<std::string>& in_order)
 {

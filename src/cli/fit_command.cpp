@@ -34,7 +34,7 @@ std::string in_millimetres(const std::vector<double>& metres)
 
 void show_progress(FitSettings& settings, Progress& progress)
 {
-  // without a terminal there is one line per stage: name the percentage there
+  // without a terminal, progress has one line per stage, so name the percentage in the stage
   const bool lines = isatty(STDERR_FILENO) == 0;
   settings.watch = [&progress, lines](const std::string& stage, double done)
   {

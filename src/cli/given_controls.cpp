@@ -46,7 +46,7 @@ RigidTransform pose_from(const std::array<double, 6>& values)
                       { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } });
 }
 
-// the controls of a row, whose columns after the first have the names of muscles or BONE.x
+// the controls of a row. Columns after the first are muscles or components of bones, such as BONE.x.
 Controls row_controls(const Model& model, const std::vector<std::string>& header, const std::vector<double>& row,
                       const std::string& place)
 {

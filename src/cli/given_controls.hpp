@@ -12,8 +12,8 @@ namespace frontalis
 /// Reads "frontalis_left=0.75,procerus=0.2". Throws WrongUsage on any other form.
 std::map<std::string, double> parse_activation_list(const std::string& text);
 
-/// The expression (empty: relax), with the activations of the list in place of its own. Throws Error on values outside
-/// 0..1, and on unknown muscles and expressions, with those that the model has.
+/// The controls of an expression (empty: relax); activations in the list replace those of the expression. Throws Error
+/// on values outside 0..1, and on unknown muscles and expressions, with a list of the known ones.
 Controls target_controls(const Model& model, const std::string& expression,
                          const std::map<std::string, double>& listed);
 
@@ -22,15 +22,15 @@ Controls target_controls(const Model& model, const std::string& expression,
 /// other form, and Error on unknown bones and motions that are not finite.
 void parse_bone_motions(const Model& model, const std::vector<std::string>& texts, std::vector<RigidTransform>& bones);
 
-/// From rest to a target over a ramp.
+/// The curve of controls from rest to a target, over a linear ramp of `ramp` seconds.
 ControlCurve ramp_to(const Controls& target, double ramp);
 
 /// Reads a table with a header `time,NAME,NAME,...` and one row per knot, times ascending. A name is a muscle, or a
-/// bone and one of .x .y .z [mm] .rx .ry .rz [degrees]: its motion as parse_bone_motions() has it. Up to the first row
-/// all grow linearly from 0. Throws Error with the file's line.
+/// bone and one of .x .y .z [mm] .rx .ry .rz [degrees], which mean the same as in parse_bone_motions(). Before the
+/// first row all values grow linearly from 0. Throws Error with the file's line.
 ControlCurve read_control_curve(const std::string& path, const Model& model);
 
-/// The curve with bones of their own: all that `targets` has at other places than their rest pose go there over a ramp.
+/// The curve with the motions of bones replaced: bones whose target differs from rest go there over a ramp.
 ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransform>& targets, double ramp);
 
 }  // namespace frontalis

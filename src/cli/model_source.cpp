@@ -47,7 +47,7 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-// The model of a scene's content from the cache, if it is usable. `told`: receives a sentence on what was found.
+// The cached model with the given hash of its scene, if it is usable. `told` receives a sentence on what was found.
 std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
 {
   if (path.empty() || !std::filesystem::exists(path))

@@ -25,28 +25,28 @@ struct ModelSource
   SceneOptions scene;
   std::string cache;             ///< folder that keeps models by the hash of their scene; empty: none
   std::string surfaces;          ///< folder to write the scene's surfaces to; empty: none
-  std::FILE* progress = stdout;  ///< names the stages of a bake if stderr is not a terminal
+  std::FILE* progress = stdout;  ///< receives the names of a bake's stages if stderr is not a terminal
 };
 
 /// The report of a bake, ready to print.
 struct BakeSummary
 {
-  bool whole = false;   ///< set before the bake: measure the muscles too
-  std::string stages;   ///< how the cache was used, if there is one, then seconds, peak memory and name of each stage
-  std::string muscles;  ///< a table of their volumes
+  bool whole = false;   ///< set before the bake to measure the muscles too
+  std::string stages;   ///< use of the cache, if there is one; seconds, peak memory and name of each stage
+  std::string muscles;  ///< a table of the muscles' volumes
   std::vector<std::string> findings;
 };
 
 /// Declares --mesh-dir, --accuracy and --voxel.
 void add_scene_options(CLI::App& command, ModelSource& source);
 
-/// Judges by the extension (.vtkhdf, .h5, .hdf5) or by the signature of HDF5 at the file's beginning.
+/// Whether a file is a baked model: by its extension (.vtkhdf, .h5, .hdf5) or the signature of HDF5 at its beginning.
 bool is_model_file(const std::string& path);
 
 /// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.
 Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);
 
-/// Like bake(), but Ctrl-C makes it throw Interrupted. Only in builds that bake.
+/// Like bake(), but throws Interrupted after Ctrl-C. Exists only in builds that can bake.
 Model bake_interruptibly(const Scene& scene, BakeReport* report,
                          const std::function<void(const std::string& stage, double done)>& progress);
 

@@ -13,13 +13,13 @@ namespace frontalis
 class Progress
 {
 public:
-  /// `lines`: stream for these lines; null: none are printed.
+  /// `lines`: stream for the lines without a terminal; null: no lines.
   explicit Progress(std::FILE* lines = stdout);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` from 0 to 1.
+  /// `done`: completed fraction of the stage, 0 to 1.
   void update(const std::string& stage, double done);
   /// Ends the line of an unfinished bar.
   void clear();

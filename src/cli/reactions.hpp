@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Forces and moments as BodyFrame has them: moments are about the centre of rotations given with `--bone`.
+/// Prints forces and moments on bodies. Moments are about the point about which `--bone` rotates a bone.
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies);
 
 /// Header of a table (CSV) with one row per frame and body.
@@ -17,14 +17,14 @@ inline const std::string reaction_heading =
     "moment_z_Nm\n";
 std::string reaction_rows(const Model& model, int frame, double time, const std::vector<BodyFrame>& bodies);
 
-/// Collects what acts on bodies over time, to be drawn.
+/// Collects the forces on bodies over time, for a plot.
 class ReactionPlot
 {
 public:
   /// `path` has no extension.
   ReactionPlot(std::string path, const Model& model) : path_(std::move(path)), model_(model) {}
   void add(double time, const std::vector<BodyFrame>& bodies);
-  /// Writes PATH.png and PATH.svg: of each body the magnitude of the force and its three components. Throws Error.
+  /// Writes PATH.png and PATH.svg with the magnitude and the components of the force on each body. Throws Error.
   void write() const;
 
 private:

@@ -35,15 +35,15 @@ struct RunOptions
   std::vector<std::string> without;
   bool to_equilibrium = false;
   double tolerance = 1e-3;
-  double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if that is less
+  double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if this is less
   bool demo = false;
   double seconds = 1;
   bool seconds_given = false;
   std::string frames, plot;
   bool vtp = false;
-  double frame_rate = 0;  ///< [1/s]; 0: the model's
+  double frame_rate = 0;  ///< [1/s]; 0: the model's frame rate
   SolverSettings solver;
-  int guard_interval = -1;  ///< steps; 0: no guard; -1: the backend's default
+  int guard_interval = -1;  ///< steps between checks; 0: no guard; -1: the backend's default
 };
 
 /// A solver, the controls that move it, and observations of its motion.
@@ -57,7 +57,7 @@ struct Run
   std::optional<ReactionPlot> plot{};
   std::optional<Guard> guard{};
   RunSummary summary{};
-  double time = 0;  ///< simulated so far [s], on the clock of the activations
+  double time = 0;  ///< simulated time so far [s], on the clock of the activations
 
   void play();
   void settle();
@@ -140,7 +140,7 @@ void Run::play()
   }
 }
 
-// relaxes to equilibrium under the final activations
+// relaxes the tissue to equilibrium under the final activations
 void Run::settle()
 {
   const double begin = wall_seconds();
@@ -189,7 +189,7 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
-// in reverse order, because an effect comes after those that it needs
+// switch off in reverse order, because an effect comes after those that it needs
 void switch_off(Solver& solver, EffectSet off)
 {
   const auto effects = every_effect();
@@ -213,7 +213,7 @@ ControlCurve curve_of(const RunOptions& options, const Model& model)
   return options.bones.empty() ? curve : with_bones(curve, bones, ramp);
 }
 
-// the demo of the model, and as many seconds as it takes unless others were asked for
+// returns the demo of the model; unless --seconds was given, sets it to the demo's duration
 ControlCurve demo_of(RunOptions& options, const Model& model)
 {
   if (model.demo.empty())

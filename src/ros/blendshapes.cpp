@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// whether the model has this action unit, or one of which this is a half
+// whether the model has this action unit, or an action unit of which `name` is the left or right half
 bool has_unit(const Model& model, const std::string& name)
 {
   return std::any_of(model.action_units.begin(), model.action_units.end(),

@@ -29,7 +29,7 @@ void BoneFollower::clear()
 
 RigidTransform BoneFollower::wanted(const BoneFrame& bone) const
 {
-  // the latest common time of all links: nothing is extrapolated
+  // time 0 means the latest time that all links have in common, so that nothing is extrapolated
   const auto place = [&](const std::string& frame)
   { return buffer_->lookupTransform(face_frame_, frame, ros::Time(0)); };
   const auto now = place(bone.frame);

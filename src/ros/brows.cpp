@@ -14,8 +14,8 @@ namespace
 using Point = std::array<double, 3>;
 
 constexpr double half_width = 4.0e-3;     // half the width of the band at its inner end [m]
-constexpr double inner_length = 9.0e-3;   // how far the band extends beyond the innermost landmark [m]
-constexpr double outer_length = 11.0e-3;  // how far it extends beyond the outermost landmark [m]
+constexpr double inner_length = 9.0e-3;   // length of the band beyond the innermost landmark [m]
+constexpr double outer_length = 11.0e-3;  // length of the band beyond the outermost landmark [m]
 constexpr double density = 0.85;          // fraction of the skin that hair covers in the middle of the band
 
 Point blend(const Point& a, const Point& b, double share)
@@ -88,7 +88,7 @@ std::vector<float> brow_cover(const Model& model)
       continue;
     for (std::size_t vertex = 0; vertex < cover.size(); ++vertex)
     {
-      // dense in the middle, soft at the border, and narrower towards the temple
+      // hair is dense in the middle and soft at the border of the band, which is narrower towards the temple
       const auto [off, along] = closest_on_line(points, model.skin.vertices[vertex]);
       const double width = half_width * (1 - 0.55 * along);
       const double share = std::clamp((1.5 * width - off) / width, 0.0, 1.0);

@@ -171,7 +171,7 @@ void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, g
       const auto& n = skin.normals[vertices[landmark]];
       outwards = tf2::Vector3(n[0], n[1], n[2]);
     }
-    // Where the normal points straight up, z lies along the skin to the back of the face; straight down, to its front.
+    // If the normal points straight up, z points to the back of the face; if it points straight down, to the front.
     const tf2::Vector3 up = std::abs(outwards.z()) < 0.99 ? tf2::Vector3(0, 0, 1) : tf2::Vector3(-outwards.z(), 0, 0);
     const tf2::Vector3 left = up.cross(outwards).normalized(), upwards = outwards.cross(left);
     tf2::Quaternion rotation;

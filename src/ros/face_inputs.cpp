@@ -80,7 +80,7 @@ void FaceInputs::play(Runner& running, double time)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (&running.model() != model_.get())
-    return;  // this runner is about to be replaced by that of another scene
+    return;  // the runner of another scene is about to replace this one
   if (demo_playing_)
   {
     running.set_activation(demo_->activation(time));

@@ -15,9 +15,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double play_period = 1.0 / 30;     // time between two settings of activations that change [s]
+constexpr double play_period = 1.0 / 30;     // time between two updates of changing activations [s]
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
-constexpr double diagnostics_period = 1.0;   // time between two messages, unless ~diagnostic_period says another [s]
+constexpr double diagnostics_period = 1.0;   // time between two diagnostic messages without ~diagnostic_period [s]
 constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 
@@ -65,7 +65,7 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
 
 FaceNode::~FaceNode()
 {
-  // Order matters: no callback may begin any more; then the loaders and the runner end, which still use the publishers.
+  // The order matters: first no further callback may begin; then loaders and runner, which use the publishers, end.
   stopping_ = true;
   frame_timer_.stop();
   diagnostics_timer_.stop();
@@ -114,7 +114,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   if (parameters.inputs.demo && model->demo.empty())
     ROS_WARN_STREAM(name_ << ": ~demo is true, but the scene has no demo");
 
-  // its frames are ignored until it has taken the place of the present runner
+  // frames of the new runner are ignored until it has replaced the present one
   const std::uint64_t face = ++faces_made_;
   RunnerSettings settings = parameters.runner;
   settings.wanted_field = [this] { return publisher_.wanted_field(); };
@@ -144,7 +144,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     before->cancel_step();
   before.reset();
   paused_ = made->paused();
-  // publishes the face at rest, in lock-step too
+  // a reset publishes the face at rest, also in lock-step
   made->reset();
   {
     // the new runner has all effects switched on
@@ -222,7 +222,7 @@ void FaceNode::repeat_frame_and_play()
   {
     const std::scoped_lock lock(runner_mutex_, frame_mutex_);
     running = runner_;
-    // in lock-step ~step plays the demo and the commands
+    // in lock-step, ~step plays the demo and the commands instead
     steps_by_itself = parameters_.runner.pace != Pace::lock_step;
     if ((ros::WallTime::now() - last_published_).toSec() > repetition_period)
     {

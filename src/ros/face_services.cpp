@@ -15,7 +15,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double piece = 1.0 / 30;  // of a ~step while activations change by themselves, or a watchdog may act [s]
+constexpr double piece = 1.0 / 30;  // length of the pieces of a ~step while activations may change [s]
 
 }  // namespace
 
@@ -193,7 +193,7 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
   catch (const Error& error)
   {
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
-    // Applying the old configuration also undoes what was applied before the fault was found.
+    // Applying the old configuration undoes the changes made before the fault was found.
     config = config_;
     apply_config(*running, config_);
   }

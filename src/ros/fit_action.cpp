@@ -23,7 +23,7 @@ void check_length(const std::string& field, std::size_t found, std::size_t wante
     throw Error(fmt::format("{}: found {} entries; must be {}, one per {}", field, found, wanted, of));
 }
 
-// The goal as a file of targets. Names are quoted, so that no name changes the file's structure.
+// The goal as the text of a file of targets. Names are quoted, so that no name changes the file's structure.
 std::string request_of(const FitActivationGoal& goal)
 {
   check_length("target", goal.target.size(), goal.landmark.size(), "landmark");

@@ -16,9 +16,9 @@ namespace frontalis
 namespace
 {
 
-constexpr std::size_t reason_length = 400;    // a message may name a million muscles: a warning shows the beginning
-constexpr std::size_t most_points = 100'000;  // of a trajectory
-constexpr double longest_wait = 60;           // for the beginning of a trajectory [s]
+constexpr std::size_t reason_length = 400;    // longest text of a warning, since a message may name a million muscles
+constexpr std::size_t most_points = 100'000;  // largest number of points of a trajectory
+constexpr double longest_wait = 60;           // longest time until a trajectory begins [s]
 
 void check_lengths(std::size_t names, std::size_t values, std::size_t most)
 {
@@ -49,7 +49,7 @@ std::set<std::string> bones_of_poses(const Model& model)
 
 void FaceInputs::check_stamp(const ros::Time& stamp) const
 {
-  // A message without a stamp counts as sent now. A simulated clock that has not begun cannot be compared with.
+  // A message without a stamp counts as sent now. Stamps cannot be checked before a simulated clock has begun.
   if (stamp.isZero() || ros::Time::now().isZero())
     return;
   const double age = (ros::Time::now() - stamp).toSec();
@@ -98,7 +98,7 @@ void FaceInputs::end_demo(const char* topic)
 void FaceInputs::command(const char* topic, Runner& running, double now,
                          const std::map<std::string, MuscleCommands::Course>& courses, double begin)
 {
-  // The message ends the demo. Muscles that it does not name stay where the demo has them.
+  // The message ends the demo. Muscles that it does not name keep their activation in the demo.
   if (demo_playing_)
     commands_->set(demo_->activation(now), now);
   commands_->follow(courses, begin, now);
@@ -135,7 +135,7 @@ void FaceInputs::on_joint_states(const sensor_msgs::JointState& message)
 void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& message)
 {
   const char* const topic = "joint_trajectory";
-  // The stamp says when the trajectory begins and may be in the future: the age of the message is not checked.
+  // The stamp is the time at which the trajectory begins. It may be in the future, so the message's age is not checked.
   take(topic, ros::Time(),
        [&](Runner& running, double now)
        {

@@ -40,7 +40,7 @@ namespace asio = boost::asio;
 namespace bp = boost::process;
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds cancellation_period(50);  // between two checks whether the bake is cancelled
+constexpr std::chrono::milliseconds cancellation_period(50);  // time between two checks for cancellation
 
 bool is_program(const fs::path& path)
 {
@@ -48,8 +48,8 @@ bool is_program(const fs::path& path)
   return fs::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
 }
 
-/// Reads a pipe to its end and hands on each line. A carriage return ends a line too, as programs that rewrite a line
-/// of progress print it instead of a newline.
+/// Reads a pipe to its end and passes on each line. A carriage return ends a line too, because programs that rewrite a
+/// line of progress print it instead of a newline.
 class LineReader
 {
 public:

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-/// Reads parameters one by one and collects what is wrong with them.
+/// Reads parameters one by one and collects their faults.
 class Reader
 {
 public:
@@ -42,7 +42,7 @@ public:
     return found;
   }
 
-  /// A finite number that is not below `least`.
+  /// Reads a finite number that is at least `least`.
   template <typename T>
   T number(const std::string& key, T fallback, const char* type, T least, const char* allowed)
   {
@@ -52,7 +52,7 @@ public:
     return found;
   }
 
-  /// The value that `value_of` has for the text of a parameter; it throws an Error if it has none.
+  /// Reads a text parameter and returns value_of(text), which throws an Error if the text is not allowed.
   template <typename Value>
   Value named(const std::string& key, const std::string& fallback, Value (*value_of)(const std::string&))
   {
@@ -92,12 +92,12 @@ Pace pace_from_name(const std::string& name)
   throw Error(fmt::format("found '{}'; allowed are real_time, fastest and lock_step", name));
 }
 
-/// The parameter ~bone_frames: by bone a frame, or its frame and the frame where that is at rest.
+/// Reads the parameter ~bone_frames: for each bone a frame, or a mapping {frame, rest} with the frame's place at rest.
 std::vector<BoneFrame> read_bone_frames(Reader& reader)
 {
   std::vector<BoneFrame> out;
   XmlRpc::XmlRpcValue all;
-  all.begin();  // makes it a struct
+  all.begin();  // makes the value a struct
   for (auto& [bone, value] : reader.value("bone_frames", all, "a mapping of bones to frames"))
   {
     const auto text = [&entry = value](const char* key) -> std::string

@@ -3,8 +3,8 @@
 
 usage: play_track.py TABLE [FACE]
 
-Sends the muscles of the table as one message on FACE/joint_trajectory (default: face). Columns of bones, such as jaw.x, are left out
-and named.
+Sends the muscles of the table as one message on FACE/joint_trajectory (default: face). Leaves out columns of bones, such as jaw.x, and
+lists them.
 """
 
 import csv
@@ -17,7 +17,7 @@ CONNECTION_TIMEOUT = 30  # [s] wall time
 
 
 def trajectory(path):
-    """The table as a trajectory, and the names of its columns that are no muscles."""
+    """Return the table as a trajectory, and the names of its columns of bones."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file, skipinitialspace=True))
     if not rows or "time" not in rows[0]:
@@ -52,7 +52,7 @@ def main():
     else:
         sys.exit("play_track: nobody listens to %s" % publisher.resolved_name)
     publisher.publish(message)
-    rospy.rostime.wallsleep(0.5)  # until it is sent
+    rospy.rostime.wallsleep(0.5)  # time to send the message
 
 
 if __name__ == "__main__":

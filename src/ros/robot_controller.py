@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Moves the joints of a robot face (doc/robots.md): trajectories in, joint states with efforts out.
 
-It stands for the controller of a real robot, with the topics of ros_control's joint trajectory controller. Joints follow a
-trajectory at most as fast as the URDF allows. The effort of a joint is the force that its anchor needs against the skin: that of
-~wrench/ANCHOR of the face, along the joint.
+It takes the place of a real robot's controller and has the topics of ros_control's joint trajectory controller. Joints follow a
+trajectory at most as fast as the URDF allows. The effort of a joint is the force or torque that its anchor needs against the skin,
+along the joint's axis: the opposite of ~wrench/ANCHOR of the face.
 """
 
 import threading
@@ -26,7 +26,7 @@ class Joint:
         self.turns = element.get("type") != "prismatic"
         self.lower, self.upper, self.velocity = (float(limit.get(key)) for key in ("lower", "upper", "velocity"))
         self.position = self.speed = self.effort = 0.0
-        self.times, self.goals = [], []  # knots of its trajectory; none: it stays
+        self.times, self.goals = [], []  # knots of the joint's trajectory; none: it stays
 
     def wanted(self, now):
         """The position of the trajectory at a time [s]."""
@@ -60,7 +60,7 @@ class Controller:
         rospy.Subscriber("~command", JointTrajectory, self.take_trajectory, queue_size=10)
 
     def take_wrench(self, message, joint):
-        # the frame of the anchor lies as the face frame and the joints do
+        # the anchor's frame is parallel to the face frame and the joints' frames
         vector = message.wrench.torque if joint.turns else message.wrench.force
         joint.effort = -sum(a * b for a, b in zip(joint.axis, (vector.x, vector.y, vector.z)))
 

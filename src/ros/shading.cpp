@@ -30,12 +30,12 @@ const Vector view = { { 1, 0, 0 } };
 const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
 
 const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear, before gamma
-const Vector wrap = { { 0.30f, 0.16f, 0.10f } };    // how far each colour scatters into the shadow; red goes farthest
+const Vector wrap = { { 0.30f, 0.16f, 0.10f } };  // extension of light into the shadow by scattering; red goes farthest
 const Vector hair_albedo = { { 0.050f, 0.030f, 0.020f } };
 const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
-constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses per unit of mean curvature [m]
+constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses, per mean curvature [m]
 
 }  // namespace
 
@@ -84,8 +84,8 @@ void SkinShading::colours(const SkinState& skin, const std::vector<float>& value
     const Vector& position = skin.vertices[vertex];
     const Vector& normal = skin.normals[vertex];
 
-    // mean normal curvature [1/m], positive in hollows: the mean over the neighbours of twice their height above the
-    // tangent plane, divided by their squared distance
+    // mean normal curvature [1/m], positive in hollows: the mean over neighbours of twice the height above the tangent
+    // plane over the squared distance
     float curvature = 0;
     const auto begin = neighbour_begin_[vertex], end = neighbour_begin_[vertex + 1];
     for (auto entry = begin; entry < end; ++entry)

@@ -28,7 +28,8 @@ std::string hash_of_file(const std::string& path)
   return content_hash(bytes.str());
 }
 
-/// Lines of values, each after a blank. Strings carry their length, so that different scenes give different lines.
+/// Collects lines of values, with a blank before each value. Strings are written with their length, so that different
+/// scenes give different lines.
 class Content
 {
 public:

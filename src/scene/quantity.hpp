@@ -17,7 +17,7 @@ enum class Dimension
   pressure,      ///< Pa, kPa, MPa, GPa; default: Pa
   density,       ///< kg/m3, g/cm3; default: kg/m3
   acceleration,  ///< m/s2; default: m/s2
-  angle,         ///< deg, rad; default: deg, as in the options of the command line; in rad
+  angle,         ///< deg, rad; default: deg, as on the command line; parsed to rad
   mass,          ///< kg, g; default: kg
   force,         ///< N, mN; default: N
   spring,        ///< N/m, N/mm; default: N/m

@@ -116,7 +116,7 @@ auto find_profile(Scene& scene, const std::string& name)
                       [&](const AccuracyProfile& profile) { return profile.name == name; });
 }
 
-// replaces the voxel edge of the chosen profile by that of the options, if they have one
+// replaces the voxel edge of the chosen profile by the one in the options, if any
 void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
@@ -171,7 +171,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
-    // the profile of the file replaces that of the same name in the scene
+    // the profile from the file replaces a profile of the same name in the scene
     if (const auto same = find_profile(scene, scene.accuracy.name); same != scene.profiles.end())
       scene.profiles.erase(same);
     scene.profiles.push_back(scene.accuracy);

@@ -9,10 +9,10 @@ namespace frontalis
 namespace
 {
 
-constexpr Bound of_units{ -1, 1 };  // weights of muscles in action units; those below 0 lower a tone
+constexpr Bound of_units{ -1, 1 };  // weights of muscles in action units; negative weights lower a tone
 
-/// Reads poses of the face. A scene's own must name what the scene has. Those of a file that several scenes share may
-/// name more: what this scene lacks is left out, and so are poses of which nothing is left.
+/// Reads poses of the face. Poses in the scene file may name only muscles and bones of the scene. Poses in a `shared`
+/// file may name others, which are left out; a pose of which nothing is left is left out too.
 class PoseReader
 {
 public:
@@ -99,7 +99,7 @@ private:
     return pose;
   }
 
-  /// Those that a name stands for and, of a shared file, that the scene has.
+  /// The muscles or bones that a name stands for; for a shared file, none if the scene lacks them.
   std::vector<std::string> in_scene(const std::string& name, const Node& place, const Names& known) const
   {
     std::vector<std::string> meant = known.both_sides(name);
@@ -115,7 +115,7 @@ private:
   bool shared_;
 };
 
-/// Reads action units and expressions from a file that scenes share.
+/// Reads action units and expressions from a file that several scenes share.
 void read_shared_poses(const Node& file, Scene& scene, const SceneNames& names)
 {
   const std::string path = (std::filesystem::path(scene.file).parent_path() / file.text()).string();

@@ -15,7 +15,7 @@ double read_length(const Node& node, const Bound& bound = positive) { return nod
 
 Vector3 read_place(const Node& node) { return node.vector(Dimension::length, any_number, { 0, 0, 0 }); }
 
-/// Reads a file that the template names, beside it: calls read(root) and hands its faults on.
+/// Reads a file that the template names and that lies in the same folder: calls read(root) and passes on its faults.
 template <class Read>
 void read_beside(const Node& name, HeadTemplate& head, const Read& read)
 {
@@ -89,7 +89,7 @@ double read_coordinate(const Node& node, double fallback)
   return node.number(Dimension::length, any_number, fallback);
 }
 
-/// Points of an outline, given by the two coordinates that are not across it.
+/// Points of an outline, which have the two coordinates in its plane.
 std::vector<Vector3> read_flat_points(const Node& list)
 {
   std::vector<Vector3> points;
@@ -125,7 +125,7 @@ void read_outline(const Node& node, HeadTemplate::Solid& solid)
 HeadTemplate::Solid read_solid(const Node& entry)
 {
   using Kind = HeadTemplate::Solid::Kind;
-  // in the order of Solid::Kind
+  // the names of Solid::Kind, in its order
   static const std::vector<std::string> kinds{ "below", "above", "ellipsoid", "outline", "tube", "teeth" };
   HeadTemplate::Solid solid;
   Mapping mapping(entry);
@@ -178,7 +178,7 @@ HeadTemplate::Solid read_solid(const Node& entry)
 void read_built(const Node& node, HeadTemplate::Built& built)
 {
   using Kind = HeadTemplate::BoneStep::Kind;
-  static const std::vector<std::string> kinds{ "add", "cut", "keep" };  // in the order of BoneStep::Kind
+  static const std::vector<std::string> kinds{ "add", "cut", "keep" };  // names of BoneStep::Kind, in its order
   for (const auto& [name, list] : node.named_pairs())
   {
     auto& steps = built.emplace_back(name, std::vector<HeadTemplate::BoneStep>()).second;
@@ -252,7 +252,7 @@ void read_muscle(const std::string& name, const Node& node, HeadTemplate& head)
   head.muscles.push_back(muscle);
 }
 
-/// Reads landmarks that are vertices of the cage, in the midline or of the left side.
+/// Reads landmarks that are vertices of the cage, in the midline or on the left side.
 void read_vertices(const Node& node, Names& landmarks, HeadTemplate& head)
 {
   Mapping mapping(node);
@@ -270,7 +270,7 @@ void read_vertices(const Node& node, Names& landmarks, HeadTemplate& head)
     }
 }
 
-/// Reads a set of landmarks: each entry has a name, or its number, or those of the left point and its mirror image.
+/// Reads a set of landmarks. An entry has a name, a number, or two numbers: of the left point and of its mirror image.
 void read_points(const std::string& set, const Node& list, HeadTemplate& head)
 {
   for (const Node& entry : list.entries())
@@ -347,7 +347,7 @@ HeadTemplate::Joint read_joint(const Node& node)
   Mapping fields(node);
   joint.at = read_place(fields.required("at", "a position"));
   joint.axis = fields.required("axis", "a direction").direction(joint.axis);
-  // lengths per degree
+  // the file has lengths per degree
   joint.slide = fields.optional("slide").vector(Dimension::length, any_number, joint.slide);
   for (double& x : joint.slide)
     x *= 180 / 3.14159265358979323846;

@@ -62,7 +62,7 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   return value;
 }
 
-// reads one fibre direction or those of two fibre families, which may follow a surface
+// reads one fibre direction, or the directions of two fibre families, which may follow a surface
 void read_directions(int count, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   if (count == 1)

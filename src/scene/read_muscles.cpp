@@ -83,7 +83,7 @@ void read_fibres(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle)
   }
 }
 
-/// Keys that the muscles of a set may share. Those that are not given keep their values.
+/// Reads the keys that the muscles of a set may share. Keys that are not given leave their values unchanged.
 void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle, std::string& material)
 {
   if (const Node node = mapping.optional("material"); node.given())
@@ -98,7 +98,7 @@ void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle,
   muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
 }
 
-/// Finds the volume of the muscle's own name; if there is none, makes one of the inside of the surface of that name.
+/// Finds the volume with the muscle's name. If there is none, makes a volume from the surface with that name.
 void find_volume(const Node& key, const std::string& material, SceneMuscle& muscle, Scene& scene, SceneNames& names)
 {
   muscle.volume = muscle.name;
@@ -131,7 +131,7 @@ std::string without_side(const std::string& name)
   return side == "_left" || side == "_right" ? name.substr(0, at) : name;
 }
 
-/// Names of the surfaces that `each` lists: its own, and the muscles of the sets that it names.
+/// Names of the surfaces that `each` lists, and of the muscles in the sets that it lists, except those in `without`.
 std::vector<std::string> read_members(const Node& each, const Node& without, const SceneNames& names)
 {
   Names known = names.surfaces, members{ "muscle of the set", {}, true };
@@ -156,7 +156,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   const auto place = [&](const std::string& name)
   { return std::find_if(scene.muscles.begin(), scene.muscles.end(), [&](const auto& m) { return m.name == name; }); };
   std::map<std::string, std::string> materials;
-  // sets first, so that an entry of a muscle's own name replaces what its set says
+  // read sets first, so that the entry of a single muscle replaces the values of its set
   for (const auto& [name, entry] : entries)
     if (entry.has("each"))
     {
@@ -183,7 +183,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   {
     if (entry.has("each"))
       continue;
-    // a name without its side stands for both muscles of a set
+    // a name without a side means both muscles of a set
     Names made{ "muscle", {}, true };
     for (const SceneMuscle& muscle : scene.muscles)
       made.names.push_back(muscle.name);

@@ -39,7 +39,7 @@ void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names)
   skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
 }
 
-/// Adds the landmarks of a set of a head: {each: SET OF SURFACES, set: NAME, only: [NAME, …]}.
+/// Adds a set of landmarks of a head, given as {each: SET OF SURFACES, set: NAME, only: [NAME, …]}.
 static void read_head_landmarks(const Node& entry, Scene& scene, const SceneNames& names)
 {
   Mapping mapping(entry);

@@ -46,7 +46,7 @@ public:
     return path.string();
   }
 
-  /// The template in a file, which all shapes that name the file share; null if it cannot be read.
+  /// The template in a file; null if it cannot be read. All shapes that name the file share the template.
   std::shared_ptr<const HeadTemplate> head(const Node& file)
   {
     const std::string path = resolve(file);
@@ -79,15 +79,15 @@ private:
   bool reported_ = false;
 };
 
-/// The parts of a shape that an entry stands for.
+/// The parts of a shape that an entry selects.
 struct Parts
 {
   bool many = false;                 ///< whether the entry is a set of surfaces
-  std::vector<std::string> names;    ///< those of the set
-  std::vector<std::string> muscles;  ///< the muscles among them
+  std::vector<std::string> names;    ///< the parts in the set
+  std::vector<std::string> muscles;  ///< the muscles in the set
 };
 
-/// Reads `parts` (`all` or names) or `part`. `known` is empty if the parts cannot be told.
+/// Reads the key `parts` (`all` or names) or `part`. `known` is empty if the possible parts are unknown.
 void read_parts(const Node& many, const Node& one, const std::string& whole, const std::vector<std::string>& known,
                 const std::vector<std::string>& muscles, Shape& shape, Parts& parts)
 {
@@ -162,7 +162,7 @@ void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
 
 Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Parts& parts)
 {
-  // in the order of Shape::Kind
+  // the names of Shape::Kind, in its order
   static const std::vector<std::string> kinds{ "box", "sphere", "ellipsoid", "cylinder", "torus", "forehead", "head" };
   const std::string name = kind_node.choice(kinds);
   Shape shape;
@@ -282,7 +282,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
       names.heads[name] = *surface.shape;
     for (const std::string& part : parts.names)
     {
-      // an entry of the part's own name replaces it
+      // an entry with the name of a part replaces that part of the set
       if (std::any_of(entries.begin(), entries.end(), [&](const auto& other) { return other.first == part; }))
         continue;
       surface.name = surface.shape->part = part;

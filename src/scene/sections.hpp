@@ -22,8 +22,8 @@ struct SceneNames
   Names muscles{ "muscle", {}, true };
   Names expressions{ "expression", { "relax" }, true };
   Names bones{ "bone", {}, true };
-  std::map<std::string, std::vector<std::string>> muscle_sets;  ///< the muscles among the parts of a set of surfaces
-  std::map<std::string, Shape> heads;                           ///< sets of parts of a head
+  std::map<std::string, std::vector<std::string>> muscle_sets;  ///< by set of surfaces the muscles among its parts
+  std::map<std::string, Shape> heads;                           ///< sets of surfaces that are parts of a head
 };
 
 // One function per section, in the order in which the file is read. The section may be absent.
@@ -38,11 +38,11 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names);
 void read_weakness(const Node& node, Scene& scene, const SceneNames& names);
 void read_constraints(const Node& node, Scene& scene, SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
-/// Must be called after read_constraints(), because friction is an effect.
+/// Must be called after read_constraints(), because the constraints decide whether the scene has friction.
 void read_effects(const Node& node, Scene& scene);
 void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene, const SceneNames& names);
-/// Reads how bones turn; joints of heads are added to those of the scene.
+/// Reads the joints of bones, and adds the joints of heads to those of the scene.
 void read_joints(const Node& node, Scene& scene, const SceneNames& names);
 HeadTemplate::Joint read_joint(const Node& node);
 void read_time(const Node& node, SceneTime& time);
@@ -56,7 +56,7 @@ void read_demo(const Node& node, Scene& scene, const SceneNames& names);
 /// Reads {lower: [x, y, z], upper: [x, y, z]}. One of the two lists may be missing, and numbers may be null.
 Region read_region(const Node& node);
 
-/// Reads the mapping in a YAML file, which messages describe by `what` and `expected`. Throws Error if it cannot.
+/// Reads the mapping in a YAML file. Throws Error if this fails; messages use `what` and `expected`.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
 /// Reads the name of a length unit and returns the unit [m]; `fallback` if the value is absent or wrong.

@@ -52,15 +52,15 @@ struct Names
 {
   std::string kind;  ///< singular noun for messages, such as "surface"
   std::vector<std::string> names;
-  bool complete = true;  ///< false: the section has faults, so that unknown names may result from them
+  bool complete = true;  ///< false: the section has faults, which may be the reason of unknown names
 
   bool has(const std::string& name) const;
-  /// `name`; or NAME_left and NAME_right, if `name` is unknown and these two are known.
+  /// Returns `name`, or NAME_left and NAME_right if `name` is unknown and these two are known.
   std::vector<std::string> both_sides(const std::string& name) const;
 };
 
 /// A value of the file, or an absent one, with its dotted path and line. If the value is absent or wrong, each reading
-/// function returns `fallback` or an empty text; if it is wrong, it also records a fault.
+/// function returns `fallback` or an empty text. For a wrong value it also records a fault.
 class Node
 {
 public:
@@ -83,7 +83,7 @@ public:
   bool is_text() const { return given_ && yaml_.IsScalar(); }
   bool is_list() const { return given_ && yaml_.IsSequence(); }
   bool is_mapping() const { return given_ && yaml_.IsMap(); }
-  /// Whether it is a mapping with that key.
+  /// Whether the value is a mapping with that key.
   bool has(const std::string& key) const { return is_mapping() && yaml_[key].IsDefined(); }
   int line() const { return line_; }
   const std::string& path() const { return path_; }
@@ -98,7 +98,7 @@ public:
   bool faulty() const { return context_->faults.any_at(path_); }
 
   std::string text() const;
-  std::string name() const;  ///< text of [A-Za-z0-9_]+
+  std::string name() const;  ///< a text that matches [A-Za-z0-9_]+
   /// One of `allowed`.
   std::string choice(const std::vector<std::string>& allowed) const;
   bool boolean(bool fallback) const;
@@ -114,7 +114,7 @@ public:
   std::string reference(const Names& names) const;
   /// Records a fault if `name` is not among `names`, unless these are incomplete.
   void check_known(const std::string& name, const Names& names) const;
-  /// One of `names` or a list of several different ones. A name without its side stands for both: Names::both_sides().
+  /// One of `names`, or a list of different ones. A name without a side may mean both sides: see Names::both_sides().
   std::vector<std::string> references(const Names& names) const;
 
   /// Entries of a list; a value that is not a list is a fault.
@@ -139,8 +139,8 @@ private:
   bool given_ = false;
 };
 
-/// A mapping with fixed keys. When it goes out of scope, each key that was never asked for is recorded as a fault that
-/// lists the known keys.
+/// A mapping with fixed keys. When the object goes out of scope, each key that was never asked for is recorded as a
+/// fault that lists the known keys.
 class Mapping
 {
 public:

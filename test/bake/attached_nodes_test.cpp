@@ -14,7 +14,7 @@ using namespace frontalis;
 
 constexpr double radius = 30.37e-3;
 
-/// An eighth of a layer on a ball, `depth` thick, held or sliding.
+/// An eighth of a layer of thickness `depth` on a ball. `kind`: whether it is held or slides.
 Scene layer_scene(double depth, SceneConstraint::Kind kind)
 {
   Scene scene = plain_scene(2e-3);
@@ -75,8 +75,8 @@ TEST(AttachedNodes, FollowFreeNodesAboveTheSurface)
   }
 }
 
-// The centroids of all voxels, weighted by their tissue, have the centroid of the body: of an eighth of a shell between
-// two radii it is 3/8 of (b^4 - a^4) / (b^3 - a^3) along each axis.
+// The mean of the centroids of all voxels, weighted by their tissue, is the centroid of the body. For an eighth of a
+// shell between the radii a and b that is 3/8 (b^4 - a^4) / (b^3 - a^3) along each axis.
 TEST(CutVoxels, KnowTheCentroidsOfTheirTissue)
 {
   const Model model = bake(layer_scene(8e-3, SceneConstraint::Kind::rigid));

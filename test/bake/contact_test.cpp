@@ -61,9 +61,9 @@ TEST(BakedContact, ASphereIsExactAndPointsHaveTheAreaOfTheSurface)
   EXPECT_EQ(contact.friction, 0.3);
   EXPECT_TRUE(contact.field.samples.empty());
   EXPECT_NEAR(level_at(contact.field, local(model, { 10e-3, 6e-3, 8e-3 })), 1e-3, 1e-12);
-  // points are on the upper side, and on strips of 0.1 mm at the other sides
+  // the points represent the upper side, and strips of 0.1 mm of the sides next to it
   EXPECT_NEAR(std::accumulate(contact.area.begin(), contact.area.end(), 0.0), 240e-6 + 64e-3 * 0.1e-3, 1e-9);
-  // the surface's large triangles have been divided
+  // the bake has divided the surface's large triangles
   EXPECT_GT(contact.points.size(), 21u * 13u);
   EXPECT_TRUE(effects_of(model).has(Effect::contact));
   EXPECT_EQ(model.constraints, std::vector<std::string>{ "touch" });
@@ -80,7 +80,7 @@ TEST(BakedContact, OtherBodiesAreSampledAsOneAroundTheirSurfaces)
   EXPECT_NEAR(model.contacts[0].reach, 2e-3, 1e-15);
   for (const double z : { 7.1e-3, 8e-3, 8.9e-3, 9.2e-3, 10.9e-3 })
     EXPECT_NEAR(level_at(field, local(model, { 7.5e-3, 6e-3, z })), 9e-3 - z, 0.03e-3) << z;
-  // the inside of a body is all there
+  // the field covers the inside of a body
   EXPECT_LT(level_at(field, local(model, { 10e-3, 6e-3, 16e-3 })), -2.5e-3);
   // at this height only the ball has samples
   EXPECT_NEAR(level_at(field, local(model, { 10e-3, 6e-3, 20e-3 })), 1e-3, 0.05e-3);

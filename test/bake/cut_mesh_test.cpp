@@ -55,7 +55,7 @@ TEST(CutMesh, NeighboursShareTheNewVertices)
   Region region;
   region.upper[0] = 2.3;
   const TriangleMesh part = cut_mesh(square(4), region);
-  // only the rim of a rectangle is left: all other edges belong to two triangles
+  // the only border is the rim of a rectangle: all other edges belong to two triangles
   const auto rim = unbalanced_edges(part);
   double length = 0;
   for (const auto& edge : rim)

@@ -19,7 +19,7 @@ using Field = std::function<Vector3(const Vector3&)>;
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Writes the surface of the unit cube, mapped into space, in millimetres; n facets per edge.
+/// Writes the surface of the unit cube, mapped into space, in millimetres. Each edge of the cube has n facets.
 std::string block_file(const std::string& name, int n, const Map& map)
 {
   static const TemporaryFolder folder;
@@ -227,7 +227,7 @@ TEST(Fibres, RunFromOriginToInsertion)
       },
       5);
 
-  // wider than long, so that its shape alone does not determine the direction
+  // this muscle is wider than long, so that its shape alone does not determine the direction
   scene = muscle_scene(fan(45), 1e-3);
   for (int k = -4; k <= 4; ++k)
   {
@@ -245,7 +245,7 @@ TEST(Fibres, RunFromOriginToInsertion)
 
 TEST(Fibres, FollowAControlNet)
 {
-  // a quarter of a circle is a rational quadratic
+  // a quarter of a circle is a rational quadratic curve
   Scene scene = muscle_scene(bent_cylinder(), 1e-3);
   ControlNet net;
   net.size = { 3, 2, 2 };
@@ -253,7 +253,7 @@ TEST(Fibres, FollowAControlNet)
     for (const double radius : { 20e-3, 40e-3 })
       for (const double z : { -10e-3, 10e-3 })
       {
-        // rotated so that the arc is symmetric to x
+        // the cylinder is rotated so that its arc is symmetric to x
         const double x = corner[0] > 0 ? corner[0] : 0.7071067811865476;
         const double y = corner[0] > 0 ? 0 : 0.7071067811865476 * corner[1];
         net.points.push_back({ radius * x, radius * y, z });

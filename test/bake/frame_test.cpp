@@ -41,7 +41,7 @@ TEST_P(Frame, LocalAxesArePermutedConsistently)
   const Scene scene = ellipsoid_scene(axis);
   const Model model = bake(scene);
   const auto& r = model.to_scene.rotation;
-  // right-handed, rows of voxels along the longest axis
+  // the local frame is right-handed, and rows of voxels run along the longest axis
   const double determinant =
       r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
   EXPECT_EQ(determinant, 1);
@@ -118,7 +118,7 @@ TEST(Binding, ReproducesAffineMotion)
     }
   }
   EXPECT_LT(farthest, 2);
-  // the landmark is bound as precisely as the skin
+  // the landmark's binding is as precise as that of the skin
   const Vector3 expected = field(model.landmark_positions[0]);
   const Vector3 found = interpolated(model, model.landmark_binding, 0, field);
   for (std::size_t a = 0; a < 3; ++a)
@@ -151,7 +151,7 @@ TEST(Binding, KeepsTheOrderOfTheSurface)
   {
     const Vector3 p = transformed(cut.to_scene, v);
     if (std::abs(p[0] - scene.skin.crop.upper[0]) < 1e-9)
-      continue;  // a new vertex on the cut
+      continue;  // the vertex is a new one on the cut
     const auto same = [&](const Vector3& w)
     {
       const Vector3 q = transformed(whole.to_scene, w);

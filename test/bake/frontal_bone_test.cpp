@@ -1,4 +1,4 @@
-// Nodes that slide over a bone stay on level sets of a distance field: that of the side of the bone that faces tissue.
+// Nodes that slide over a bone stay on level sets of a distance field, the distance from the side that faces tissue.
 
 #include "bake/fibres/fibres.hpp"
 #include "bake/voxels/model_stages.hpp"
@@ -78,7 +78,7 @@ double table_radius(const Point& d, bool outer)
 }
 
 // An artificial closed skull with an outer and an inner table, 4 to 10 mm apart, with brow ridges and bumps and about
-// as many triangles as the real bone: the squares on a cube's faces, moved onto the tables.
+// as many triangles as the real bone. Its vertices are those of squares on a cube's faces, moved onto the tables.
 TriangleMesh made_bone()
 {
   constexpr int squares = 38;
@@ -137,7 +137,7 @@ struct CoveredBone
     {
       const ClosestPoint closest = bone.tree().closest(p);
       const double distance = bone.signed_distance(p, closest);
-      // half an edge below the surface, because voxels reach into the bone
+      // tissue begins half an edge below the surface, because voxels reach into the bone
       return distance > -0.5 * edge && distance < 5e-3 && bone.pseudonormal(closest).dot(forward) > 0.4 &&
              (closest.point - bone.box().center()).dot(forward) > 0;
     };
@@ -165,7 +165,7 @@ struct CoveredBone
   BakeProgress progress;
 };
 
-// A node that moves along a level set as in the solver: on a tangent plane until slip is used up, then on a new one.
+// A node that moves along a level set as in the solver, on a tangent plane for as long as the plane's slip allows.
 struct Walker
 {
   KeptLevel level;
@@ -189,7 +189,8 @@ struct Walker
   }
 };
 
-// Where the nearest point jumps from the rim of the sheet to another part, the field must not: its gradient is about 1.
+// Checks that the field does not jump where the nearest point jumps from the rim of the sheet to another part: the
+// field's gradient is about 1.
 void check_slopes(const CoveredBone& bone)
 {
   const physics::DistanceField field = view(bone.field());
@@ -216,7 +217,7 @@ void check_paths(const CoveredBone& bone)
   {
     const SlidingNode& node = model.sliding[random() % model.sliding.size()];
     Walker walker{ { &field, node.distance }, point(rest_position(model, node.node)) };
-    walker.step(1);  // finds the first plane
+    walker.step(1);  // this step finds the first plane
     const Point& n = walker.plane.normal;
     const Point heading = cross(n, Point{ unit(random), unit(random), unit(random) });
     walker.v = 0.1 / norm(heading) * heading;
@@ -234,7 +235,7 @@ void check_paths(const CoveredBone& bone)
       }
     }
     most_loss = std::max(most_loss, std::abs(dot(walker.v, walker.v) / 0.01 - 1));
-    // angle by which the normal turns within a micrometre
+    // largest angle by which the normal turns within a micrometre
     double turn = 0;
     Walker slow = walker;
     for (int i = 0; i < 5000; ++i)
@@ -256,7 +257,7 @@ void check_paths(const CoveredBone& bone)
   EXPECT_LT(most_off, 5e-6);
 }
 
-// Levels of the field agree with the true distance from the sheet, at nodes and at points that nodes may reach.
+// Checks that levels of the field agree with the true distance from the sheet at points that nodes may reach.
 void check_distances(const CoveredBone& bone)
 {
   const Model& model = bone.model;

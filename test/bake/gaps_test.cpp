@@ -25,7 +25,7 @@ SceneConstraint held(const std::string& surface)
   return out;
 }
 
-/// Two blocks of 12 x 12 mm, one `gap` [m] above the other, held at their far sides. The gap lies within voxels.
+/// Two blocks of 12 x 12 mm, one above the other, `gap` [m] apart, held at their far sides. The gap lies within voxels.
 Scene two_blocks(double gap, const std::string& gaps, double height = 7.3e-3)
 {
   Scene scene = plain_scene(3e-3);
@@ -63,7 +63,7 @@ Scene slit_block(double z, double voxel = 3e-3, bool slit = true)
   return scene;
 }
 
-/// Number of the body that each node belongs to; nodes of a voxel and joined nodes are of one body.
+/// Number of the body of each node. Nodes of the same voxel and joined nodes are in the same body.
 std::vector<std::size_t> bodies_of(const Model& model)
 {
   std::vector<std::size_t> body(model.nodes.size());
@@ -93,7 +93,7 @@ TEST(Gaps, ThinGapKeepsBlocksApart)
     const Model glued = bake(two_blocks(gap, "glued")), parted = bake(two_blocks(gap, "parted"));
     const auto bodies = bodies_of(parted);
     EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u) << gap;
-    // the tissue is the same, and no voxel has tissue of both blocks
+    // the amount of tissue does not change, and no voxel has tissue of both blocks
     for (const char* const name : { "fat", "muscle" })
       EXPECT_NEAR(tissue_volume(parted, name) / tissue_volume(glued, name), 1, 1e-5) << gap;
     for (std::size_t e = 0; e < parted.voxels.size(); ++e)
@@ -104,7 +104,7 @@ TEST(Gaps, ThinGapKeepsBlocksApart)
 
 TEST(Gaps, BoneHoldsTheTissueThatItTouches)
 {
-  // a gum of 1.5 mm on bone, and a lip over it
+  // the blocks are a gum of 1.5 mm on bone, and a lip over the gum
   const Model model = bake(two_blocks(0.5e-3, "parted", 1.5e-3));
   std::vector<bool> gum(model.nodes.size(), false);
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
@@ -126,7 +126,7 @@ TEST(Gaps, BoneHoldsTheTissueThatItTouches)
 
 TEST(Gaps, NodesAreAttachedToTissueOfTheirOwnSide)
 {
-  // a gum of 4.6 mm, one and a half voxels, with a lip over it: the nearest free nodes above are those of the lip
+  // the gum is 4.6 mm thick, one and a half voxels, so that the nearest free nodes above are those of the lip
   for (const double gap : { 0.05e-3, 0.5e-3, 2e-3 })
   {
     Scene scene = two_blocks(gap, "parted", 4.6e-3);
@@ -142,7 +142,7 @@ TEST(Gaps, NodesAreAttachedToTissueOfTheirOwnSide)
 
 TEST(Gaps, NodesBesideASlitAreAttachedToTheirOwnSide)
 {
-  // the slit begins at the bone, x = 0, and ends 12 mm above it
+  // the slit begins at the bone, x = 0, and ends at x = 12 mm
   for (const double z : { 7e-3, 6e-3 })
   {
     Scene scene = slit_block(z);
@@ -151,7 +151,7 @@ TEST(Gaps, NodesBesideASlitAreAttachedToTheirOwnSide)
     scene.constraints = { held("bone") };
     const Model model = bake(scene);
     ASSERT_FALSE(model.attached.empty());
-    // side of a node: that of the centres of its voxels, which no voxel at the slit has on both sides
+    // the side of a node is that of its voxels' tissue, since no voxel at the slit has tissue on both sides
     std::vector<double> side(model.nodes.size(), 0);
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
       for (const std::int32_t n : model.voxel_nodes[e])
@@ -171,7 +171,7 @@ TEST(Gaps, NodesBesideASlitAreAttachedToTheirOwnSide)
 
 TEST(Gaps, SlitDoublesEachNodeOnItOnce)
 {
-  // through voxels, and along a plane of the grid; both end at a plane of the grid
+  // the first slit passes through voxels, the second along a plane of the grid; both end at a plane of the grid
   for (const double z : { 7e-3, 6e-3 })
   {
     const Model whole = bake(slit_block(z, 3e-3, false)), cut = bake(slit_block(z));
@@ -193,7 +193,7 @@ TEST(Gaps, PointsFollowTheirOwnSide)
 {
   const double z = 7.3e-3;
   const Model cut = bake(slit_block(z));
-  // if what is above the slit moved up and the rest down, each vertex beside it would move with its side
+  // each vertex beside the slit must be bound to a voxel of its own side
   std::vector<double> side(cut.voxels.size());
   std::size_t beside = 0;
   for (std::size_t v = 0; v < cut.skin.vertices.size(); ++v)

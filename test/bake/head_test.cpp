@@ -33,7 +33,7 @@ const Head& default_head()
   return head;
 }
 
-/// Largest distance [m] of a mirrored vertex from the closest point of the mesh.
+/// Largest distance [m] from `mesh` of the vertices of `image`, mirrored at y = 0.
 double asymmetry(const TriangleMesh& mesh, const TriangleMesh& image)
 {
   const TriangleTree tree(mesh);
@@ -127,7 +127,7 @@ TEST(Head, HasTheStandardLandmarksOnItsSkin)
     EXPECT_LT((place[point.name] - to_vector(point.at).cwiseProduct(Vector3d(1, point.right ? -1 : 1, 1))).norm(), 6e-3)
         << point.name;
   }
-  // 68 names, from the subject's right ear to the left, with the chin in the midline
+  // the 68 points run from the subject's right ear to the left one, with the chin in the midline
   ASSERT_EQ(place.size(), 68u);
   for (int n = 1; n < 17; ++n)
     EXPECT_LT(place.at(fmt::format("ibug_{}", n))[1], place.at(fmt::format("ibug_{}", n + 1))[1]);
@@ -192,7 +192,7 @@ TEST(Head, IsClosedAndMirrorsItself)
     const TriangleMesh mesh = default_head().part(part, 3e-3);
     EXPECT_LT(asymmetry(mesh, mesh), 1e-9) << part;
   }
-  // vertices of the skin have images; its triangles need not, because a square has two diagonals
+  // the mirror image of each vertex is a vertex; this need not hold for triangles, because a square has two diagonals
   const TriangleMesh skin = default_head().part("skin", 3e-3);
   const auto less = [](const Vector3& a, const Vector3& b) { return a < b; };
   const auto rounded = [](const Vector3& p, double side) {
@@ -229,7 +229,7 @@ TEST(Head, HasBonesAtTheDepthsOfItsTable)
       if (site.name == name)
       {
         const Vector3d p = skin_tree.closest(to_vector(site.at)).point;
-        // the closest bone is nearer than the depth where it is measured along a direction of its own
+        // at sites with a direction of their own, the closest bone is nearer than the depth along this direction
         EXPECT_NEAR(tree.closest(p).distance, site.depth, 0.15 * site.depth + 0.5e-3) << site.name;
       }
 }
@@ -292,7 +292,7 @@ TEST(Subdivision, HasTheSameLimitAtEveryLevel)
   const TriangleMesh coarse = subdivide(cube(), 1), fine = subdivide(cube(), 4);
   EXPECT_EQ(coarse.triangles.size(), 6u * 4 * 2);
   EXPECT_TRUE(unbalanced_edges(fine).empty());
-  // valence 3: (9 v + 4 sum of neighbours + sum of opposite corners) / 24, each sum of which is 1 and -1 along an axis
+  // the limit for valence 3 is (9 v + 4 sum of neighbours + sum of opposite corners) / 24; here the sums are 1 and -1
   const double corner = (9.0 + 4 * 1 - 1) / 24;
   for (std::size_t v = 0; v < coarse.vertices.size(); ++v)
     EXPECT_LT((vertex(coarse, static_cast<std::int32_t>(v)) - vertex(fine, static_cast<std::int32_t>(v))).norm(),

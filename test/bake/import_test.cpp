@@ -137,7 +137,7 @@ TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
 
 TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
 {
-  // the midpoint of an edge is a vertex of only one of its triangles: a triangle without area fills the crack
+  // the midpoint of an edge is a vertex of only one of its two triangles, and a triangle without area fills the crack
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
   const Triangle split = mesh.triangles[0];
   const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
@@ -149,7 +149,7 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
   const std::size_t triangles = mesh.triangles.size();
   const LoadedSurface surface = load(mesh);
   EXPECT_TRUE(told(surface, "1 triangle without area left out"));
-  EXPECT_EQ(surface.mesh.triangles.size(), triangles);  // one is removed, and its neighbour is split in two
+  EXPECT_EQ(surface.mesh.triangles.size(), triangles);  // one triangle is removed, and its neighbour is split in two
   EXPECT_TRUE(unbalanced_edges(surface.mesh).empty());
   EXPECT_EQ(find_mesh_faults(surface.mesh).flat.count, 0u);
   EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
@@ -158,7 +158,7 @@ TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)
 TEST_F(Import, HolesAreDataAndMeasured)
 {
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
-  // without its upper side
+  // leave out the upper side
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {

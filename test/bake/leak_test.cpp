@@ -23,7 +23,7 @@ protected:
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Writes a sphere without the triangles that have a vertex for which `leave` is true (unit coordinates).
+  /// Writes a sphere without the triangles that have a vertex (on the unit sphere) for which `leave` is true.
   template <class Leave>
   Surface sphere_file(const std::string& name, double radius, const Leave& leave) const
   {
@@ -103,7 +103,7 @@ TEST_F(OpenSurfaces, AnOpeningHidesNothing)
   const double shell = 8e-6 - 1e-6, slot = 10e-3 * 10e-3 * 2e-3;
   scene.volumes[0].without = { "slot" };
   EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - slot), 1, 0.01);
-  // a bone (`outside`) does: the tissue behind it is left out too
+  // a bone (`outside`) hides the tissue behind it, which is left out too
   scene.volumes[0].without.clear();
   scene.volumes[0].outside = { "slot" };
   EXPECT_NEAR(tissue_volume(bake(scene)) / (shell - 2.5 * slot), 1, 0.01);

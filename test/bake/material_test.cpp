@@ -43,7 +43,7 @@ SceneMaterial of_law(const std::string& law, const std::map<std::string, double>
   return material;
 }
 
-// bulk modulus that belongs to a shear modulus at a Poisson ratio of 0.45
+// bulk modulus for a shear modulus at a Poisson ratio of 0.45
 double bulk(double shear) { return shear * 2 * 1.45 / (3 * 0.1); }
 
 }  // namespace
@@ -138,9 +138,9 @@ TEST(Materials, FibreFamiliesFollowASurface)
       between += double(d[a]) * double(d[3 + a]);
     EXPECT_NEAR(between, 0.28, 1e-5);
   }
-  // the normals of a mesh with edges of 0.5 mm have errors below this
+  // the facets of edges of 0.5 mm cause errors of normals below this bound
   EXPECT_LT(most_normal, 0.07);
-  // where the surface is normal to the plane of the given families, directions are the given ones
+  // where the surface is normal to the plane of the given families, the model's directions equal the given ones
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     Vector3 p{};

@@ -98,7 +98,7 @@ TEST(RestrictedNodes, SlideFromOneBoneToTheNext)
 
 TEST(RestrictedNodes, NodesBeyondTheSurfaceCount)
 {
-  // the bone's surface cuts voxels: the voxels' outer nodes are in the bone
+  // the bone's surface cuts voxels, whose lower nodes are in the bone
   Scene scene = block_scene();
   scene.surfaces.push_back(box_surface("bone", { 10e-3, 6e-3, 0 }, { 60e-3, 60e-3, 5e-3 }));
   scene.volumes[0].outside = { "bone" };
@@ -131,7 +131,7 @@ TEST(RestrictedNodes, RigidWinsOverPrescribedOverSliding)
   EXPECT_EQ(model.rigid.size(), 6u * 13u);
   EXPECT_EQ(model.prescribed.size(), 4u * 13u);
   EXPECT_EQ(model.sliding.size(), 11u * 13u);
-  // in local axes
+  // loads are in local axes
   ASSERT_EQ(model.loads.size(), 1u);
   for (std::size_t a = 0; a < 3; ++a)
   {
@@ -152,7 +152,7 @@ TEST(RestrictedNodes, AConstraintThatCatchesNothingIsNamed)
 TEST(Islands, UnheldAndCornerHungPartsAreRemoved)
 {
   Scene scene = plain_scene(1e-3);
-  // a block, a second one that touches its edge only, a separate one with held nodes, and a separate one without
+  // the scene: a block, another one that touches only its edge, a separate one with held nodes, and a separate free one
   scene.surfaces = { box_surface("block", { 10e-3, 10e-3, 10e-3 }, { 20e-3, 20e-3, 20e-3 }),
                      box_surface("edge", { 21e-3, 10e-3, 21e-3 }, { 2e-3, 4e-3, 2e-3 }),
                      box_surface("held", { 40e-3, 10e-3, 5e-3 }, { 10e-3, 10e-3, 10e-3 }),

@@ -1,4 +1,4 @@
-// Heads with random dimensions: config/head.yaml can be baked with each. FRONTALIS_HEADS: how many, 5 by default.
+// config/head.yaml can be baked with random dimensions of the head. FRONTALIS_HEADS: number of heads, 5 by default.
 
 #include "bake/shapes/head/head.hpp"
 #include "frontalis/bake/bake.hpp"
@@ -15,8 +15,8 @@ namespace
 
 using namespace frontalis;
 
-/// Independent dimensions within two standard deviations of the means. They have the size of the head in common, which
-/// gives two of them a correlation of 0.36, about that of the dimensions of faces.
+/// Independent dimensions within two standard deviations of the means. All share a random size of the head, which gives
+/// two of them a correlation of 0.36, about as in people.
 std::map<std::string, double> random_dimensions(const HeadTemplate& head, std::mt19937& random)
 {
   std::normal_distribution<double> normal;
@@ -48,7 +48,7 @@ TEST(RandomHeads, CanBeBaked)
         if (dimensions.empty())
           dimensions = random_dimensions(*surface.shape->head, random);
         surface.shape->dimensions = dimensions;
-        surface.shape->edge = 3.5e-3;  // coarse, since few surfaces decide how long a bake takes
+        surface.shape->edge = 3.5e-3;  // coarse, because a few surfaces take most of the time
       }
     for (SceneLandmark& landmark : scene.landmarks)
       if (landmark.head)

@@ -90,7 +90,7 @@ inline SceneMaterial material(const std::string& name, double young = 1e5)
   return material;
 }
 
-/// A scene with materials fat, dermis and muscle and voxels of the given edge; none is dropped for being nearly empty.
+/// A scene with materials fat, dermis and muscle and voxels of the given edge. Nearly empty voxels are kept.
 inline Scene plain_scene(double voxel)
 {
   Scene scene;

@@ -19,7 +19,7 @@ namespace
 
 using namespace frontalis;
 
-/// Two blocks of 8 x 6 x 4 mm, one 1 mm above the other, held at their far sides.
+/// Two blocks of 8 x 6 x 4 mm, one above the other at a distance of 1 mm, held at their far sides.
 Scene two_blocks()
 {
   Scene scene = plain_scene(1e-3);
@@ -53,7 +53,7 @@ TEST(BakedSelfContact, surfaces_face_away_from_the_tissue)
   EXPECT_EQ(contact.friction, 0.3);
   EXPECT_TRUE(effects_of(model).has(Effect::self_contact));
   EXPECT_FALSE(effects_of(model).has(Effect::contact));
-  // the two sides that face each other, and strips of 1 mm around them
+  // the surface has the two sides that face each other, and strips of 1 mm around them
   const std::vector<double> areas = vertex_areas(contact.surface);
   EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), 2 * (48e-6 + 28e-6), 1e-9);
   EXPECT_GT(contact.surface.vertices.size(), 2 * 9u * 7u);

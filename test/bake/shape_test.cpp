@@ -194,7 +194,7 @@ TEST(Forehead, ClosedPartsAreClosedAndOutward)
     EXPECT_EQ(make_orientation_consistent(mesh), 0u) << part;
     EXPECT_GT(signed_volume(mesh), 0) << part;
   }
-  // about 110 cm2 of tissue, 4 to 8 mm thick
+  // the tissue covers about 110 cm2 and is 4 to 8 mm thick
   const double tissue = signed_volume(forehead("tissue"));
   EXPECT_GT(tissue, 45e-6);
   EXPECT_LT(tissue, 80e-6);
@@ -219,7 +219,7 @@ TEST(Forehead, HasTheStatedDimensions)
     area_x += (b - a).cross(c - a)[0];
   }
   EXPECT_GT(area_x, 0.01);
-  // thickness of the soft tissue: 8 mm at the brow to 4 mm at the hairline
+  // the soft tissue is 8 mm thick at the brow and 4 mm at the hairline
   const PreparedSurface skull("skull", forehead("skull"));
   double thinnest = 1, thickest = 0;
   for (const Vector3& v : skin.vertices)

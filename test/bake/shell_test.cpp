@@ -1,4 +1,4 @@
-// layers that are shells: their triangles, depth, material, and what they leave in the voxels
+// layers that are shells: their triangles, depth and material, and the material that stays in the voxels
 
 #include "scene_pieces.hpp"
 
@@ -19,7 +19,7 @@ namespace
 
 constexpr double radius = 12e-3, voxel = 1.5e-3, corneum = 0.02e-3, dermis = 1e-3;
 
-// layers over the tissue; one of them, or both, are shells
+// a ball with two layers, of which the outer, the inner or both are shells
 Scene ball_in_shells(bool outer, bool inner)
 {
   Scene scene = plain_scene(voxel);
@@ -66,7 +66,7 @@ TEST(BakeShell, covers_the_surface_at_the_depth_of_the_layer_with_edges_of_a_vox
   }
 }
 
-// The published corneum on its dermis: a plate of 1.25 mm and 0.883 MPa, whose middle is near the stiff outer layer.
+// Corneum and dermis, as published, become a plate of 1.25 mm and 0.883 MPa, whose middle is near the stiff corneum.
 TEST(BakeShell, layers_on_each_other_become_one_plate)
 {
   Scene scene = ball_in_shells(true, true);

@@ -48,7 +48,7 @@ void expect_whole_muscles(const Model& model, const BakeReport& report)
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
   {
     const double inside = volume_in_report(report, model.muscles[m].name, ": ");
-    // small muscles lose a little where bone leaves voxels nearly empty, because these are dropped
+    // small muscles lose some volume beside bone, where nearly empty voxels are dropped
     EXPECT_NEAR(muscle_volume(model, static_cast<int>(m)) / inside, 1, 0.08) << model.muscles[m].name;
     EXPECT_GT(inside / volume_in_report(report, model.muscles[m].name, "tissue, "), 0.7) << model.muscles[m].name;
   }
@@ -64,9 +64,9 @@ void expect_measured_muscles(const BakeReport& report)
   }
 }
 
-/// A head of spheres in mesh files, in the frame and the length unit of a real one: x to the subject's left, y
-/// backwards, z up [mm]. The skin is open at the neck. The bone is a shell 10 to 12 mm below it, and the space behind
-/// it is within the depth at which the scene allows tissue. Six muscles lie between skin and bone.
+/// A head of spheres in mesh files, in the frame and the length unit of a real head: x to the subject's left, y
+/// backwards, z up [mm]. The skin is open at the neck. The bone is a shell 10 to 12 mm below the skin. The scene's
+/// range of depths includes some space behind the bone. Six muscles lie between skin and bone.
 class MadeHead : public testing::Test
 {
 protected:
@@ -193,7 +193,7 @@ TEST_F(MadeHead, BakesFromMeshFiles)
   const Model model = bake_head(report, 2e-3);
   expect_one_piece(report);
   EXPECT_NEAR(tissue_volume(model) / soft_tissue(), 1, 0.03);
-  // no tissue behind the bone: no voxel is deeper than the outer table by more than half its own diagonal
+  // there is no tissue behind the bone: no voxel is deeper than the outer table by more than half its diagonal
   for (const auto& voxel : model.voxels)
   {
     const Vector3d p = to_vector(
@@ -245,7 +245,7 @@ TEST(ForeheadScene, BakesWithAllItsParts)
       lowest = std::min(lowest, p[2]);
   }
   EXPECT_GT(lowest, 60e-3);
-  // the whole skin is published, in the face frame
+  // the whole skin is published, and in the face frame
   EXPECT_GT(model.skin.vertices.size(), 3000u);
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
   {
@@ -283,7 +283,7 @@ TEST(RealHead, BakesFromSegmentedMeshes)
   BakeReport report;
   const Model model = bake(scene, &report);
 
-  // the model is connected and has nothing behind the bone: tissue of the forehead is less than 10 mm deep
+  // the model is connected and has no tissue behind the bone, because all tissue is less than 10 mm deep
   expect_one_piece(report);
   EXPECT_GT(tissue_volume(model), 80e-6);
   EXPECT_LT(tissue_volume(model), 160e-6);

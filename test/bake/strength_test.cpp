@@ -1,4 +1,4 @@
-// What a scene says about muscles beyond their shape: strength, origins, and how thin muscles act on thick voxels.
+// Properties of muscles besides their shape: strength, origins, and the action of thin muscles on thick voxels.
 
 #include "bake/scene_pieces.hpp"
 #include "files.hpp"
@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// A strand of 40 x 2 x 4 mm in a slab of tissue. Its lower side is 1 mm above a bone, all along.
+// A strand of 40 x 2 x 4 mm in a slab of tissue. In the half x < 0, its lower side is 1 mm above a bone.
 std::string strand(const std::string& keys, const std::string& constraint, const std::string& profile)
 {
   return "unit: mm\nsurfaces:\n"
@@ -51,7 +51,7 @@ TEST(Strength, is_that_of_the_given_cross_section)
 {
   BakeReport report;
   const Model model = baked(strand(", cross_section: 4 mm2", anywhere, ""), &report);
-  // 40 x 2 x 4 mm have a cross-section of 8 mm2
+  // the strand of 40 x 2 x 4 mm has a cross-section of 8 mm2
   ASSERT_EQ(report.forces.size(), 1U);
   EXPECT_NEAR(report.forces[0].length, 40e-3, 1e-9);
   EXPECT_NEAR(report.forces[0].cross_section, 8e-6, 0.02 * 8e-6);
@@ -71,7 +71,7 @@ TEST(Origin, holds_the_end_of_a_muscle_that_is_near_the_bone)
 {
   const Model whole = baked(strand("", anywhere, ""));
   const Model end = baked(strand("", "  - {name: hold, rigid: bone, of: strand}\n", ""));
-  // nodes of voxels whose centres are in the first 15 % of the fibres, from -20 mm on
+  // held nodes belong to voxels whose centres are in the first 15 % of the fibres, which begin at -20 mm
   double first = 1e9, last = -1e9;
   for (const RigidNode& rigid : end.rigid)
   {

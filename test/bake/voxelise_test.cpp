@@ -24,7 +24,7 @@ TEST(Voxelise, SphereHasItsVolume)
 TEST(Voxelise, CrossingBoxesShareByPriority)
 {
   Scene scene = plain_scene(1e-3);
-  // a block, and two bars that cross in it, none of them on voxel faces
+  // two bars cross in a block; no side of block or bars lies on voxel faces
   scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 30e-3, 30e-3, 30e-3 }),
                      box_surface("bar_x", { 0.13e-3, 0.21e-3, 0.37e-3 }, { 20.3e-3, 6.7e-3, 6.1e-3 }),
                      box_surface("bar_y", { 0.41e-3, 0.29e-3, 0.17e-3 }, { 6.3e-3, 18.9e-3, 7.7e-3 }) };
@@ -106,7 +106,7 @@ TEST(Voxelise, VolumeClosedByOpenSurfacesTogetherInAnyOrientation)
   scene.surfaces = { forehead_surface("tissue"), forehead_surface("skin"), forehead_surface("rim") };
   scene.volumes = { volume_inside("whole", { "tissue" }, "fat", true) };
   const double whole = tissue_volume(bake(scene));
-  // the same body from skin, rim and bone: without a margin, the bone's surface is the deep face of `tissue`
+  // build the same body from skin, rim and bone: without a margin, the bone's surface is the deep face of `tissue`
   scene.surfaces.push_back(forehead_surface("skull"));
   scene.surfaces.back().shape->dimensions = { { "margin", 1e-9 } };
   scene.volumes[0].inside.clear();
@@ -151,7 +151,7 @@ TEST(Voxelise, MuscleWeightIsItsShareOfTheTissue)
                     { "b", "b", { 0, 1, 0 }, 0.3e6, false, true, 2 } };
   BakeReport report;
   const Model model = bake(scene, &report);
-  // muscles are clipped to the tissue; where the two bars cross, each has the whole voxel
+  // muscles are clipped to the tissue; where the two bars cross, both fill the whole voxel
   EXPECT_NEAR(muscle_volume(model, 0) / (20e-3 * 4.6e-3 * 4.6e-3), 1, 0.01);
   EXPECT_NEAR(muscle_volume(model, 1) / (4.6e-3 * 12e-3 * 4.6e-3), 1, 0.01);
   bool clipped = false;

@@ -1,4 +1,4 @@
-// Muscles that are weak, everywhere or in a part of space.
+// Muscles that are weak everywhere, or in a region.
 
 #include "bake/scene_pieces.hpp"
 
@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-/// A muscle that fills a block of 20 x 4 x 4 mm from the origin, in voxels of 1 mm.
+/// A muscle that fills a block of 20 x 4 x 4 mm with a corner at the origin, in voxels of 1 mm.
 Scene block_of_muscle(bool passive)
 {
   Scene scene = plain_scene(1e-3);
@@ -38,7 +38,7 @@ TEST(Weakness, of_a_whole_muscle_leaves_its_passive_part)
   EXPECT_TRUE(weak.muscles[1].passive);
   EXPECT_NEAR(muscle_volume(weak, 0), 0.25 * whole, 1e-6 * whole);
   EXPECT_NEAR(muscle_volume(weak, 1), 0.75 * whole, 1e-6 * whole);
-  // those of other muscles are as they were
+  // a weakness of another muscle changes nothing
   scene.weakness = { { { "other" }, 0.25 } };
   const Model other = bake(scene);
   EXPECT_EQ(other.muscles.size(), 1u);

@@ -16,7 +16,7 @@ TriangleMesh sphere_with_holes()
 {
   TriangleMesh mesh = make_shape(*sphere_surface("ball", { 0, 0, 0 }, 1, 0.04).shape);
   join_vertices(mesh);
-  // holes around three axes, one of them large
+  // cut holes around three axes, one of them large
   std::vector<bool> keep;
   for (const Triangle& t : mesh.triangles)
   {

@@ -54,7 +54,7 @@ TEST_F(AccuracyCommand, measures_chooses_and_the_profile_can_be_used)
   const std::string chosen = folder / "chosen.yaml";
   const ProgramResult result = run({ "--tolerance", "5", "--save", chosen });
   ASSERT_EQ(result.code, 0) << result.errors << result.output;
-  // Which setting is cheapest depends on the machine, so the choice is checked against the measured costs.
+  // The cheapest setting depends on the machine, so the choice is checked against the measured costs.
   nlohmann::json cheapest;
   for (const nlohmann::json& row : json_from(text_of(results + "/accuracy.json")))
     if (row.at("front") == "*" && row.at("error RMS [mm]") <= 5 &&

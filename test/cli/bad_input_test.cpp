@@ -49,13 +49,13 @@ TEST(BadInputs, are_many) { EXPECT_GE(bad_inputs().size(), 15u); }
 
 TEST(Bake, interrupted_leaves_no_file_and_130)
 {
-  // enough voxels that the bake is still making them when the line that names this stage triggers the interrupt
+  // use so many voxels that the bake is still making them when the line that names this stage triggers the interrupt
   const TemporaryFolder folder;
   const std::string scene = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/config/forehead.yaml";
   const std::string model = folder / "model.vtkhdf";
   const std::string log = folder / "log";
   const std::string script = folder / "script";
-  // with job control (set -m), because a shell's background processes otherwise ignore interrupts
+  // use job control (set -m), because a shell's background processes otherwise ignore interrupts
   std::ofstream(script) << "set -m\nstdbuf -o0 '" << FRONTALIS_PROGRAM << "' bake '" << scene << "' --voxel 0.4 -o '"
                         << model << "' > '" << log << "' 2>&1 &\npid=$!\nuntil grep -q voxels '" << log
                         << "'; do sleep 0.02; done\nkill -INT $pid\nwait $pid\necho $? > '" << log << ".code'\n";

@@ -7,8 +7,8 @@
 namespace frontalis
 {
 
-/// A soft bar of 8 x 2 x 2 voxels of 2 mm along local x, held at x = 0, with the muscle `pull` along it and the
-/// landmark `tip` in the middle of its free end. The face frame's z (up) is local x, its x (forward) local y.
+/// A soft bar of 8 x 2 x 2 voxels of 2 mm along local x, held at x = 0. The muscle `pull` runs along the bar, and the
+/// landmark `tip` is in the middle of the free end. The face frame's z (up) is local x, its x (forward) is local y.
 inline Model bar_model()
 {
   constexpr double edge = 2e-3;

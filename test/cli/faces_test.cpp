@@ -1,4 +1,4 @@
-// `frontalis faces`: how the landmarks of the shipped heads move in expressions.
+// `frontalis faces` and the motions of landmarks of the shipped heads in expressions.
 
 #include "cli/program.hpp"
 
@@ -12,7 +12,7 @@ namespace
 
 const std::string config = FRONTALIS_SOURCE_DIRECTORY "/config/";
 
-/// Runs the command; returns its figures by expression and landmark.
+/// Runs the command `faces` and returns its figures by expression and landmark.
 std::map<std::string, std::map<std::string, nlohmann::json>> faces(std::vector<std::string> arguments)
 {
   const TemporaryFolder folder;
@@ -31,7 +31,7 @@ std::map<std::string, std::map<std::string, nlohmann::json>> faces(std::vector<s
 double up(const nlohmann::json& row) { return row.at("up [mm]"); }
 double outward(const nlohmann::json& row) { return row.at("outward [mm]"); }
 
-/// Left and right differ by less than they do in people, 0.5 mm (Coulson 2002), or a tenth of the motion.
+/// Expects that left and right differ by at most 0.5 mm, as in people (Coulson 2002), plus a tenth of the motion.
 void expect_symmetric(const std::map<std::string, nlohmann::json>& rows)
 {
   for (const auto& [name, left] : rows)
@@ -69,7 +69,7 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_and_smiles)
     EXPECT_GT(outward(smiling), 0.25);
     EXPECT_GT(up(smiling), 0.5);
   }
-  // half of the expression is that side alone
+  // the left half of the expression moves the left side like the whole expression
   EXPECT_NEAR(up(half.mapped().at("brow_mid_left")), up(raised.at("brow_mid_left")), 1);
   EXPECT_LT(std::abs(up(half.mapped().at("brow_mid_right"))), 1);
 }
@@ -87,7 +87,7 @@ TEST(Faces, wrong_input_is_told)
   expect_contains(wrong.errors, "people.yaml:3: size: unknown key; allowed are landmark, along");
 }
 
-// Only by ./dev test --long: every expression of both heads is played without a fault.
+// Every expression of both heads is played without a fault. Only ./dev test --long runs this test.
 TEST(DISABLED_EveryFace, of_the_generated_head_is_sound)
 {
   const auto found = faces({ config + "head.yaml" });

@@ -14,9 +14,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double determined_error = 0.05;  // of an activation that the targets determine
+constexpr double determined_error = 0.05;  // largest error of an activation that the targets determine
 
-// A slab on a plate with four strips of muscle below its upper side. Two of them are the same muscle under two names.
+// A slab on a plate with four strips of muscle below its upper side. Two strips are the same muscle under two names.
 const std::string slab = R"(
 unit: mm
 surfaces:
@@ -52,7 +52,7 @@ accuracy:
   draft: {voxel: 5}
 )";
 
-// the same slab without muscles, whose front a bone pulls
+// a slab like `slab`, but without muscles; a bone pulls its front
 std::string driven_slab()
 {
   std::string scene = slab;
@@ -121,7 +121,7 @@ TEST_F(Fit, recovers_the_activations_that_landmarks_determine)
       EXPECT_NEAR(unknown["value"], wanted->second, determined_error) << unknown;
       continue;
     }
-    // the twins are told apart by nothing, but their sum is known
+    // nothing distinguishes the two equal muscles, but the sum of their activations is determined
     EXPECT_FALSE(unknown["determined"]) << unknown;
     EXPECT_EQ(unknown["like"], name == "twin" ? "back" : "twin");
     EXPECT_LT(unknown["correlation"].get<double>(), -0.9);
@@ -133,12 +133,12 @@ TEST_F(Fit, recovers_the_activations_that_landmarks_determine)
     EXPECT_LE(landmark["error_m"].get<double>(), 0.1e-3) << landmark;
   EXPECT_EQ(found["covariance"].size(), 4U);
 
-  // the answer, played, gives the landmarks that were asked for
+  // a run with the answer brings landmarks to their targets
   const auto again = run({ "--activations", folder / "found.csv", "--to-equilibrium" });
   for (const auto& [name, place] : moved["landmarks"].items())
     EXPECT_NEAR(again["landmarks"][name]["forward_mm"], place["forward_mm"], 0.1) << name;
 
-  // the influence was kept: the second answer measures none, and without simulations it is the first one's beginning
+  // the influence was stored, so a second fit does not measure it; with --runs 0 it makes no simulations either
   const auto kept = fit({ "--target", targets, "--runs", "0" });
   EXPECT_EQ(kept["influence_s"], 0);
   EXPECT_TRUE(kept["errors_m"].empty());

@@ -1,4 +1,4 @@
-// The scene reader, the bake and doc/scene.md agree on the generated forehead.
+// The scene reader, the bake and doc/scene.md agree on the parts of the generated forehead.
 
 #include "cli/program.hpp"
 

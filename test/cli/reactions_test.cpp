@@ -43,7 +43,7 @@ TEST(Reactions, are_printed_and_written_in_the_face_frame)
   expect_contains(result.output, "energy             contact        +");
   const nlohmann::json json = json_from(text_of(folder / "frames" + "/run.json"));
   const auto force = json["reactions"]["touch"]["force_N"], moment = json["reactions"]["touch"]["moment_Nm"];
-  // below E A strain = 15 mN, the force for a strain of 0.5 / 16, because only the corners of the end touch
+  // a strain of 0.5 / 16 needs the force E A strain = 15 mN; here it is less, because only the corners of the end touch
   const double up = force[2];
   EXPECT_GT(up, 0.007);
   EXPECT_LT(up, 0.015);
@@ -58,7 +58,7 @@ TEST(Reactions, are_printed_and_written_in_the_face_frame)
   expect_contains(table, "\n20,0.400000,touch,");
 }
 
-// The same motion as a demo, as a table and by options.
+// The same motion is given as a demo, as a table and by options.
 TEST(Reactions, come_from_poses_over_time)
 {
   const TemporaryFolder folder;

@@ -97,7 +97,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
          "hourglass share", "worst J", "real-time factor", "element updates", "landmark           tip: -" })
     expect_contains(result.output, word);
 
-  // one frame at the start, then 50 per second for 0.3 s
+  // there is one frame at the start, then 50 frames per second for 0.3 s
   const std::vector<std::string> names = names_in(frames);
   ASSERT_EQ(names.size(), 18U);
   EXPECT_EQ(names[0], "landmarks.csv");
@@ -105,7 +105,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
   EXPECT_EQ(names[2], "skin_0000.ply");
   EXPECT_EQ(names[17], "skin_0015.ply");
 
-  // at rest the free end is 16 mm above the local origin; in the face frame
+  // at rest, in the face frame, the free end is 16 mm above the local origin
   const Ply first = read_ply(frames + "/skin_0000.ply");
   ASSERT_EQ(first.vertices.size(), 4U);
   EXPECT_EQ(first.triangles, (std::vector<std::array<std::int32_t, 3>>{ { 0, 1, 2 }, { 1, 3, 2 } }));
@@ -114,8 +114,8 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
   EXPECT_NEAR(first.vertices[1][2], -0.125 + 0.016, 1e-6);
   EXPECT_NEAR(first.vertices[1][5], 1, 1e-6);
 
-  // an incompressible bar under a stress of half its shear modulus shortens to 0.874 of its 16 mm; this bar is
-  // compressible and held at one end, which changes that a little
+  // an incompressible bar under a stress of half its shear modulus shortens to 0.874 of its 16 mm; this bar differs a
+  // little, because it is compressible and held at one end
   const std::array<double, 3> motion = motion_in(text_of(frames + "/run.json"), "tip");
   EXPECT_NEAR(motion[2], -2.0, 0.3);
   EXPECT_NEAR(motion[0], 0, 0.01);
@@ -126,7 +126,7 @@ TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
     up += (vertex[2] - first.vertices[1][2]) * 1e3 / 4;
   EXPECT_NEAR(up, motion[2], 0.3);
 
-  // the last row of the table agrees
+  // the last row of the table has the same motion
   std::istringstream table(text_of(frames + "/landmarks.csv"));
   std::string row;
   std::string last_row;
@@ -317,7 +317,7 @@ TEST(RunScene, shortens_the_documented_bar)
   ASSERT_EQ(result.code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");
 
-  // the tip goes towards the wall, by millimetres, and stays on the axis
+  // the tip moves towards the held end by millimetres and stays on the axis
   const std::array<double, 3> motion = motion_in(text_of(frames + "/run.json"), "tip");
   EXPECT_LT(motion[0], -2);
   EXPECT_GT(motion[0], -15);
@@ -353,7 +353,7 @@ TEST(RunScene, baked_first_it_moves_the_same)
   for (const char* name : { "landmarks.csv", "skin_0000.ply", "skin_0002.ply" })
     EXPECT_EQ(text_of(scene + ".frames/" + name), text_of(model + ".frames/" + name)) << name;
 
-  // the same scene gives the same bytes
+  // another bake of the same scene gives the same bytes
   ASSERT_EQ(run_program({ "bake", scene, "-o", folder / "again.vtkhdf" }).code, 0);
   EXPECT_EQ(text_of(model), text_of(folder / "again.vtkhdf"));
 }

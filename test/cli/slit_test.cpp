@@ -1,4 +1,4 @@
-// A slit of zero width in a block that is pulled: how it opens.
+// The opening of a slit of zero width in a block that is pulled.
 
 #include "frontalis/solver/solver.hpp"
 
@@ -14,7 +14,7 @@ namespace
 
 using namespace frontalis;
 
-constexpr std::array<double, 4> places{ 1e-3, 5e-3, 10e-3, 14e-3 };  // along the slit, which is 18 mm long
+constexpr std::array<double, 4> places{ 1e-3, 5e-3, 10e-3, 14e-3 };  // along the slit, which is 18 mm long [m]
 
 SceneConstraint held(const std::string& surface, const std::string& bone)
 {
@@ -52,7 +52,7 @@ Scene slit_block(double voxel, double z)
   return scene;
 }
 
-/// Width of the slit at its places after its upper side was lifted by 2 mm [m].
+/// Width of the slit at `places` after the upper side of the block was lifted by 2 mm [m].
 std::vector<double> opening(const Model& model, const std::string& backend)
 {
   const auto solver = make_solver(std::make_shared<const Model>(model), { backend, 0, 0 });
@@ -81,7 +81,7 @@ std::vector<double> opening(const Model& model, const std::string& backend)
 
 TEST(Slit, OpensToOneShapeAtAnyVoxelSize)
 {
-  // along planes of all grids, and through voxels
+  // the first slit lies in planes of all grids, the second passes through voxels
   for (const double height : { 12e-3, 11.3e-3 })
   {
     const std::vector<double> fine = opening(bake(slit_block(1e-3, height)), "cpu");

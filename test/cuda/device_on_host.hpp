@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-// Replacements for what only nvcc defines, so that the host runs device code.
+// Replacements for names that only nvcc defines, so that the host can run device code.
 
 #define __noinline__
 static inline std::uint32_t __float_as_uint(float x)

@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-// Compares backends on a shell with all effects: muscles, tendon, rigid and sliding nodes.
+// Compares backends on a curved layer of tissue with muscles, rigid nodes and sliding nodes.
 class ShellModel : public testing::Test
 {
 protected:
@@ -70,7 +70,7 @@ TEST_F(ShellModel, MovesAsTheReferenceDoes)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
 }
 
-// Without sliding, because backends replace tangent planes at different times, which moves the skin by micrometres.
+// The model has no sliding: backends replace tangent planes at different times, which moves the skin by micrometres.
 TEST_F(ShellModel, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;
@@ -140,7 +140,7 @@ TEST_F(ShellModel, OfAFewVoxelsMovesAsTheReferenceDoes)
   EXPECT_LT(difference(cuda, reference), 1e-3 * difference(rest, reference));
 }
 
-// At equilibrium under gravity and 30 % activation.
+// The model is at equilibrium under gravity and 30 % activation.
 TEST_F(ShellModel, StaysWhereItIsForAMillionSteps)
 {
   Model model = *model_;

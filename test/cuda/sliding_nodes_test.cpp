@@ -31,7 +31,7 @@ SampledField sampled()
   return sample_field({ rest }, distance, 0.5e-3, 20e-3);
 }
 
-// One sliding node, on a still surface or one that moves with a bone.
+// One sliding node, on a fixed surface or on one that moves with a bone.
 class OneNode
 {
 public:
@@ -93,7 +93,7 @@ public:
     return 0.5 * (std::pow(double(state.v[0]), 2) + std::pow(double(state.v[1]), 2) + std::pow(double(state.v[2]), 2));
   }
   double moved() const { return std::hypot(double(state.u[0]), double(state.u[1]), double(state.u[2])); }
-  // distance after `number` steps from the sphere on which the node started [m]
+  // distance of the node after `number` steps from the sphere on which it started [m]
   double off_level(int number) const
   {
     const physics::Vec3<double> p =
@@ -116,7 +116,7 @@ private:
   StepArguments g_{};
 };
 
-// calls body(field, glides) for a sampled field and a closed form, on a still surface and on one in the frame of a bone
+// calls body(field, glides) for a sampled field and a closed form, each on a fixed surface and on a bone (`glides`)
 template <class Body>
 void each_kind(const Body& body)
 {

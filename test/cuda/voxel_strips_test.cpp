@@ -16,7 +16,7 @@ namespace
 
 constexpr int lanes = 32;
 
-// A curved thin shell with a hole, which has short and long rows in x, and pieces that share a warp.
+// A thin curved layer of voxels with a hole. It has short and long rows in x, and pieces that share a warp.
 Model shell()
 {
   test::BlockSettings s;
@@ -49,7 +49,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     const Strip& strip = strips.strips[s];
     const auto place = [&](std::uint32_t plane, int row, int lane) -> const StripSlot&
     { return strips.slots[strip.slot_begin + (plane * (rows + 2) + row) * lanes + lane]; };
-    // per node that the strip owns: the voxels around it that its lane can read
+    // for each node that the strip owns, the voxels around it that its lane can read
     std::map<std::uint32_t, std::set<std::uint32_t>> voxels_of;
     for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
       for (int row = 0; row < rows + 2; ++row)
@@ -133,7 +133,7 @@ TEST(VoxelStrips, FillALargeBlock)
   test::BlockSettings s;
   s.voxels = { { 89, 31, 31 } };
   const VoxelStrips strips(test::block_model(s), { 4, 64 });
-  // 90 columns: strips own 31 + 30 + 29 of them
+  // there are 90 columns, of which strips own 31, 30 and 29
   EXPECT_GT(strips.filled(), 0.9);
 }
 

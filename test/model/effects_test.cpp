@@ -1,4 +1,4 @@
-// Which effects a model has, and what remains of an effect that is switched off.
+// The effects that a model has, and the removal of effects that are switched off.
 
 #include "../solver/effect_scene.hpp"
 

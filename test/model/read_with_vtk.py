@@ -16,7 +16,7 @@ FREE, RIGID, SLIDING = 0, 1, 2
 
 
 def bake(program, path):
-    """Bakes and returns the numbers that the program prints, by their names."""
+    """Bakes the model and returns the numbers that the program prints, by their names."""
     said = subprocess.run([program, 'bake', SCENE, '--voxel', '3', '-o', path], check=True, stdout=subprocess.PIPE)
     lines = [line.split() for line in said.stdout.decode().splitlines()]
     voxels = next(words for words in lines if words[0] == 'voxels' and words[1] != '...')

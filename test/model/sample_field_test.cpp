@@ -42,12 +42,12 @@ TEST(SampleField, HasTheSlopesOfAQuadraticFunctionInFloatAndDouble)
   const Vec3<double> rest{ 1e-3, 2e-3, 3e-3 };
   for (int i = -10; i <= 10; ++i)
   {
-    // points on the level set, in several bricks
+    // the points lie on the level set, in several bricks of samples
     const Vec3<double> moved{ 0.8e-3 * i, 0.6e-3 * i, 0.05e-3 * i };
     const Point p{ { rest.x + moved.x, rest.y + moved.y, rest.z + moved.z } };
     const auto found = value_at<double>(field, rest, moved);
     const double x = p[0], y = p[1], z = p[2];
-    // the value has an offset: the Laplacian times the squared spacing over 8
+    // the spline's value has an offset of the Laplacian times the squared spacing over 8
     EXPECT_NEAR(found.value, quadratic(p) + 26 * 0.25e-6 / 8, 1e-8) << i;
     EXPECT_NEAR(found.gradient.x, 0.3 + 16 * x + 4 * y, 5e-5);
     EXPECT_NEAR(found.gradient.y, -0.4 - 6 * z + 4 * x, 5e-5);
@@ -69,7 +69,7 @@ TEST(SampleField, CoversWhereNodesMayComeAndNoMore)
     for (double y = -10e-3; y <= 10e-3; y += 0.9e-3)
       for (const double z : { 0.6e-3, 1.4e-3, 1.6e-3, 2.4e-3 })
       {
-        // samples cover the level of each node, z, within the travel of 10 mm
+        // samples cover the level z of each of the two nodes, up to the travel of 10 mm from the node
         const bool covered = z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3;
         if (covered)
         {
@@ -94,7 +94,7 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
     const auto here = value_at<double>(field, { rest[0], rest[1], rest[2] }, { 20e-6, 0.4e-3, -0.3e-3 });
     physics::LevelPlane<double> plane{};
     ASSERT_TRUE(physics::level_plane(here, level, plane));
-    // slip also ends where the samples of the cell no longer describe the field
+    // the plane is valid at most as far as the samples of the cell describe the field
     EXPECT_LT(plane.slip, 100e-6);
     EXPECT_GT(plane.slip, field.radius > 0 ? 80e-6 : 15e-6);
     const Vec3<double> along = plane.slip * Vec3<double>{ -plane.normal.y, plane.normal.x, 0 };
@@ -104,7 +104,7 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
   }
 }
 
-// The nearest point of a surface may jump.
+// The nearest point of a surface may jump, but the field must be continuous.
 TEST(SampleField, MakesASlopeOfAJump)
 {
   const auto jumps = [](const Point& p) { return 0.5 * p[2] + (p[0] > 5.1e-3 ? 2e-3 : 0); };

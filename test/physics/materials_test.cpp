@@ -48,7 +48,7 @@ TEST_P(EveryLaw, AtRestItIsFreeOfStressAndHasItsShearModulus)
     EXPECT_GT(found, 0);
 }
 
-// That the bound also holds in deformed voxels is shown by test/solver/voxel_bound_test.cpp.
+// test/solver/voxel_bound_test.cpp tests the bound in deformed voxels.
 TEST_P(EveryLaw, TheBoundOfItsTangentStiffnessHoldsAtRestAndIsBlindToRotations)
 {
   const double at_rest = tangent_bound_at(identity());
@@ -100,7 +100,7 @@ TEST(Holzapfel, FibresAreSlackInShearAcrossTheirPlane)
 
 TEST(Guccione, ShearModulusAcrossAFibreAtAnAngle)
 {
-  // shear of yz with the fibre along (0.8, 0.6, 0): Efs^2 + Efn^2 is (0.6 / 2)^2 times the squared shear
+  // with shear in yz and the fibre along (0.8, 0.6, 0), Efs^2 + Efn^2 is (0.6 / 2)^2 times the squared shear
   Matrix F = identity(), P{};
   F.a[2][1] = 1e-6;
   const Vec3<double> fibre[1] = { { 0.8, 0.6, 0 } };

@@ -1,5 +1,5 @@
-// Stress must turn with the body, P(Q F) = Q P(F), for laws, muscle fibres and relaxed stress. If the material at rest
-// is turned, with its fibres, only the axes may change: P(F Q) with directions Q^T a is P(F) Q.
+// Stress must rotate with the body: P(Q F) = Q P(F) for laws, muscle fibres and relaxed stress. If the material at rest
+// and its fibres are rotated, only the axes may change: P(F Q) with directions Q^T a is P(F) Q.
 
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/viscosity.hpp"

@@ -1,4 +1,4 @@
-// The foot of a point on a smooth surface that triangles stand for, and forces between the two.
+// The foot of a point on the smooth surface that triangles approximate, and forces between point and triangle.
 
 #include "frontalis/physics/surface_foot.hpp"
 
@@ -46,7 +46,7 @@ struct Mesh
   }
 };
 
-// Part of a sphere around the origin, whose mean edge is about 1, with irregular triangles.
+// Part of a sphere around the origin, with irregular triangles whose mean edge is about 1.
 Mesh sphere(double radius)
 {
   Mesh mesh;
@@ -69,8 +69,8 @@ Mesh sphere(double radius)
   return mesh;
 }
 
-// A point that slides 1.4 % of an edge below a sphere whose triangles meet at about 7 degrees feels a smooth surface:
-// its depth does not follow the triangles, and force and depth do not jump from one to the next.
+// A point slides 1.4 % of an edge below a sphere whose triangles meet at about 7 degrees. Its depth refers to the
+// smooth sphere instead of the triangles, and force and depth do not jump from one triangle to the next.
 TEST(SurfaceFoot, SlidingOverTrianglesIsSmooth)
 {
   const double radius = 8, depth = 0.014, step = 1e-4;
@@ -124,7 +124,7 @@ TEST(SurfaceFoot, ForcesAreOppositeInSumAndInMoment)
   }
 }
 
-// The place that a triangle carries along follows a rotation, and its adjoint is the force on the corners.
+// A point that a triangle carries along follows a rotation, and the forces on the corners are the adjoint of this map.
 TEST(SurfaceFoot, ATriangleCarriesAPointAlong)
 {
   const Mesh mesh = sphere(3);

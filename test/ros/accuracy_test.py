@@ -52,7 +52,7 @@ class Accuracy(unittest.TestCase):
         return face
 
     def line(self, name, words):
-        """The first line of the face's log with these words."""
+        """Returns the first line of the face's log that contains the words."""
 
         def lines():
             return [text for who, text in self.said if who == name and words in text]

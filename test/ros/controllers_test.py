@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The controllers of doc/ros.md: they move the face, which relaxes when they are killed, and which the next one has again."""
+"""The controllers of doc/ros.md move the face. The face relaxes when its controller is killed, and follows the next controller."""
 
 import os
 import subprocess

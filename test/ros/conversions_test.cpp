@@ -111,7 +111,7 @@ TEST(Conversions, LandmarksBecomePosesAndFrames)
   to_poses(skin, vertices, poses);
   ASSERT_EQ(poses.poses.size(), 1u);
   EXPECT_NEAR(poses.poses[0].position.z, 0.012, 1e-6);
-  // x along the normal, y level, z upwards
+  // the pose's x is along the normal, y is level, and z points upwards
   const auto& q = poses.poses[0].orientation;
   const tf2::Matrix3x3 axes(tf2::Quaternion(q.x, q.y, q.z, q.w));
   EXPECT_NEAR(axes.getColumn(0).x(), 0.6, 1e-6);
@@ -163,7 +163,7 @@ TEST(Conversions, BonesBecomeFramesAndEyesAreShownInTheirs)
   EXPECT_NEAR(transforms[2].transform.translation.y, 0.03, 1e-9);
   EXPECT_NEAR(transforms[2].transform.rotation.z, std::sqrt(0.5), 1e-9);
 
-  // the eyeball, its iris and its pupil reach farther and farther to where the eye looks
+  // the iris reaches farther than the eyeball in the direction of gaze, and the pupil farther than the iris
   const auto markers = to_eyeballs(model, frame.bones).markers;
   ASSERT_EQ(markers.size(), 3u);
   double reach = 0.03 + 0.0119;
@@ -218,7 +218,7 @@ TEST(Conversions, MuscleLinesMoveWithTheTissue)
   ASSERT_EQ(out.markers[1].points.size(), 2u);
   EXPECT_NEAR(out.markers[1].points[0].z, 0.001, 1e-12);
   EXPECT_NEAR(out.markers[1].points[1].z, 0.011, 1e-12);
-  // full activation is red, none is blue
+  // full activation is red, and zero activation is blue
   EXPECT_GT(out.markers[1].color.r, out.markers[1].color.b);
   EXPECT_GT(out.markers[0].color.b, out.markers[0].color.r);
 }
@@ -273,7 +273,7 @@ TEST(Conversions, SkinThatIsNotFiniteOrNotWholeIsNotPublishable)
 
 TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
 {
-  // a pyramid of four sides about vertex 0, seen from +x; apex pushed in or out
+  // a pyramid with four sides around vertex 0, seen from +x, with its apex pushed in or out
   TriangleMesh mesh;
   mesh.vertices.assign(5, { { 0, 0, 0 } });
   mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } }, { { 0, 3, 4 } }, { { 0, 4, 1 } } };

@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-/// A demo: raise for 1 s with a ramp of 0.4 s, relax for 0.5 s with a longer ramp, knit for 1 s without a ramp.
+/// A demo with the phases raise (1 s, ramp 0.4 s), relax (0.5 s, with a longer ramp) and knit (1 s, without a ramp).
 Model with_demo()
 {
   Model model = small_model();
@@ -62,13 +62,13 @@ TEST(DemoPlayer, MovesBones)
   const DemoPlayer demo(std::make_shared<const Model>(model));
   EXPECT_EQ(demo.bones(0.2).count("jaw"), 0u);
   EXPECT_NEAR(demo.bones(0.2).at("finger").translation[0], 0.005, 1e-12);
-  // half of the turn, about z of the face frame, and none in the next phase
+  // half of the rotation about z of the face frame is done; the next phase has no rotation
   EXPECT_NEAR(demo.bones(1.25).at("finger").rotation[3], std::sin(0.25), 1e-12);
   EXPECT_NEAR(demo.bones(1.5).at("finger").rotation[3], 0, 1e-12);
-  // a phase without an expression keeps that
+  // a phase without an expression keeps the previous expression
   EXPECT_NEAR(demo.bones(1.6).at("finger").translation[2], 0.02, 1e-12);
   EXPECT_NEAR(demo.activation(1.6).at("knitter"), 0, 1e-12);
-  // the next round begins there
+  // the next round begins at the pose where the last one ended
   EXPECT_NEAR(demo.bones(2.7).at("finger").translation[2], 0.01, 1e-12);
 }
 

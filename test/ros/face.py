@@ -56,11 +56,11 @@ class Face:
         wait(lambda: self.activation.get_num_connections() and self.expression.get_num_connections(), "connections")
 
     def wait_for_frame(self, condition, what):
-        """Waits until the latest state and landmarks are of one frame, for which the condition holds."""
+        """Waits until the latest state and landmarks belong to the same frame and the condition holds."""
         wait(lambda: self.state.header.stamp == self.landmarks.header.stamp and condition(), what)
 
     def wait_for_states(self, count):
-        """Waits until so many further states have come."""
+        """Waits until `count` further states have come."""
         end = self.states + count
         wait(lambda: self.states >= end, "%d more states" % count)
 
@@ -68,7 +68,7 @@ class Face:
         self.send(list(activation), list(activation.values()))
 
     def send(self, names, values):
-        # without a stamp, so that a slow machine does not make it stale
+        # the message has no stamp, so that a slow machine does not make it stale
         self.activation.publish(MuscleActivation(name=names, activation=values))
 
     def express(self, *names, **fields):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The action ~fit_activation: finds the activation of a pose, is applied, refuses, and can be cancelled."""
+"""The action ~fit_activation finds the activation of a pose, applies it, refuses bad goals, and can be cancelled."""
 
 import math
 import os

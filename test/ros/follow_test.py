@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A bone that follows a frame of tf2: how it moves, and what happens if the frame is missing, jumps, or is out of date."""
+"""A bone follows a frame of tf2, and reacts as documented if the frame is missing, jumps, or is out of date."""
 
 import math
 import unittest
@@ -11,7 +11,7 @@ from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 
 from face import Face, wait
 
-REST = (-0.05, 0.01, 0.02)  # of the frame, in the face frame [m]
+REST = (-0.05, 0.01, 0.02)  # position of the followed frame at rest, in the face frame [m]
 
 
 def link(parent, child, shift, age=0, turn=(0, 0, 0, 1)):
@@ -41,7 +41,7 @@ class Follow(unittest.TestCase):
         self.face.wait_for_frame(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
 
     def wait_for_word(self, word, **shown):
-        """Steps and sends the frame until the diagnostics have a word."""
+        """Steps and sends the frame until the diagnostics contain the word."""
 
         def told():
             self.show(**shown)
@@ -64,16 +64,16 @@ class Follow(unittest.TestCase):
 
     def test_follows_and_tells_of_faults(self):
         rest = self.tip()
-        # no frame yet: the bone stays, and diagnostics say why
+        # without a frame the bone stays where it is, and the diagnostics name the reason
         self.wait_for_word("jaw")
         self.assertAlmostEqual(self.tip()[2], rest[2], 5)
         self.assertEqual(self.face.diagnostics[0].level, 1)
-        # the frame is where its rest is, then 3 mm up
+        # the frame is first at its place of rest, then 3 mm above it
         self.fixed.sendTransform(link("face", "jaw_rest", REST))
         self.step_until_tip_at(rest, (0, 0, 0))
         self.step_until_tip_at((rest[0], rest[1], rest[2] + 0.003), (0, 0, 0.003))
         wait(lambda: self.face.diagnostics[0].level == 0, "good diagnostics")
-        # ~bone_pose cannot move it too
+        # ~bone_pose cannot move a bone that follows a frame
         poses = rospy.Publisher("/face/bone_pose", TransformStamped, queue_size=1)
         wait(poses.get_num_connections, "a connection")
         poses.publish(link("face", "skull", (0.01, 0, 0)))
@@ -83,14 +83,14 @@ class Follow(unittest.TestCase):
         self.assertLess(self.tip()[0], rest[0] + 0.03)
         self.step_until_tip_at((rest[0] + 0.04, rest[1], rest[2]), (0.04, 0, 0))
         self.assertFalse(self.face.state.failed)
-        # turns about the frame's own place
+        # the bone turns about the origin of the frame
         half = math.radians(5)
         turned = (0, math.sin(half), 0, math.cos(half))
         x, z = rest[0] - REST[0], rest[2] - REST[2]
         place = (REST[0] + x * math.cos(2 * half) + z * math.sin(2 * half), rest[1],
                  REST[2] - x * math.sin(2 * half) + z * math.cos(2 * half))
         self.step_until_tip_at(place, (0, 0, 0), turn=turned)
-        # a transform that is out of date, or of a clock that is ahead, is not used
+        # a transform with a stamp that is too old or in the future is not used
         self.wait_for_word("in the future", shift=(0, 0, 0), age=-2000)
         self.assertLess(max(abs(a - b) for a, b in zip(self.tip(), place)), 2e-4)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Inputs that are timed, mapped or faulty, and the watchdog, of a face in lock-step, so that every activation is exact."""
+"""Timed, mapped and faulty inputs, and the watchdog. The face runs in lock-step, so that every activation is exact."""
 
 import math
 import unittest
@@ -19,7 +19,7 @@ LEFT, RIGHT = "frontalis_left", "frontalis_right"
 
 
 def trajectory(names, *points):
-    """Points are pairs of a time [s] and positions."""
+    """Returns a trajectory. Each point is a pair of a time [s] and a list of positions."""
     return JointTrajectory(
         joint_names=names,
         points=[JointTrajectoryPoint(positions=list(p), time_from_start=rospy.Duration(t)) for t, p in points])
@@ -61,7 +61,7 @@ class Inputs(unittest.TestCase):
         self.deliver(topic, message, self.refused)
 
     def deliver(self, topic, message, count):
-        # the counts must be those of a face that has dealt with all earlier messages
+        # before counting, wait until the face has processed all earlier messages
         self.wait_for_diagnostics()
         before = count(topic)
         self.topics[topic].publish(message)
@@ -72,7 +72,7 @@ class Inputs(unittest.TestCase):
         wait(lambda: self.face.diagnostics, "diagnostics")
 
     def step(self, seconds):
-        """The activations after a step."""
+        """Steps and returns the activations after the step."""
         answer = self.face.step(seconds)
         self.assertTrue(answer.success, answer.message)
         wait(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
@@ -89,7 +89,7 @@ class Inputs(unittest.TestCase):
         self.check(self.step(0.1), 0.4, 0.3)
         self.check(self.step(0.15), 0.2, 0.6)
         self.check(self.step(1), 0, 0.6)
-        # a trajectory without points stops where it is
+        # a trajectory without points stops the muscle at its present activation
         self.send("joint_trajectory", trajectory([LEFT], (1, (1,))))
         self.check(self.step(0.5), 0.5, 0.6)
         self.send("joint_trajectory", trajectory([LEFT]))
@@ -100,7 +100,7 @@ class Inputs(unittest.TestCase):
         self.step(0.5)
         self.send("joint_states", JointState(name=[LEFT], position=[0.1]))
         self.check(self.step(0.25), 0.1, 0.75)
-        # an expression, action units and blendshapes take the whole face
+        # expressions, action units and blendshapes command the whole face
         self.send("expression", Expression(name=["wink"], onset=0.5))
         self.check(self.step(0.25), 0.35, 0.375)
         self.send("joint_states", JointState(name=[RIGHT], position=[0.7]))
@@ -121,7 +121,7 @@ class Inputs(unittest.TestCase):
         self.check(self.step(0.1), 0.55, 0.4)
         self.send("expression", Expression(name=["raise", "wink"]))
         self.check(self.step(0.1), 1, 0.8)
-        # from where the face is, to an expression that lasts until the next command
+        # the face moves from its present state to an expression that lasts until the next command
         self.send("expression", Expression(name=["wink"], onset=0.2))
         self.check(self.step(0.1), 0.8, 0.4)
         self.check(self.step(2), 0.6, 0)
@@ -141,7 +141,7 @@ class Inputs(unittest.TestCase):
         rest = self.tip()
         self.send("action_units", ActionUnits(name=["AU1", "AU1_left"], intensity=[0.5, 0.25]))
         self.check(self.step(0.1), 0.375, 0.25)
-        # units that a message does not name are at 0; this one shifts the bone
+        # action units that a message does not name are at 0; AU27 shifts the bone
         self.send("action_units", ActionUnits(name=["AU27"], intensity=[0.5]))
         self.check(self.step(2), 0, 0)
         self.assertAlmostEqual(self.tip() - rest, 0.002, 4)
@@ -155,7 +155,7 @@ class Inputs(unittest.TestCase):
         self.assertAlmostEqual(self.tip() - rest, 0.002, 4)
         self.step(2.5)
         self.assertAlmostEqual(self.tip(), rest, 4)
-        # full intensity of another's pose, and a message of its own for the bone
+        # another pose at full intensity moves the bone, and then a message for the bone alone does
         self.send("blendshapes", Blendshapes(name=["jawOpen"], weight=[1]))
         self.step(2)
         self.assertAlmostEqual(self.tip() - rest, 0.004, 4)
@@ -176,7 +176,7 @@ class Inputs(unittest.TestCase):
         wait(lambda: "no command" in self.face.diagnostics[0].message, "a diagnostic")
         self.assertEqual(self.face.diagnostics[0].level, 1)
         self.check(self.step(0.5), 0, 0)
-        # a controller that is started again has the face at once
+        # a controller that starts again commands the face at once
         self.send("muscle_activation", MuscleActivation(name=[LEFT], activation=[0.8]))
         self.check(self.step(0.1), 0.8, 0)
         wait(lambda: "no command" not in self.face.diagnostics[0].message, "the end of the diagnostic")
@@ -196,7 +196,7 @@ class Inputs(unittest.TestCase):
         message.header.stamp = rospy.Time.now()
         self.send("muscle_activation", message)
         self.check(self.step(0.1), 0.9, 0)
-        # a trajectory may begin later, but not in an hour, and one that is over is refused
+        # trajectories that begin in an hour, and those that are over, are refused
         later = trajectory([LEFT], (0, (0.1,)))
         for shift in (-3600, 3600):
             later.header.stamp = rospy.Time.now() + rospy.Duration(shift)

@@ -19,7 +19,7 @@ class Live(unittest.TestCase):
         begin = self.face.state
         wait(lambda: self.face.state.time > begin.time + 0.5 and self.face.state.real_time_factor > 0.1, "the pace")
         end = self.face.state
-        # a frame may be one frame ahead of the clock and make up for at most two late ones, at 30 frames per second
+        # at 30 frames per second, simulated time may be one frame ahead of the clock and make up for two late frames
         self.assertLess(end.time - begin.time, end.wall_time - begin.wall_time + 0.11)
         self.assertLess(end.real_time_factor, 1.11)
 
@@ -39,7 +39,7 @@ class Live(unittest.TestCase):
     def test_3_pause_stops_the_clock_and_goes_on(self):
         self.assertTrue(self.face.pause(True).success)
         wait(lambda: self.face.state.paused, "the pause")
-        self.face.wait_for_states(2)  # one more frame may have been under way
+        self.face.wait_for_states(2)  # one more frame may have been in progress
         begin = self.face.state.time
         self.face.wait_for_states(2)
         self.assertEqual(self.face.state.time, begin)

@@ -24,7 +24,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Shell scripts that stand in for the program `frontalis`, in a folder that is also used as the temporary folder.
+/// Uses shell scripts in place of the program `frontalis`. Their folder is also the temporary folder.
 class ModelSource : public testing::Test
 {
 protected:
@@ -70,7 +70,7 @@ protected:
 
   bool left_nothing() const { return fs::is_empty(folder_ / "temporary"); }
 
-  std::string given_;  ///< TMPDIR as it was
+  std::string given_;  ///< value of TMPDIR before the test
   fs::path folder_;
   std::vector<std::string> log_;
   std::atomic<bool> cancelled_{ false };
@@ -197,7 +197,7 @@ TEST_F(ModelSource, ABakeEndsWithTheProcessThatStartedIt)
   BakeRequest request;
   // the loop ends a program that a failing test leaves behind
   request.program = program("trap '' HUP INT TERM; echo started; for i in $(seq 600); do sleep 1; done");
-  // the program inherits the writing end: the reading end reaches its end of file once no process has it open
+  // the program inherits the writing end of a pipe: the reading end sees the end of file once no process has it open
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
   const pid_t node = fork();

@@ -42,7 +42,7 @@ class Moved(unittest.TestCase):
     def send(self, *messages):
         for message in messages:
             self.poses.publish(message)
-        rospy.sleep(0.2)  # by then most messages have arrived
+        rospy.sleep(0.2)  # time in which most messages arrive
 
     def step_until_tip_at(self, place, within):
         """Steps until the tip rests at a place [m]. It takes more than one step if a pose arrives late."""

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A robot face: joints follow a trajectory, anchors follow joints, skin follows anchors, and efforts come back."""
+"""A robot face: joints follow a trajectory, anchors follow joints, skin follows anchors, and joints report efforts."""
 
 import unittest
 
@@ -60,14 +60,14 @@ class Robot(unittest.TestCase):
         self.assertEqual(self.forces[-1].header.frame_id, "face_robot/bone/anchor_outer_left")
         self.assertGreater(self.joints[JOINT][1], 0)
 
-        # faults: nothing moves
+        # trajectories with faults move nothing
         for joint, position in (("nose", 0), (JOINT, 0.1), (JOINT, float("nan"))):
             self.send(joint, position)
         self.send("inner_left_knit", 0.001)
         wait(lambda: self.joints["inner_left_knit"][0] == 0.001, "a good trajectory after bad ones")
         self.assertEqual(self.joints[JOINT][0], LIFT)
 
-        # and back
+        # the joints return to rest
         self.send(JOINT, 0)
         self.send("inner_left_knit", 0)
         self.step_until(lambda: abs(self.brow() - rest) < 2e-4, "the brow at rest")

@@ -54,12 +54,12 @@ class Scenes(unittest.TestCase):
         wait(lambda: markers, "a marker")
         colour = markers[-1].colors[0]
         config.update_configuration({"skin_colour": "displacement", "frame_rate": 10, "effects_off": "contraction"})
-        # without displacement: the blue end of the scale, where skin is reddish
+        # without displacement the colour is the blue end of the scale, whereas skin is reddish
         self.assertGreater(colour.r, colour.b)
         wait(lambda: markers[-1].colors[0].b > markers[-1].colors[0].r, "false colours")
         running = self.face.switch_effect("", False)
         self.assertFalse(dict(zip(running.name, running.running))["contraction"])
-        # what cannot be done is refused as a whole
+        # a configuration that cannot be applied is refused as a whole
         self.assertEqual(config.update_configuration({"effects_off": "magic"})["effects_off"], "contraction")
         config.update_configuration({"skin_colour": "skin", "effects_off": "", "frame_rate": 0})
         wait(lambda: markers[-1].colors[0].r > markers[-1].colors[0].b, "the colours of skin")

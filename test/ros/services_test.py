@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Services, inputs, topics and frames of a face that runs a small scene in lock-step, so that every number is exact."""
+"""Services, inputs, topics and frames of a face. It runs a small scene in lock-step, so that every number is exact."""
 
 import math
 import struct

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A finger that the demo presses on tissue: its wrench, its frame and its marker."""
+"""The wrench, frame and marker of a finger that the demo presses on tissue."""
 
 import json
 import math
@@ -18,7 +18,7 @@ from visualization_msgs.msg import MarkerArray
 
 from face import Face, wait
 
-CENTRE = (0.001, 0, -0.0182)  # of the finger at rest, face frame [m]
+CENTRE = (0.001, 0, -0.0182)  # centre of the finger at rest, face frame [m]
 
 
 def cross(a, b):
@@ -50,7 +50,7 @@ class Touch(unittest.TestCase):
         self.wrench = message
 
     def press(self, seconds):
-        """Steps, and waits for wrench and frame of the same moment."""
+        """Steps, and waits for the wrench and the frame of the same time."""
         answer = self.face.step(seconds)
         self.assertTrue(answer.success, answer.message)
         self.face.wait_for_frame(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
@@ -61,7 +61,7 @@ class Touch(unittest.TestCase):
         return wrench.wrench, self.frames.lookup_transform("face", "face/body/press", wrench.header.stamp).transform
 
     def run_program(self):
-        """The same press by `frontalis run`: force and moment in the face frame, about its origin carried along."""
+        """Returns force and moment of the same motion by `frontalis run`, about the face frame's origin as the finger carries it."""
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(rospkg.RosPack().get_path("frontalis"), "test/ros/touch.yaml")
             program = roslib.packages.find_node("frontalis", "frontalis")[0]
@@ -74,7 +74,7 @@ class Touch(unittest.TestCase):
 
     def test_wrench_is_that_of_a_run(self):
         self.assertTrue(self.face.reset().success)
-        # the step goes to the pose at its end: the ramp of the demo first
+        # a step goes to the pose at its end, so step through the ramp of the demo first
         self.press(0.1)
         wrench, frame = self.press(0.5)
         force, moment = self.run_program()
@@ -82,21 +82,21 @@ class Touch(unittest.TestCase):
         self.assertGreater(math.hypot(*force), 0.05)
         for got, expected in zip(turned(frame.rotation, triple(wrench.force)), force):
             self.assertAlmostEqual(got, expected, delta=1e-3 * math.hypot(*force))
-        # about the face frame's origin as the finger carries it
+        # transfer the torque from the finger's centre to the face frame's origin as the finger carries it
         arm = turned(frame.rotation, CENTRE)
         about = [m + c for m, c in zip(turned(frame.rotation, triple(wrench.torque)), cross(arm, force))]
         for got, expected in zip(about, moment):
             self.assertAlmostEqual(got, expected, delta=1e-3 * math.hypot(*force) * 0.02)
-        # a smooth ball: only friction has a moment about its centre
+        # the finger is a ball, so only friction has a moment about its centre
         self.assertLess(math.hypot(*triple(wrench.torque)), 0.25 * 0.008 * math.hypot(*force))
-        # the finger is where the demo has it: turned by 5 degrees about y, and lifted
+        # the finger has the pose of the demo: turned by 5 degrees about y, and lifted
         at = triple(frame.translation)
         sine, cosine = math.sin(math.radians(5)), math.cos(math.radians(5))
         self.assertAlmostEqual(at[0], cosine * CENTRE[0] + sine * CENTRE[2], 6)
         self.assertAlmostEqual(at[2], -sine * CENTRE[0] + cosine * CENTRE[2] + 0.0012, 6)
 
     def test_finger_is_shown(self):
-        # the first marker deletes those of another scene
+        # the first marker deletes the markers of another scene
         marker = rospy.wait_for_message("/face/bodies", MarkerArray, 60).markers[1]
         self.assertEqual(marker.header.frame_id, "face/body/press")
         self.assertTrue(marker.frame_locked)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A motion that no time step makes stable is stopped with the reason, the last good skin stays, and ~reset begins anew."""
+"""A motion that no time step makes stable is stopped with a reason. The last good skin stays, and ~reset starts again."""
 
 import math
 import struct

@@ -1,4 +1,4 @@
-// Newton's third law: what a body presses into tissue arrives at the bone that holds the tissue.
+// Newton's third law: the force of a body on tissue acts on the bone that holds the tissue.
 
 #include "cli/bar_model.hpp"
 
@@ -42,7 +42,7 @@ TEST_P(BoneForces, balance_those_on_a_finger)
   const auto solver = make_solver(model, { GetParam(), 1 });
   Controls controls = rest_controls(*model);
   controls.activation = { 0.5 };
-  // the bone turns and shifts too, so that its moment is about another place than at rest
+  // the bone moves too, so that its moment is about another point than at rest
   set_bone_motion(*model, "base", { { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { 0, 0, 1.5e-3 } }, controls.bone);
   solver->advance(0.2, controls);
   const Equilibrium found = solver->settle(controls, 1e-7, 5);
@@ -53,12 +53,12 @@ TEST_P(BoneForces, balance_those_on_a_finger)
   const auto &on_base = bones[0].reaction, &on_finger = bones[1].reaction;
   const double size = std::hypot(on_finger.force[0], on_finger.force[1], on_finger.force[2]);
   EXPECT_GT(size, 1e-3);
-  // moments are about the origin of the face frame where each bone has carried it: that of the base is shifted
+  // the moment on a bone is about the face frame's origin as the bone carries it; the base has shifted this point
   const auto& shift = bones[0].pose.translation;
   const std::array<double, 3> carried{ { shift[1] * on_base.force[2] - shift[2] * on_base.force[1],
                                          shift[2] * on_base.force[0] - shift[0] * on_base.force[2],
                                          shift[0] * on_base.force[1] - shift[1] * on_base.force[0] } };
-  constexpr double distance = 0.6;  // [m] about that from the origin of the face frame
+  constexpr double distance = 0.6;  // approximate distance of the forces from the origin of the face frame [m]
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     EXPECT_NEAR(on_base.force[axis] + on_finger.force[axis], 0, 1e-3 * size) << axis;

@@ -28,7 +28,7 @@ TEST(FrameClock, ForgetsDelaysBeyondTheLimit)
   FrameClock clock;
   clock.restart(at(0), 0);
   EXPECT_NEAR(clock.behind(at(5), 0.5, 0.1), 0.1, 1e-6);
-  // from here on simulated time 0.6 s belongs to wall time 5 s
+  // from now on the simulated time 0.6 s corresponds to the wall time 5 s
   EXPECT_NEAR(clock.behind(at(5.05), 0.65, 0.1), 0, 1e-6);
   EXPECT_NEAR(clock.behind(at(5.15), 0.7, 0.1), 0.05, 1e-6);
 }
@@ -39,7 +39,7 @@ TEST(FrameClock, RealTimeFactorIsThatOfTheLastSecond)
   clock.restart(at(0), 0);
   EXPECT_EQ(clock.record_frame(at(0), 0), 0);
   EXPECT_NEAR(clock.record_frame(at(0.5), 0.25), 0.5, 1e-6);
-  // first two seconds at half of real time, then at twice
+  // the first two seconds run at half the speed of real time, the rest at twice the speed of real time
   double factor = 0;
   for (int frame = 6; frame <= 20; ++frame)
     factor = clock.record_frame(at(0.1 * frame), 0.05 * frame);

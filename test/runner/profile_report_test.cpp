@@ -33,14 +33,14 @@ TEST(ProfileReport, names_the_most_accurate_profile_that_would_run_in_real_time)
 {
   Model model = measured();
   EXPECT_EQ(speed_report(model, 1), "real-time factor 1");
-  // as fast as the machine of the measurement: 2 s per simulated second
+  // this machine is as fast as the machine of the measurement: 2 s per simulated second
   EXPECT_NE(
       speed_report(model, 0.5)
           .find("profile 'draft' would run in real time: about 0.5 s per simulated second, skin error 0.6 mm RMS"),
       std::string::npos)
       << speed_report(model, 0.5);
   model.profile = "fine";
-  // on a machine sixteen times as fast
+  // this machine is sixteen times as fast as that of the measurement
   EXPECT_NE(speed_report(model, 0.8).find("profile 'standard' would run in real time: about 0.12 s"), std::string::npos)
       << speed_report(model, 0.8);
 }

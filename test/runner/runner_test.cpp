@@ -40,7 +40,7 @@ std::shared_ptr<const Model> bar()
   model.landmark_binding.voxel = { 5 };
   model.landmark_binding.coordinates = { { { 1, 0, 0 } } };
   model.expressions.push_back({ "pull", { { 0, 0.8f } } });
-  // the face frame: local x is its z
+  // local x is z of the face frame
   model.to_face.rotation = { { 0, 1, 0, 0, 0, 1, 1, 0, 0 } };
   model.to_face.translation = { { 0, 0, 1 } };
   return std::make_shared<const Model>(model);
@@ -50,7 +50,7 @@ double tip(const Frame& frame) { return frame.skin.landmarks[0][2] - 1; }
 
 RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { "cpu", 1, 0 }, pace, frame_rate }; }
 
-/// The bar with so much simulated time per time step that any machine can run it in real time.
+/// The bar with such long time steps that any machine can run it in real time.
 std::shared_ptr<const Model> fast_bar()
 {
   Model model = *bar();
@@ -68,7 +68,7 @@ bool comes_true(const Condition& condition)
   return true;
 }
 
-/// A call of step() with a million seconds, in a thread of its own; it is under way once the constructor has returned.
+/// Calls step() with a million seconds, in a thread of its own. The step has begun when the constructor returns.
 class LongStep
 {
 public:
@@ -80,7 +80,7 @@ public:
                 error_ = error_of(runner, 1e6);
             })
   {
-    // until the long step is under way, very short steps succeed
+    // until the long step has begun, very short steps succeed
     EXPECT_TRUE(comes_true([&] { return error_of(runner, 1e-9) == busy; }));
   }
   /// Waits for the end of the step and returns its error.
@@ -145,7 +145,7 @@ TEST(Runner, PublishesWhatMusclesDoAndNotWhatIsAsked)
 TEST(Runner, BonesMoveInTheFaceFrame)
 {
   Runner runner(bar(), settings(Pace::lock_step), {});
-  // local x is the face's z, y its x: a quarter turn about the face's y axis through its origin takes z to x
+  // in the face frame, local x is z and local y is x; a quarter turn about the face frame's y axis takes z to x
   RigidTransform motion;
   motion.rotation = { { 0, 0, 1, 0, 1, 0, -1, 0, 0 } };
   motion.translation = { { 0, 2e-3, 0 } };
@@ -242,7 +242,7 @@ TEST(Runner, PauseStopsTimeAndResetRewinds)
   EXPECT_TRUE(comes_true([&] { return time > 0; }));
   runner.pause(true);
   EXPECT_TRUE(runner.paused());
-  runner.switch_effect(Effect::contraction, true);  // returns when the frame under way is done
+  runner.switch_effect(Effect::contraction, true);  // returns when the present frame is done
   const double then = time;
   std::this_thread::sleep_for(200ms);
   EXPECT_EQ(time, then);

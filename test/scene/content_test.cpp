@@ -32,18 +32,18 @@ TEST(Content, depends_on_what_decides_the_bake_alone)
   const std::string mesh = folder.write("a/meshes/triangle.obj", "v 0 0 0\n");
   const std::string content = read_scene(folder.write("a/scene.yaml", text)).content;
 
-  // folder, comments and profiles that are not chosen do not count
+  // folder, comments and profiles that are not chosen do not change the hash
   folder.write("b/meshes/triangle.obj", "v 0 0 0\n");
   std::string changed = "# a comment\n" + text;
   changed.replace(changed.find("draft: {voxel: 3 mm"), 19, "draft: {voxel: 4 mm");
   EXPECT_EQ(read_scene(folder.write("b/scene.yaml", changed)).content, content);
 
-  // the same length in another unit does not count
+  // the same length in another unit does not change the hash
   changed = text;
   changed.replace(changed.find("minor_radius: 1,"), 16, "minor_radius: 10 mm,");
   EXPECT_EQ(read_scene(folder.write("a/scene.yaml", changed)).content, content);
 
-  // a number, the chosen profile and each byte of a mesh count
+  // a number, the chosen profile and each byte of a mesh change the hash
   changed = text;
   changed.replace(changed.find("poisson: 0.49"), 13, "poisson: 0.48");
   EXPECT_NE(read_scene(folder.write("a/scene.yaml", changed)).content, content);
@@ -54,7 +54,7 @@ TEST(Content, depends_on_what_decides_the_bake_alone)
   EXPECT_NE(read_scene(folder.path() + "/a/scene.yaml").content, content);
 }
 
-// Every number of the file changes the hash, except in profiles that are not chosen; else caches return wrong models.
+// Every number of the file, except in profiles not chosen, changes the hash: otherwise caches return wrong models.
 TEST(Content, depends_on_every_number)
 {
   const std::string text = text_of(source + "/test/scene/every_key.yaml");
@@ -84,7 +84,7 @@ TEST(Content, depends_on_every_number)
     }
     catch (const Error&)
     {
-      continue;  // the changed number is out of its range
+      continue;  // the changed number is outside its range
     }
     ++changed;
     EXPECT_NE(got, content) << digits << " of " << text.substr(line, text.find('\n', line) - line);

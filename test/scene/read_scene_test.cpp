@@ -92,7 +92,7 @@ TEST(EveryLaw, reads_what_its_description_asks_for)
 {
   for (const auto& law : physics::material_table)
   {
-    // all keys, but with `other` in place of the value of `key`, or without it
+    // all keys, but with the value `other` for `key`, or without `key` if `other` is empty
     const auto keys = [&](const std::string& key = {}, const std::string& other = {})
     {
       std::string text = fmt::format("law: {}", law.name);
@@ -364,7 +364,7 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.profiles[0].measured.machine, "a bench");
   EXPECT_EQ(scene.profiles[1].measured.cost, 0);
 
-  // what a profile leaves out comes from the defaults, not from another profile
+  // keys that a profile leaves out have their defaults, not the values of another profile
   expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });
   EXPECT_EQ(scene.profiles[2].samples, 4);
   EXPECT_EQ(scene.profiles[2].mass_scaling.kind, MassScaling::Kind::none);

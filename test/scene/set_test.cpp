@@ -1,4 +1,4 @@
-// Entries that stand for several things: sets of parts, muscles of a set, names without their side.
+// Entries that define several things at once: sets of parts, muscles of a set, names without a side.
 
 #include "frontalis/error.hpp"
 #include "frontalis/scene/read_scene.hpp"

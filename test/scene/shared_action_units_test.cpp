@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// A file that scenes share may name more than a scene has; a muscle without a side is both of its sides.
+// A file that scenes share may name muscles that a scene lacks. A muscle without a side means both sides.
 TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
 {
   const TemporaryFolder folder;

@@ -46,7 +46,7 @@ class Accuracy : public test::EveryBackend
 {
 };
 
-// A weight w per length deflects the tip by w L^4 / (8 E I), which is 3 rho g L^4 / (2 E h^2), plus a little by shear.
+// A weight w per length deflects the tip by w L^4 / (8 E I) = 3 rho g L^4 / (2 E h^2); shear adds a little.
 TEST_P(Accuracy, selective_reduced_integration_bends_and_does_not_lock)
 {
   for (const double poisson : { 0.3, 0.49 })
@@ -114,7 +114,7 @@ TEST_P(Accuracy, a_stiff_layer_among_soft_ones_steps_longer_by_the_assembled_bou
   EXPECT_LT(assembled->monitor().kinetic, 2 * early) << "and is stable";
 }
 
-// Mass is added to a stiff voxel among soft ones until the requested time step is allowed; the weight does not change.
+// Mass scaling adds mass to a stiff voxel among soft ones until the time step is allowed. The weight does not change.
 TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
 {
   Model model = cantilever(2, 0.45);

@@ -9,7 +9,7 @@ using namespace frontalis;
 namespace
 {
 
-constexpr double rest = 4e10;  // bound at nodes [1/s2]
+constexpr double rest = 4e10;  // bound of the squared frequency at nodes [1/s2]
 
 // a search that records its arguments
 struct Search

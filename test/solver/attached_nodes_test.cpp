@@ -13,7 +13,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-constexpr double edge = 1e-3, surface = 0.4e-3;  // height of the bone's surface in the lowest row of voxels
+constexpr double edge = 1e-3, surface = 0.4e-3;  // surface: height of the bone's surface, in the lowest row of voxels
 
 std::array<std::int32_t, 3> above(const std::array<std::int32_t, 3>& node, std::int32_t k)
 {
@@ -25,7 +25,7 @@ std::int32_t index_of(const Model& model, const std::array<std::int32_t, 3>& nod
   return static_cast<std::int32_t>(std::find(model.nodes.begin(), model.nodes.end(), node) - model.nodes.begin());
 }
 
-// A block whose nodes at z = 0 and z = 1 edge follow those at z = 2 edges; `part`: those that do.
+// A block whose nodes at z = 0 and z = 1 edge follow those at z = 2 edges, if part(node) is true.
 template <class Part>
 Model attached_block(std::int32_t bone, std::int32_t slides_on, const Part& part)
 {
@@ -45,7 +45,7 @@ Model held_block(std::int32_t bone = -1)
   return attached_block(bone, -1, [](const auto&) { return true; });
 }
 
-// The ball stands below the block; its top is at the surface. Nodes up to x = 1 edge are held by a bone.
+// The block lies on a ball whose top is at the height `surface`. Nodes up to x = 1 edge are held by a bone.
 Model sliding_block(bool sampled, std::int32_t bone)
 {
   Model model = attached_block(-1, 0, [](const auto&) { return true; });
@@ -90,7 +90,8 @@ protected:
 
 }  // namespace
 
-// u - g of a node is its ratio times that of its master, so that the tissue follows the bone at the surface.
+// The displacement u of a node relative to the bone's motion g is its ratio times that of its master, so that the
+// tissue follows the bone at the surface.
 TEST_P(Attached, NodesFollowTheirMastersOnABoneThatMoves)
 {
   Model model = held_block(0);
@@ -120,7 +121,7 @@ TEST_P(Attached, NodesFollowTheirMastersOnABoneThatMoves)
   EXPECT_GT(largest, 1e-6) << "the masters move";
 }
 
-// The forces of attached nodes act on their masters: nothing is lost between two parts that a rigid link joins.
+// The forces of attached nodes act on their masters: momentum is kept between two parts that a rigid link joins.
 TEST_P(Attached, ForcesAreHandedOnWithoutALossOfMomentum)
 {
   Model model = held_block();
@@ -172,7 +173,7 @@ TEST_P(Attached, EnergiesBalanceOnABoneThatMoves)
   }
 }
 
-// The level of a node stays in proportion to that of its master, wherever they slide to.
+// The level of a node stays in proportion to that of its master, wherever the nodes slide.
 TEST_P(Attached, SlidingNodesKeepTheExtrapolatedSurface)
 {
   for (const bool sampled : { false, true })
@@ -215,7 +216,7 @@ TEST_P(Attached, TheBoundOfTheTimeStepHolds)
   for (const bool slides : { false, true })
   {
     Model model = slides ? sliding_block(false, -1) : held_block();
-    // slivers below the bone's surface, as the bake leaves them there
+    // the lowest voxels have little tissue, like voxels below the bone's surface in a baked model
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
       if (model.voxels[e][2] == 0)
         model.fill[e] = e % 3 == 0 ? 0.02F : 0.6F;
@@ -261,7 +262,7 @@ TEST(AttachedOnCpu, ThreadsDoNotChangeABit)
   EXPECT_EQ(found[0], found[2]);
 }
 
-// Nodes at surfaces that are still are processed in blocks, those of bones one by one.
+// Nodes at fixed surfaces are processed in blocks, nodes at bones one by one; both must give the same motion.
 TEST(AttachedOnCpu, ABoneThatRestsIsAsGoodAsNone)
 {
   for (const bool sampled : { false, true })

@@ -46,7 +46,7 @@ inline double mechanical(const EnergyLedger& l)
   return l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"];
 }
 
-// A block with a fingertip above it, which is a bone; its lower side is held.
+// A block with a held lower side, and a fingertip above it that moves with a bone.
 inline Model block_and_finger(double friction, bool sampled = false)
 {
   BlockSettings settings;
@@ -90,7 +90,7 @@ inline void press_and_stroke(Solver& solver, double seconds)
   solver.advance(0.6 * seconds, controls);
 }
 
-// All but cuda: for what only they compute.
+// All backends except cuda, for effects that cuda does not compute.
 inline std::vector<Backend> host_backends()
 {
   auto backends = available_backends();

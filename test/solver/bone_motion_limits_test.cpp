@@ -37,7 +37,7 @@ TEST(BoneMotionLimits, notice_jumps_of_velocity)
 {
   const Model model = test::block_model();
   BoneMotionLimits limits(model);
-  const double felt = 0.005 * edge / speed;  // step in which the bone moves by the limit, 0.5 % of a voxel
+  const double felt = 0.005 * edge / speed;  // time step in which the bone moves by the limit, 0.5 % of a voxel [s]
   EXPECT_TRUE(limits.jumps(moved(0), moved(speed), 1, 1.01 * felt)) << "it begins to move";
   EXPECT_FALSE(limits.jumps(moved(0), moved(speed), 1, 0.99 * felt));
   limits.moved(moved(0), 1);

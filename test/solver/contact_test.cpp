@@ -1,4 +1,4 @@
-// Tissue that touches rigid bodies: the forces. Pressure, impact, wrench and friction are cases of `frontalis verify`.
+// Forces of rigid bodies that tissue touches. Pressure, impact, wrench and friction are cases of `frontalis verify`.
 
 #include "bodies_touch.hpp"
 
@@ -39,7 +39,7 @@ TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
   }
 }
 
-// Friction depends on the history of each point. The plate is a sphere of 1 km.
+// Friction depends on the history of each point. The plate is a sphere with a radius of 1 km.
 TEST_P(BodiesTouch, forces_and_friction_are_those_of_the_reference)
 {
   for (const bool flat : { false, true })

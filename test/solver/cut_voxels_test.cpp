@@ -66,7 +66,7 @@ protected:
   }
 };
 
-// K of the test of the bound: one voxel, in any state of deformation
+// the highest squared frequency of one voxel over its bound, in a random state of deformation
 double true_over_bound(const Model& model, double amplitude)
 {
   std::vector<std::size_t> free(24);
@@ -76,7 +76,7 @@ double true_over_bound(const Model& model, double amplitude)
 
 }  // namespace
 
-// Energies come from transformed displacements, forces of the reference from shape functions at the centroid.
+// Energies use transformed displacements, but forces of the reference use shape functions at the centroid.
 TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
 {
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })
@@ -126,7 +126,7 @@ TEST_P(CutVoxels, MoveAsInTheReference)
       EXPECT_NEAR(found[0][n][axis], found[1][n][axis], 1e-4 * size);
 }
 
-// A uniform strain gives the centroid the same stress as the centre, whatever its place.
+// Under a uniform strain the stress at the centroid equals that at the centre, wherever the centroid is.
 TEST_P(CutVoxels, UniformStrainHasTheEnergyOfWholeVoxels)
 {
   const Model cut = cut_block();

@@ -55,7 +55,7 @@ struct Oscillators
   }
 };
 
-// Runs the motion to rest; returns the number of calls of observe() that it took, or 0 if it does not come to rest.
+// Runs the motion to rest. Returns the number of calls of observe(), or 0 if the motion does not come to rest.
 int settle(Oscillators& motion, double tolerance, DynamicRelaxation& relaxation, int steps_per_observation)
 {
   for (int looks = 1; looks < 5000; ++looks)
@@ -140,7 +140,7 @@ TEST(DynamicRelaxation, does_not_damp_above_what_is_allowed)
   EXPECT_EQ(relaxation.damping(), 3);
 }
 
-// A window ends when the change exceeds rounding errors, after a set number of calls of observe(), or with the motion.
+// A window ends when the change exceeds rounding errors, after some calls of observe(), or at the end of the motion.
 TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
 {
   for (const bool last : { false, true })

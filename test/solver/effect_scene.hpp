@@ -24,8 +24,8 @@ enum SceneEffect : unsigned
   pressure = 32,
   prescribed = 64,
   sliding = 128,
-  friction = 256,  ///< in addition to sliding
-  loose = 512,     ///< no rigid nodes
+  friction = 256,  ///< friction, in addition to sliding
+  loose = 512,     ///< the model has no rigid nodes
   but_friction = 255,
   everything = 511
 };
@@ -43,7 +43,7 @@ inline std::vector<unsigned> every_combination()
 /// Height above the plane z = 0 [m].
 inline double height(const std::array<double, 3>& p) { return p[2]; }
 
-/// A model with these effects, each in its own part. Rows of several lengths give full, half full and empty tiles.
+/// A model with the given effects, each in its own part. Rows of different lengths give full, half and empty tiles.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {
@@ -130,7 +130,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-/// Largest difference of a component, relative to the largest component of b or 1 um.
+/// Largest difference of a component, over the largest component of b, or over 1 um if that is larger.
 inline double difference(const Vectors& a, const Vectors& b)
 {
   double worst = 0, largest = 1e-6;

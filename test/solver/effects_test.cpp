@@ -54,7 +54,7 @@ std::vector<const char*> instruction_sets()
   return sets;
 }
 
-// No effect is lost when another is present.
+// The presence of an effect does not disable another one.
 TEST(Effects, every_combination_moves_like_the_reference)
 {
   std::vector<Backend> backends = available_backends();

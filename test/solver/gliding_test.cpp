@@ -207,7 +207,7 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   }
 }
 
-// Moving nodes back to a surface must not add energy, even if it is curved and its tangent plane has an error.
+// Moving nodes back to a surface must not add energy, even if the surface is curved and its tangent plane has an error.
 TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
 {
   const std::array<double, 3> centre{ { 7e-3, 7e-3, 7e-3 } };
@@ -242,8 +242,8 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
     }
 }
 
-// A shell that spins on a ball. Its nodes change planes, and turning their velocities is part of the reaction. `parts`:
-// the nodes are on three equal balls (rough, smooth, a rough bone); otherwise all are on one rough ball.
+// A shell that spins on a ball. Its nodes change planes; turning their velocities to the new planes is part of the
+// reaction. `parts`: the nodes are on three equal balls (rough, smooth, rough bone); otherwise on one rough ball.
 class SpinningShell : public Gliding
 {
 protected:
@@ -328,7 +328,7 @@ TEST_P(SpinningShell, GoesOnInAnotherSolverThatHasTheSameFriction)
   EXPECT_THROW(other->unpack(spinning(model_of(true, 0), GetParam())->pack()), Error);
 }
 
-// Nodes that leave the samples of a field keep their plane and are counted; when they are far away, the motion stops.
+// Nodes that leave the samples of a field keep their plane and are counted. If they go far away, the motion stops.
 TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
 {
   for (const bool follows_a_bone : { false, true })

@@ -221,7 +221,7 @@ TEST_P(Guarded, bad_input_changes_nothing)
     EXPECT_THROW(Guard(*solver, model, bad), Error);
 }
 
-/// A solver that reports altered values from a given time on, until the guard has gone back `times` times.
+/// A solver that reports altered values from the time `from` on, until the guard has restored a snapshot `times` times.
 struct ShownOtherwise : test::WrappedSolver
 {
   using WrappedSolver::WrappedSolver;
@@ -277,7 +277,7 @@ TEST_P(Guarded, finds_hourglass_energy_too_long_steps_and_an_unbalanced_ledger)
   }
 }
 
-// The guard repeats the motion before the failure with the same controls, which must not run ahead.
+// The guard repeats the motion before the failure with the controls of that time, not with later ones.
 TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
 {
   struct Watched : ShownOtherwise

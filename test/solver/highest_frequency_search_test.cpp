@@ -20,14 +20,14 @@ Model bar()
   return test::block_model(settings);
 }
 
-// A bar of voxels whose nodes form one chain of springs in the order of their numbers.
+// A bar of voxels whose nodes form a chain of springs in the order of their numbers.
 struct Chain
 {
   Model model;
   Discretisation discretisation;
   NodalVectors u, mode;
   int products = 0;
-  double curvature = 0;  // of the springs' force law: relative change of stiffness per displacement [1/m]
+  double curvature = 0;  // relative change of the springs' stiffness per displacement [1/m]
   double mass = 1e-6;
 
   Chain() : model(bar()), discretisation(model), u(model.nodes.size())
@@ -38,7 +38,7 @@ struct Chain
   }
   double search(int most_iterations)
   {
-    products = -1;  // does not count the evaluation of the forces at u
+    products = -1;  // so that the evaluation of the forces at u does not count
     return highest_frequency_squared(
         model, discretisation, u,
         [this](const NodalVectors& at, NodalVectors& out)
@@ -122,7 +122,7 @@ TEST(LargestEigenvalue, ends_where_it_has_settled)
   const auto growing = [&](double) { return std::pow(1.001, ++products); };
   largest_eigenvalue(40, 1, growing);
   EXPECT_EQ(products, 40);
-  // values alternate with the sign of the step: each is compared with the latest one of its own sign
+  // values alternate with the sign of the step, so each is compared with the last value of the same sign
   products = 0;
   EXPECT_EQ(largest_eigenvalue(100, 1, [&](double step) { return ++products, step > 0 ? 5.0 : 3.0; }), 5);
   EXPECT_EQ(products, 9);

@@ -23,7 +23,7 @@ Material material_of(Law law)
   return m;
 }
 
-// Rows of voxels with the law, with neo-Hookean tissue, or with both.
+// A block with rows of voxels of the given law, of neo-Hookean tissue, or of both.
 Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
 {
   test::BlockSettings s;
@@ -195,7 +195,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
   EXPECT_NEAR(after.worst_jacobian, 1, 0.01);
 }
 
-// Nodes pass each other: voxels are crushed flat and inverted, while a muscle pulls in all of them.
+// Nodes pass each other, so that voxels are crushed flat and inverted, while a muscle pulls in all voxels.
 TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
 {
   for (const auto integration : { Integration::one_point, Integration::selective_reduced })

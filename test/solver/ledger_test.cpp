@@ -134,7 +134,7 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   EXPECT_GT(ledger["load"], 0);
 }
 
-// Velocities are half a step behind displacements: when the step changes, they first change over the mean of both.
+// Velocities are half a step behind displacements: when the step changes, their first change covers the mean of both.
 TEST_P(Ledger, closes_where_the_time_step_changes)
 {
   Model model = bar(0);

@@ -1,4 +1,4 @@
-// Effects of a running solver: switched off and on, and their memory.
+// Effects of a running solver that are switched off and on, and their memory.
 
 #include "backends.hpp"
 #include "effect_scene.hpp"
@@ -16,7 +16,7 @@ namespace
 
 using namespace test;
 
-// Each effect is strong enough to be seen beside the others.
+// A model with all effects. Each is strong enough to be seen beside the others.
 Model whole_scene()
 {
   Model model = scene_of(everything);
@@ -231,7 +231,7 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
-// A solver made without an effect has the memory of a model without it, whatever other effects there are.
+// A solver that is made without an effect has the memory of a model without the effect, whatever the other effects.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)
 {
   const std::map<Effect, unsigned> bit{ { Effect::viscosity, viscosity },
@@ -263,7 +263,7 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   switch_off(off, EffectSet().with(Effect::contraction).with(Effect::fibre_stiffness));
   auto without_fibres = bytes_of(*make(off)),
        never = bytes_of(*make(scene_of(everything & ~(contraction | passive_fibres))));
-  // the controls differ, because muscles keep their names and accept activations
+  // the memory of controls differs, because muscles keep their names and accept activations
   without_fibres.erase("elasticity: controls");
   never.erase("elasticity: controls");
   EXPECT_EQ(without_fibres, never);
@@ -278,7 +278,7 @@ TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
   const auto booked = make_solver(model, settings);
   auto with = bytes_of(*booked), without = bytes_of(*make(*model));
   EXPECT_EQ(without.count("elasticity: account of energies"), 0u);
-  // at least the velocities before and after the update of each node
+  // the ledger needs at least the velocities of each node before and after its update
   EXPECT_GE(with["elasticity: account of energies"], 6 * sizeof(float) * model->nodes.size());
   if (GetParam() != "cuda")
     return;

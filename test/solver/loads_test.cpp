@@ -26,7 +26,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
       load.binding.voxel.push_back(voxel(i, j));
       load.binding.coordinates.push_back({ { i == nx ? 1.0f : 0.0f, j == ny ? 1.0f : 0.0f, 1.0f } });
     }
-  // each square has a vertex at its centre, so that its nodes get a quarter of its force each
+  // each square has a vertex at its centre, so that each of its nodes gets a quarter of the force
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i)
     {
@@ -43,7 +43,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
   return load;
 }
 
-// Prescribes one component as 0 on the lower face of an axis.
+// Fixes the component along an axis on the lower face of this axis.
 void roller(Model& model, int axis)
 {
   Load load;
@@ -101,7 +101,7 @@ TEST_P(Loads, TractionStretchesAsTheUniaxialTableSays)
 
 TEST_P(Loads, PressureFollowsTheArea)
 {
-  // at stretch 0.7 Cauchy stress is P33 / (lateral stretch)^2
+  // at stretch 0.7 the Cauchy stress is P33 / (lateral stretch)^2
   test::BlockSettings s;
   const double mu = test::shear_modulus(s);
   const Model model = loaded_block(Load::Kind::pressure, { { 1.333561 * mu / (1.191455 * 1.191455), 0, 0 } }, s);

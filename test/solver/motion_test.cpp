@@ -46,7 +46,7 @@ std::size_t far_corner(const Model& model)
   return 0;
 }
 
-// Runs until the kinetic energy is below `share` times Young's modulus times volume, or gives up.
+// Runs until the kinetic energy is below `share` times Young's modulus times volume, or for a limited time.
 void settle(Solver& solver, const Controls& controls, double slice, double share, const test::BlockSettings& s)
 {
   const double scale = s.young * s.voxels[0] * s.voxels[1] * s.voxels[2] * s.spacing[0] * s.spacing[1] * s.spacing[2];
@@ -116,8 +116,8 @@ TEST_P(Motion, ActiveBarShortensAsTheClosedFormSays)
 
 TEST_P(Motion, CantileverBendsAsBeamTheorySays)
 {
-  // A beam of square section, ten times as long as high. Deflection of its tip under gravity, for small deflections and
-  // with shear (Timoshenko): q L^4 / (8 E I) + q L^2 / (2 k G A), k = 5/6.
+  // The beam has a square section and is ten times as long as high. Gravity deflects its tip by q L^4 / (8 E I) + q L^2
+  // / (2 k G A) with k = 5/6 (Timoshenko's theory with shear, small deflections).
   for (const int through : { 1, 2, 4 })
   {
     test::BlockSettings s;
@@ -196,7 +196,7 @@ TEST_P(Motion, BonesCarryTheirNodes)
   pose.translation = { { 1e-3, 0, 2e-3 } };
   solver_->advance(0.02, Controls{ {}, { pose } });
   settle(*solver_, Controls{ {}, { pose } }, 0.01, 1e-11, s);
-  // at rest again, the whole block has moved with its bone
+  // when the block is at rest again, all of it has moved with the bone
   Vectors u;
   solver_->displacements(u);
   for (std::size_t n = 0; n < u.size(); ++n)

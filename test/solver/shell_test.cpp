@@ -115,8 +115,8 @@ TEST_P(ShellBackend, energy_and_momentum_are_kept)
     EXPECT_LT(std::abs(ledger.imbalance()), allowed * ledger.largest);
     largest = std::max(largest, ledger["shell"] / ledger.largest);
   }
-  EXPECT_GT(largest, 10 * allowed);  // so that a wrong energy of the film would be seen
-  // momentum from two places of the centre of mass
+  EXPECT_GT(largest, 10 * allowed);  // the energy is so large that an error would be seen
+  // find the momentum from two positions of the centre of mass
   const double time = solver->time();
   momentum(displacements(*solver), before);
   solver->advance(1e-3, solver->controls());
@@ -199,7 +199,7 @@ TEST_P(ShellBackend, it_is_switched_while_running)
   EXPECT_NE(displacements(*solver), displacements(*other));
 }
 
-// Undamped at the full step, a film that sets the frequency gains no energy.
+// A film that determines the highest frequency gains no energy at the full time step without damping.
 TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
 {
   Model model = film_on_block(true, 300e6);
@@ -219,7 +219,7 @@ TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
   }
 }
 
-// A plate that bends under its weight, far stiffer than the tissue around it, whose own vibrations are much slower.
+// A plate bends under its weight. It is far stiffer than the tissue around it, whose own vibrations are much slower.
 TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
 {
   BlockSettings settings;
@@ -235,7 +235,7 @@ TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
   plate.thickness = 0.2e-3;
   add_shell(model, plate);
   model.gravity = { { 0, 0, -0.2 } };
-  constexpr double period = 0.14;  // of a beam's slowest vibration
+  constexpr double period = 0.14;  // period of a beam's slowest vibration [s]
   const auto solver = make(model, 1, false);
   EXPECT_TRUE(solver->settle(solver->controls(), 1e-3, 8 * period).reached);
 }

@@ -52,7 +52,7 @@ TEST_P(Sliding, KeepsItsLevelOverARidge)
       underside.push_back(static_cast<std::int32_t>(n));
   slide_on(
       model, "roof", [&](const auto& p) { return roof_distance(slope, p); }, underside, 0.5e-3, 40e-3);
-  model.gravity = { { 40.0, 0, 0 } };  // drags the body along x over the ridge
+  model.gravity = { { 40.0, 0, 0 } };  // gravity drags the body along x over the ridge
   const auto solver_ = solver(model);
   double worst = 0, off_roof = 0, travelled = 0;
   for (int i = 0; i < 40; ++i)
@@ -129,7 +129,7 @@ TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
         largest = std::max(largest, std::abs(one[n][axis]));
       }
     EXPECT_GT(largest, 1e-3);
-    // each solver may be 5 um off the level, because planes change in different steps
+    // each solver may be 5 um off the level, because solvers change planes in different steps
     EXPECT_LT(worst, 10e-6) << instructions;
   }
 }

@@ -34,7 +34,7 @@ struct Variant
   std::string name;
   std::function<void(Model&)> change;
   bool ledger = false;
-  int parts = 1;  // a run has so many parts of 80 steps
+  int parts = 1;  // number of parts of a run, of 80 steps each
 };
 
 // Makes the floor a bone, with friction.
@@ -53,7 +53,7 @@ void steady(Model& m)
       load.kind = Load::Kind::traction;
 }
 
-// All effects at once; with a moving floor and friction, in all precisions, with the assembled time step.
+// All effects at once; variants with a moving floor and friction, with each precision, with the assembled time step.
 std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
@@ -147,7 +147,7 @@ TEST_P(Snapshots, a_reset_leaves_nothing_behind)
   }
 }
 
-// The assembled estimate lengthens steps within these motions; otherwise its variant would test nothing new.
+// The assembled estimate lengthens steps during the motions of the variants; otherwise its variant would be useless.
 TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);

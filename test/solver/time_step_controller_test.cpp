@@ -10,7 +10,7 @@ using namespace frontalis;
 namespace
 {
 
-constexpr double rest = 4e10;      // frequency squared [1/s2]
+constexpr double rest = 4e10;      // squared frequency at rest [1/s2]
 constexpr double critical = 1e-5;  // [s]
 constexpr double forever = 1e9;    // [s]
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -148,7 +148,7 @@ TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
 TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
 {
   TimeStepController controller(rest, 0.9, 0);
-  // a contraction stiffens the model slowly, up to five times
+  // a contraction slowly makes the model five times as stiff
   for (double squared = rest; squared < 5 * rest; squared *= 1.03)
     controller.observe(squared, 32);
   EXPECT_TRUE(is_calm(controller));
@@ -162,7 +162,7 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
   for (int step = 0; step < 256; ++step)
     controller.observe(0.9 * squared, 1);
   EXPECT_TRUE(is_calm(controller));
-  // at lower stiffness, changes of the same relative size are not a vibration
+  // near the stiffness at rest, changes of the same relative size do not count as a vibration
   TimeStepController soft(rest, 0.9, 0);
   for (const double share : { 1.0, 0.9, 1.0, 0.9 })
     soft.observe(share * rest, 32);

@@ -17,9 +17,9 @@ struct Script
 {
   std::vector<StepPlan> plans;
   std::vector<EffectSet> running;
-  std::vector<double> damping;  // of each plan
-  double bound = 0;             // frequency squared [1/s2]
-  double velocity = 0;          // of all nodes, along z [m/s]
+  std::vector<double> damping;  // damping of each plan
+  double bound = 0;             // bound of the squared frequency [1/s2]
+  double velocity = 0;          // velocity of all nodes along z [m/s]
   Work work;
 };
 
@@ -231,7 +231,7 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   EXPECT_THROW(Stepped().solver.ledger(), Error);
 
   s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
-  s.script.work = { 11, 7, 5, 1, 3, 2 };  // done by muscles, loads, constraints; lost to friction, damping, viscosity
+  s.script.work = { 11, 7, 5, 1, 3, 2 };  // work of muscles, loads, constraints; losses to friction, damping, viscosity
   const EnergyLedger now = s.solver.ledger();
   // velocities are half a step behind displacements, and gravity changes them within the step
   const double mass = 1000 * 64e-9;

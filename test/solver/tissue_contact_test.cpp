@@ -13,7 +13,7 @@ using namespace test;
 
 using Point = std::array<double, 3>;
 
-// Holds the side z = 0 of a model along z and moves the opposite one by `way` [m].
+// Holds the side z = 0 of a model along z and moves the opposite side by `way` [m].
 void press(Model& model, double way, double ramp)
 {
   for (const double value : { 0.0, way })
@@ -30,8 +30,8 @@ void press(Model& model, double way, double ramp)
       model.prescribed.push_back({ static_cast<std::int32_t>(n), model.nodes[n][2] == 0 ? 0 : 1 });
 }
 
-// Under a pressure of 5 % of Young's modulus the law says that the sides overlap by 1.4 % of a voxel. The surfaces lie
-// on the sides of voxels, or inside of voxels of which the tissue fills two thirds.
+// Under a pressure of 5 % of Young's modulus, the sides overlap by 1.4 % of a voxel according to the law of contact.
+// The surfaces lie on the sides of voxels, or inside voxels that are filled to two thirds.
 TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
 {
   BlockSettings settings;
@@ -49,7 +49,7 @@ TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
       const auto solver = make(model);
       solver->advance(0.08, solver->controls());
       const Vectors u = displacements(*solver);
-      // strain of the lower block, and how deep the sides overlap
+      // strain of the lower block, and least and largest overlap of the sides [m]
       double least = 1, most = 0, strain = 0;
       const std::size_t side = 6 * 5;
       for (std::size_t n = 0; n < side; ++n)
@@ -65,13 +65,13 @@ TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
       EXPECT_LT(most, 0.02e-3);
       EXPECT_GT(least, 0);
       EXPECT_LT(most - least, 0.05 * most) << beyond << ' ' << poisson;
-      // the second term of the compression of neo-Hookean tissue, 1 + strain, is its stiffening
+      // neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), up to the second order
       const double pressure = strain * (1 + strain) * settings.young;
       EXPECT_NEAR(0.5 * (most + least) * 3.5 * settings.young / 1e-3, pressure, 0.03 * pressure);
     }
 }
 
-// Without damping; the blocks meet obliquely and turn.
+// The blocks meet obliquely and rotate, without damping.
 TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
 {
   BlockSettings settings;
@@ -114,7 +114,7 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
     }
     const EnergyLedger ledger = solver->ledger();
     EXPECT_GT(stored, 0.005 * initial);
-    EXPECT_EQ(ledger["contact_stored"], 0);  // they have parted
+    EXPECT_EQ(ledger["contact_stored"], 0);  // the blocks have parted
     EXPECT_EQ(ledger["friction"] > 0.005 * initial, friction > 0);
     const Vectors from = displacements(*solver);
     const double begin = solver->time();
@@ -134,8 +134,8 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
   }
 }
 
-// Balls of voxels, whose smooth surfaces lie outside of the steps, collide out of centre, or glance off each other at
-// 1 m/s, without damping.
+// Balls of voxels have smooth surfaces outside the staircases of their voxels. They collide off centre, or glance off
+// each other at 1 m/s, without damping.
 TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
 {
   const double radius = 5.2, middle = 6.5;
@@ -176,8 +176,8 @@ TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
   }
 }
 
-// A small block lies on a long one under gravity that is turned, so strong that its pressure is 5 % of Young's modulus.
-// It slides slowly: friction follows the pressure on vertices that come under it with a delay of 1 ms.
+// A small block lies on a long one under oblique gravity, whose pressure is 5 % of Young's modulus. It slides slowly,
+// because friction on vertices that come under the block follows the pressure with a delay of 1 ms.
 TEST_P(TissuesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_it)
 {
   const double friction = 0.5, damping = 3000, gravity = 981, settling = 15e-3, time = 5e-3;
@@ -228,7 +228,7 @@ TEST_P(TissuesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above
   }
 }
 
-// The arms of a folded sheet are pressed together. Its other sides, one voxel behind, are no part of the contact.
+// The arms of a folded sheet are pressed together. Their outer sides, one voxel away, do not take part in the contact.
 TEST_P(TissuesTouch, a_folded_sheet_touches_itself)
 {
   BlockSettings settings;

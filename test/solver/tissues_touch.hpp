@@ -12,7 +12,7 @@ class TissuesTouch : public BodiesTouch
 {
 };
 
-/// The nodes of the upper of two blocks have this displacement along z [m], the others none.
+/// Displacements that move the upper of two blocks by `way` [m] along z.
 inline Vectors lowered(const Model& model, double way)
 {
   Vectors u(model.nodes.size());

@@ -10,7 +10,7 @@ namespace
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-// A block with all nodes held, for the stress at a constant strain.
+// A block with all nodes held, to find the stress at a constant strain.
 Model held_block(const std::array<double, 2>& share, const std::array<double, 2>& time)
 {
   test::BlockSettings settings;
@@ -25,7 +25,7 @@ Model held_block(const std::array<double, 2>& share, const std::array<double, 2>
   return model;
 }
 
-// A block whose nodes are displaced at once to simple shear, to which only the isochoric stress responds.
+// A block whose nodes are displaced at once to simple shear, which causes only isochoric stress.
 Model sheared_block(double shear, const std::array<double, 2>& share, const std::array<double, 2>& time)
 {
   Model model = held_block(share, time);
@@ -99,7 +99,7 @@ TEST_P(Viscosity, energy_that_a_swinging_block_loses_is_accounted_for)
   EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.largest);
 }
 
-// Relaxation must count at the middle of its step: at the end, the error of its work would be dt / (2 time constant).
+// Relaxation must count at the middle of a step; at the end, the error of its work would be dt / (2 * time constant).
 TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps)
 {
   test::BlockSettings settings;

@@ -55,8 +55,8 @@ double error_of(const AccuracyFindings& findings, const std::string& name)
   throw Error("no row is called " + name);
 }
 
-// Each halving of the edge divides the error by about four. Allowed is 3 to 6, because at the finest edge the neglected
-// nonlinear terms begin to count.
+// Each halving of the edge divides the error by about four. Factors from 3 to 6 pass, because at the finest edge the
+// neglected nonlinear terms become visible.
 TEST_F(ClosedForms, bending_converges_with_the_second_order)
 {
   const AccuracyFindings findings = study(form("cantilever"));

@@ -20,7 +20,7 @@ namespace
 
 constexpr double length = 8e-3, width = 4e-3;
 
-// A bar of tissue, held at x = 0, with a muscle in its upper half: it shortens and bends up.
+// A bar of tissue, held at x = 0, with a muscle in its upper half, which shortens the bar and bends it up.
 Model bar(const AccuracySetting& setting)
 {
   const double edge = setting.profile.voxel[0];
@@ -57,7 +57,7 @@ Model bar(const AccuracySetting& setting)
   model.hourglass = setting.profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
   if (setting.profile.precision == "double")
     model.precision = Precision::double_precision;
-  // any other number of samples stands for a bake that fails
+  // any other number of samples makes the bake fail
   if (setting.profile.samples != 4)
     throw Error("no such bar");
   return model;
@@ -124,7 +124,7 @@ const AccuracyRow& row_named(const AccuracyFindings& findings, const std::string
   throw Error("no row is called " + name);
 }
 
-// Error of the settled skin, against a bar of half the reference's edge.
+// Error of the settled skin, compared with a bar whose voxel edge is half that of the reference.
 double true_error(const AccuracySetting& setting)
 {
   AccuracySetting finer = setting;
@@ -137,7 +137,7 @@ double true_error(const AccuracySetting& setting)
     solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
     solver->skin(skins[which]);
   }
-  // area of each vertex in units of a third of a triangle: the number of triangles at it
+  // area of each vertex in units of a third of a triangle, which is the number of triangles at the vertex
   const double area[] = { 1, 2, 3, 3, 2, 1 };
   double sum = 0;
   for (std::size_t v = 0; v < 6; ++v)
@@ -175,12 +175,12 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_LT(true_error(chosen.setting), 1.2 * tolerance);
   EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
   const AccuracyRow& best = most_accurate_within(findings, 1e9);
-  // a costlier setting joins the front if it is 5 % better; errors below the reference's count as equal
+  // a costlier setting is in the front if its error is 5 % smaller; errors below that of the reference count as equal
   EXPECT_LE(0.95 * best.error.rms, std::max(fine, findings.reference_error));
   EXPECT_TRUE(best.error.rms <= fine || best.cost <= row_named(findings, "1 mm").cost)
       << "a setting with a larger error must be cheaper";
   EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
-  // costs in seconds depend on the machine, the number of steps does not
+  // costs in seconds depend on the machine, but the number of steps does not
   const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
   EXPECT_EQ(quick.name, findings.rows[findings.front.front()].name);
   for (const AccuracyRow* row : { &chosen, &best, &quick })
@@ -251,7 +251,7 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
   const auto whole = files_in(plan.folder + "/variants", ".motion");
   plan.folder = folder + "/parts";
   int checkpoints = 0, calls = 0;
-  // each round ends after about 17 calls: within a variant's 30 slices, or while it settles, which then starts again
+  // each round is interrupted after about 17 calls, within the 30 slices of a variant or while it settles
   for (bool complete = false; !complete; ++calls)
   {
     ASSERT_LT(calls, 1000);

@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 
 double value_of(const MatrixXd& h, const VectorXd& g, const VectorXd& x) { return x.dot(h * x) / 2 - g.dot(x); }
 
-// each variable is at its lower limit, at its upper limit or free; of all minima within the limits the least one
+// tries all cases in which each variable is at its lower limit, at its upper limit or free, and returns the least of
+// the minima that are within the limits
 double least_value(const MatrixXd& h, const VectorXd& g, const VectorXd& lower, const VectorXd& upper)
 {
   const auto count = static_cast<int>(g.size());

@@ -13,7 +13,7 @@ using namespace frontalis;
 namespace
 {
 
-// Prescribed cost of an effect [s]. A step takes the sum over the running effects.
+// Prescribed time per step of an effect [s]. A step takes the sum over the running effects.
 double price_of(Effect effect) { return 1e-6 * std::pow(2, static_cast<int>(effect)); }
 
 double price_of(EffectSet effects)

@@ -1,5 +1,5 @@
-// Small scenes, random ones and former failures: their motion must stay finite, and either account for its energy or be
-// stopped with a report. Repeating it must give the same bits.
+// Small scenes, some random and some former failures. The motion must stay finite, and must either balance its energy
+// or be stopped with a report. Repeated motions must have the same bits.
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/sample_field.hpp"
@@ -29,17 +29,17 @@ struct SmallScene
   std::array<std::int32_t, 3> size;
   std::array<double, 3> spacing;  // [m]
   std::vector<Material> materials;
-  int holes, seed;  // number of missing voxels, in tenths of all, and the random seed
+  int holes, seed;  // number of missing voxels, in tenths of all voxels; random seed
   double damping;
   std::array<double, 3> gravity;
   HourglassControl hourglass;
   Integration integration;
   Precision precision;
   TimeStepEstimate estimate;
-  std::vector<Muscle> muscles;  // none or one
+  std::vector<Muscle> muscles;  // empty, or one muscle
   bool bone, floor;
   std::vector<float> activation;
-  double turn, x, y;  // pose of the bone when it is displaced [rad], [shortest edges]
+  double turn, x, y;  // pose of the displaced bone: turn [rad], x and y [shortest edges]
 };
 
 Model model_of(const SmallScene& scene)
@@ -107,7 +107,7 @@ struct Outcome
   std::vector<std::array<double, 3>> displacements;
   EnergyLedger ledger;
   Monitor monitor;
-  bool stopped = false;  ///< by the guard, with a report
+  bool stopped = false;  ///< whether the guard stopped the motion with a report
 };
 
 // Plays 500 steps: muscles are switched on, off and half on, and a bone moves away and back.
@@ -141,7 +141,7 @@ Outcome play(const SmallScene& scene, const std::shared_ptr<const Model>& model,
   return outcome;
 }
 
-// Describes what went wrong with a scene; empty if nothing did.
+// Plays a scene and describes its fault; empty if there is none.
 std::string fault_of(const SmallScene& scene, bool& stopped)
 {
   const auto model = std::make_shared<const Model>(model_of(scene));
@@ -167,8 +167,8 @@ void expect_sound(const SmallScene& scene)
 
 }  // namespace
 
-// The bone's jerks excite vibrations near the critical time step. If the step follows every swing, 13 % of the energy
-// is unexplained here.
+// The bone's jerks excite vibrations near the critical time step. If the time step followed every swing of the bound,
+// 13 % of the energy would be unexplained.
 TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -192,7 +192,7 @@ TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
   expect_sound(scene);
 }
 
-// The same without damping and with an assembled time step, which then leaves 16 % unexplained.
+// The same sheet without damping, with an assembled time step. Here 16 % of the energy would be unexplained.
 TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -233,7 +233,7 @@ Material material()
   auto& p = result.parameters;
   const double mu = p[0];
   result.law = static_cast<Law>(*rc::gen::inRange(0, static_cast<int>(physics::material_table.size())));
-  // laws without parameters in the cases below use those of their example, scaled to this shear modulus
+  // a law other than neo-Hookean has the parameters of its example, scaled to this shear modulus
   if (result.law != Law::neo_hookean)
   {
     const auto& description = physics::description_of(result.law);
@@ -298,7 +298,7 @@ SmallScene draw()
 
 TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
 {
-  // fixed seed and number of scenes, unless the environment sets them (RC_PARAMS="max_success=10000")
+  // seed and number of scenes are fixed unless the environment sets them (RC_PARAMS="max_success=10000")
   ::setenv("RC_PARAMS", "seed=20261121 max_success=200", 0);
   int scenes = 0, stopped = 0;
   const bool held = rc::check(

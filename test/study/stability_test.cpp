@@ -1,4 +1,4 @@
-// The files of hard cases: a case's bounds come from its file, and faults of the file are reported.
+// The files of hard cases: the bounds of a case come from its file, and faults of files are reported.
 
 #include "frontalis/study/stability.hpp"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path sources = fs::path(FRONTALIS_SOURCE_DIRECTORY) / "test/stability";
 
-// Copies of all cases' files, with one line of one of them changed.
+// Copies of the files of all cases, with one line changed in one of them.
 class StabilityFile : public ::testing::Test
 {
 protected:

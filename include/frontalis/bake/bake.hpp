@@ -31,20 +31,20 @@ struct BakeReport
     double elsewhere = 0;    ///< part clipped by a range of depth or a crop
     double nurbs = 0;        ///< inside the NURBS volume fitted to its fibres; 0 if there is none
   };
-  /// Strength of a muscle. The cross-section of the model is its volume there over the mean length of its fibres; that
-  /// of people is given in the scene (0: not given), and the reference stress is scaled by their ratio.
+  /// Strength of a muscle. The model's cross-section is the muscle's volume in voxels over the mean length of its
+  /// fibres. If the scene gives a cross-section, the bake multiplies the reference stress by given / cross_section.
   struct MuscleForce
   {
     std::string name;
-    double length = 0;         ///< mean, of the fibres [m]
-    double cross_section = 0;  ///< of the model [m2]
-    double given = 0;          ///< of people [m2]
-    double force = 0;          ///< at full activation and optimal length [N]
+    double length = 0;         ///< mean length of the fibres [m]
+    double cross_section = 0;  ///< cross-section in the model [m2]
+    double given = 0;          ///< cross-section in people, from the scene [m2]; 0: not given
+    double force = 0;          ///< force at full activation and optimal length [N]
   };
   std::vector<Stage> stages;
   std::vector<MuscleForce> forces;
-  std::vector<MuscleVolume> muscles;  ///< of muscles bounded by surfaces, if `measure_muscles` is set
-  bool measure_muscles = false;       ///< set by the caller before the bake, which then takes seconds longer
+  std::vector<MuscleVolume> muscles;  ///< muscles bounded by surfaces; filled if `measure_muscles` is set
+  bool measure_muscles = false;       ///< the caller may set it before the bake; costs some seconds
   std::vector<std::string> findings;  ///< repairs, clippings and omissions, one sentence each
 };
 

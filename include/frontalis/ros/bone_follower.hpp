@@ -13,31 +13,31 @@
 namespace frontalis
 {
 
-/// Bones that follow frames of tf2. A bone whose frame is missing, or whose latest transform is too old, stays where it
-/// is; a bone whose frame jumps goes there at limited speed. Not thread-safe.
+/// Moves bones with frames of tf2. A bone whose frame is missing, or whose latest transform is too old, stays where it
+/// is. A bone whose frame jumps moves to the frame's new pose at limited speed. Not thread-safe.
 class BoneFollower
 {
 public:
-  /// Starts to listen if there are frames. `speed`: limit of a bone's motion [m/s], where a turn counts as that of a
-  /// point at 0.1 m; `patience`: age at which a transform is too old [s of ROS time].
+  /// Listens to tf2 if there are frames. `speed`: greatest speed of a bone [m/s]; a rotation counts as the motion of
+  /// points 0.1 m from the origin. `patience`: greatest age of a transform [s of ROS time].
   BoneFollower(std::vector<BoneFrame> frames, std::string face_frame, double speed, double patience);
 
-  /// The motions of the bones in the face frame, for a call that comes `seconds` after the one before. Bones whose
-  /// frame was never seen are left out.
+  /// The motions in the face frame of the bones whose frames were ever seen. `seconds`: time since the previous call.
   std::map<std::string, RigidTransform> follow(double seconds);
-  /// All bones at rest again, as after a reset of the face.
+  /// Returns all bones to rest, as a reset of the face requires.
   void clear();
 
   struct Status
   {
     std::string fault;        ///< why the bone stays where it is, or that it lags behind; empty if it follows
-    std::uint64_t jumps = 0;  ///< of its frame
+    std::uint64_t jumps = 0;  ///< number of jumps of the bone's frame
   };
-  /// By bone.
+  /// The status of each bone, by name.
   const std::map<std::string, Status>& status() const { return status_; }
 
 private:
-  /// The motion to which a bone's frame is now. Throws a tf2::TransformException or an Error if there is none.
+  /// The motion that puts the bone at its frame's present pose. Throws a tf2::TransformException or an Error if the
+  /// transform is missing or too old.
   RigidTransform wanted(const BoneFrame& bone) const;
 
   const std::vector<BoneFrame> frames_;

@@ -38,7 +38,7 @@ void to_marker(const Model& model, const SkinColours& colours, const SkinState& 
 std::vector<float> distances(const SkinState& skin, const std::vector<std::array<float, 3>>& rest);
 
 /// The vertices as points with the fields x, y, z, normal_x, normal_y, normal_z, intensity and rgb, all of type float32
-/// (rgb: three bytes in the bits of a float, as PCL has it). Without colours, there is no field rgb. Fills all but the
+/// (rgb: three bytes in the bits of a float, as in PCL). Without colours, there is no field rgb. Fills all but the
 /// header.
 void to_point_cloud(const SkinState& skin, const std::vector<float>& intensity, const SkinColours& colours,
                     sensor_msgs::PointCloud2& out);
@@ -49,8 +49,8 @@ std::vector<std::size_t> landmark_vertices(const Model& model);
 /// The 68 points of the iBUG 300-W annotation, landmarks ibug_1 to ibug_68, in this order; empty if one is missing.
 std::vector<std::size_t> standard_landmarks(const Model& model);
 
-/// One pose per landmark, in the order of the model: x along the outward normal of the skin at its vertex, z along the
-/// skin upwards. Fills all but the header.
+/// One pose per landmark, in the order of the model: x along the outward normal of the skin at the landmark's vertex, z
+/// along the skin upwards. Fills all but the header.
 void to_poses(const SkinState& skin, const std::vector<std::size_t>& vertices, geometry_msgs::PoseArray& out);
 
 /// One transform per landmark, from `face_frame` to <face_frame>/<landmark>, and one per body and bone.
@@ -58,18 +58,17 @@ void to_transforms(const Model& model, const Frame& frame, const geometry_msgs::
                    const std::string& face_frame, const ros::Time& stamp,
                    std::vector<geometry_msgs::TransformStamped>& out);
 
-/// Name of the frame of a body that tissue touches, or of a bone. Its origin is the body's centre, and it lies as the
-/// face frame does while the body is at rest.
+/// Name of the frame of a body that tissue touches, or of a bone. The frame's origin is the body's centre; while the
+/// body is at rest, its axes are parallel to those of the face frame.
 std::string body_frame(const std::string& face_frame, const BodyShape& shape);
-/// From the face frame to that of a body.
+/// The transform from the face frame to the frame of a body.
 geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape, const RigidTransform& pose);
-/// What tissue does to a body, in the body's frame and about its origin.
+/// Force and torque of the tissue on a body, in the body's frame and about its origin.
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
-/// The surfaces of all bodies, each in the frame of its own, which it follows. Without a stamp: it is shown with the
-/// latest transform.
+/// The surfaces of all bodies, each in the body's own frame, without a time stamp: displays use the latest transform.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
-/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
-/// the eyeball, its iris and its pupil. `bones`: those of a frame. Fills all but the headers.
+/// The eyeballs: spheres that tissue slides on and whose bones have names that begin with "eye". Each eyeball has three
+/// markers: eyeball, iris and pupil. `bones`: the bones of a frame of the motion. Fills all but the headers.
 visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more

@@ -17,7 +17,7 @@ class DemoPlayer
 public:
   explicit DemoPlayer(std::shared_ptr<const Model> model);
 
-  /// Whether the model has no demo.
+  /// True if the model has no demo.
   bool empty() const { return !(period_ > 0); }
   bool moves(const std::string& bone) const;
   /// Duration of one round [s].

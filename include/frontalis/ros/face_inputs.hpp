@@ -29,36 +29,36 @@
 namespace frontalis
 {
 
-/// The topics that move a face (doc/ros.md). The latest writer of a muscle has it, whatever its topic. Messages with a
-/// fault are refused as a whole, with one warning per series. Any thread may call these functions.
+/// The topics that move a face (doc/ros.md). A muscle follows its latest command, whatever the topic. A message with a
+/// fault is refused as a whole; a series of such messages is warned about once. Any thread may call these functions.
 class FaceInputs
 {
 public:
-  /// Gives the runner, or null and the reason why there is none.
+  /// Returns the runner, or null and the reason why there is none.
   using FindRunner = std::function<std::shared_ptr<Runner>(std::string* reason)>;
 
-  /// Subscribes. `now`: the simulated time of the latest frame [s].
+  /// Subscribes to the topics. `now` returns the simulated time of the latest frame [s].
   FaceInputs(ros::NodeHandle private_handle, const std::string& name, FindRunner runner, std::function<double()> now);
-  /// No callback begins any more.
+  /// Unsubscribes: after this no callback begins.
   void shutdown();
 
-  /// Takes a model without any command. Reads the table of blendshapes; throws an Error if that has a fault.
+  /// Starts with a new model and no commands. Reads the table of blendshapes; throws an Error if the table has a fault.
   void start(const std::shared_ptr<const Model>& model, const InputParameters& parameters,
              const std::string& face_frame);
-  /// Changes what may change while the face runs; not the table of blendshapes and the followed frames.
+  /// Changes the parameters while the face runs, except the table of blendshapes and the followed frames.
   void configure(const InputParameters& parameters);
   /// Resets the face, and forgets all commands.
   void reset(Runner& running);
 
-  /// Commands muscles, as a message on this topic or from this source; if there is a fault, it is reported like that of
-  /// a message, and nothing changes.
+  /// Commands muscles as a message on `topic` would; `topic` may also name another source. A fault is reported like the
+  /// fault of a message, and nothing changes.
   void set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
            const std::vector<double>& values);
-  /// Sets what the demo, the commands and the followed frames have for a simulated time [s].
+  /// Sets the runner's activations and bones to those of the demo, the commands and the followed frames at a time [s].
   void play(Runner& running, double time);
   /// Whether the activations may change after a time [s] without a further command.
   bool timed(double time) const;
-  /// The activations that are commanded for a time [s].
+  /// The activations that are commanded for a simulated time [s].
   std::map<std::string, double> target(double time) const;
 
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -78,7 +78,7 @@ private:
   void take(const char* topic, const ros::Time& stamp, const Act& act);
   void command(const char* topic, Runner& running, double now,
                const std::map<std::string, MuscleCommands::Course>& courses, double begin);
-  /// Durations [s]: to reach a pose, to keep it (0: until the next command), to relax after that.
+  /// Durations [s]: to reach a pose, to hold it (0: until the next command), and to relax after that.
   struct Timing
   {
     double onset = 0, hold = 0, release = 0;
@@ -96,24 +96,24 @@ private:
   const std::function<double()> now_;
   std::vector<ros::Subscriber> subscribers_;
 
-  mutable std::mutex mutex_;  ///< protects all below; held while the runner's controls are set
+  mutable std::mutex mutex_;  ///< protects all members below; held while the runner's controls are set
   std::shared_ptr<const Model> model_;
   InputParameters parameters_;
   std::unique_ptr<DemoPlayer> demo_;
   bool demo_playing_ = false;
   std::unique_ptr<MuscleCommands> commands_;
-  ControlCurve bones_;           ///< motions of bones by the latest pose; empty: none
-  std::set<std::string> posed_;  ///< bones that move by it
+  ControlCurve bones_;           ///< motions of bones that the latest pose commands; empty: none
+  std::set<std::string> posed_;  ///< bones that `bones_` moves
   bool silent_ = false;          ///< the watchdog relaxes the face, or has done so
   std::unique_ptr<BlendshapeTable> blendshapes_;
-  std::set<std::string> lacking_;  ///< blendshapes that were reported
+  std::set<std::string> lacking_;  ///< blendshapes that move nothing of the model and were reported
   std::unique_ptr<BoneFollower> follower_;
-  double followed_ = 0;  ///< simulated time of the latest look at followed frames
+  double followed_ = 0;  ///< simulated time of the latest call of follower_ [s]
   struct Topic
   {
     std::uint64_t taken = 0, refused = 0;
-    bool warned = false;  ///< about the present series of refused messages
-    std::string reason;   ///< of the latest refusal
+    bool warned = false;  ///< whether the present series of refused messages was warned about
+    std::string reason;   ///< reason of the latest refusal
   };
   std::map<std::string, Topic> topics_;
 };

@@ -44,14 +44,13 @@ public:
   FaceNode& operator=(const FaceNode&) = delete;
 
 private:
-  // the threads that load models
+  // run in the threads that load models
   void load();
   std::shared_ptr<const Model> make_model(const FaceParameters& parameters);
-  /// Makes the model and its runner, and then puts them in the place of the present ones. Throws an Error and changes
-  /// nothing if there is a fault.
+  /// Replaces the present model and its runner by new ones. If there is a fault, throws an Error and changes nothing.
   void replace_face(const FaceParameters& parameters);
 
-  // the runner's thread
+  // run in the runner's thread
   void on_frame(const Frame& frame, std::uint64_t face);
   void log_speed_once();
 
@@ -104,14 +103,14 @@ private:
   std::atomic<double> time_{ 0 };  ///< simulated time of the latest frame [s]
   std::atomic<bool> paused_{ false };
   std::atomic<bool> stopping_{ false };
-  std::mutex loading_mutex_;   ///< held while a model is made, so that there is one at a time
-  std::mutex stepping_mutex_;  ///< held by the ~step that is under way
+  std::mutex loading_mutex_;   ///< held while a model is made, so that one is made at a time
+  std::mutex stepping_mutex_;  ///< held during a call of ~step
   std::uint64_t faces_made_ = 0;
   FaceInputs inputs_;
   std::vector<ros::ServiceServer> services_;
-  ros::CallbackQueue loading_queue_;  ///< of ~load_scene, which may take minutes
+  ros::CallbackQueue loading_queue_;  ///< queue of ~load_scene, which may take minutes
   ros::AsyncSpinner loading_spinner_;
-  boost::recursive_mutex server_mutex_;  ///< of the server; protects config_ and switched_off_
+  boost::recursive_mutex server_mutex_;  ///< mutex of server_; protects config_ and switched_off_
   FaceConfig config_ = FaceConfig::__getDefault__();
   std::set<std::string> switched_off_;  ///< effects that the configuration has switched off
   std::unique_ptr<dynamic_reconfigure::Server<FaceConfig>> server_;

@@ -14,17 +14,16 @@
 namespace frontalis
 {
 
-/// The action ~fit_activation, which `frontalis fit` answers as a process of its own. One goal at a time; a new goal
-/// ends the one that is under way.
+/// The action ~fit_activation, which runs `frontalis fit` as a separate process. A new goal ends the previous one.
 class FitAction
 {
 public:
-  /// What to fit: a scene or a baked model, and options of `frontalis fit` for the backend.
+  /// The face to fit: a scene or a baked model, and options of `frontalis fit` for the backend.
   struct Face
   {
     BakeRequest source;
-    std::string model;                 ///< path of a baked model; empty: that of `source`
-    std::vector<std::string> options;  ///< such as --threads
+    std::string model;                 ///< path of a baked model; empty: the model is baked from `source`
+    std::vector<std::string> options;  ///< options such as --threads
   };
   /// Throws an Error if there is no face yet.
   using FindFace = std::function<Face()>;

@@ -12,7 +12,7 @@
 namespace frontalis
 {
 
-/// What to bake, and the program that bakes it.
+/// The scene to bake, and the program that bakes it.
 struct BakeRequest
 {
   std::string program;         ///< path of the program `frontalis`
@@ -28,12 +28,11 @@ using BakeLog = std::function<void(const std::string& line)>;
 /// Adds the options of the program that say how a scene is baked.
 void add_scene_arguments(const BakeRequest& request, std::vector<std::string>& arguments);
 
-/// Makes a folder in the system's temporary folder. It is removed, with all that it contains, with the last owner of
-/// its path.
+/// Makes a folder in the system's temporary folder, which is removed with its contents by the last owner of the path.
 std::shared_ptr<const std::filesystem::path> temporary_folder();
 
-/// Runs a program to its end. It is killed within 0.1 s after `cancelled` becomes true, and when the calling thread or
-/// its process ends. Throws an Error with what the program wrote to standard error, or how it ended.
+/// Runs a program to its end. The program is killed within 0.1 s after `cancelled` becomes true, and when the calling
+/// thread or process ends. If it fails, throws an Error with its output to standard error, or the way it ended.
 void run_program(const std::string& program, const std::vector<std::string>& arguments, const BakeLog& log,
                  const std::atomic<bool>& cancelled);
 
@@ -46,8 +45,8 @@ std::string find_program(const std::string& wanted);
 /// either.
 std::string default_cache();
 
-/// Bakes a scene by a process of its own, so that a crash there does not reach the caller, and reads the model. The
-/// process writes into a temporary folder. Cancels and throws as run_program().
+/// Bakes a scene in a separate process, so that a crash of the bake does not reach the caller, and reads the model. The
+/// process writes into a temporary folder. Is cancelled and throws as run_program().
 Model bake_in_process(const BakeRequest& request, const BakeLog& log, const std::atomic<bool>& cancelled);
 
 }  // namespace frontalis

@@ -10,8 +10,8 @@
 namespace frontalis
 {
 
-/// What each muscle was commanded to do, over simulated time [s]. The latest command of a muscle replaces the earlier
-/// ones, whoever gave them.
+/// The commanded activation of each muscle over simulated time [s]. The latest command for a muscle replaces earlier
+/// ones, whatever their source.
 class MuscleCommands
 {
 public:
@@ -20,35 +20,33 @@ public:
   {
     double time, activation;
   };
-  /// Linear between knots, constant before the first and after the last. Times do not descend.
+  /// An activation over time: linear between knots, constant before the first and after the last. Times do not descend.
   using Course = std::vector<Knot>;
 
-  /// All muscles at their tone.
+  /// All muscles have the activation of their tone.
   explicit MuscleCommands(std::shared_ptr<const Model> model);
 
-  /// Sets activations, 0..1, by the names of muscles at once; other muscles go on. Throws an Error that names all
-  /// unknown muscles and bad values, and then changes nothing.
+  /// Sets activations, 0..1, of the named muscles at once; other muscles keep their courses. Throws an Error that names
+  /// all unknown muscles and bad values, and then changes nothing.
   void set(const std::map<std::string, double>& activation, double now);
-  /// Takes muscles along courses, which begin at `begin` or later; until then they do as commanded before. Throws the
-  /// Errors of set().
+  /// Lets muscles follow courses from `begin` on. Until then they follow earlier commands. Throws as set() does.
   void follow(const std::map<std::string, Course>& courses, double begin, double now);
-  /// Takes all muscles to their tone over some seconds. This does not count as a command.
+  /// Brings all muscles to their tone within `seconds`. This does not count as a command.
   void relax(double now, double seconds);
-  /// Without any command again: all muscles at their tone.
+  /// Forgets all commands: all muscles are at their tone.
   void clear();
 
   std::map<std::string, double> at(double time) const;
-  /// Whether a muscle is to move after a time.
+  /// Whether the activation of a muscle changes after a time.
   bool moving(double time) const;
-  /// How long the commands have been silent: since the latest command, or since the end of its courses; 0 if there was
-  /// no command.
+  /// Time since the latest command, or since the end of its courses if that is later; 0 if there was no command.
   double silence(double now) const;
 
 private:
   std::shared_ptr<const Model> model_;
   std::vector<Course> courses_;  ///< one per muscle
-  double end_ = 0;               ///< last knot of all courses
-  double heard_ = 0;             ///< time of the latest command, or the end of its courses
+  double end_ = 0;               ///< time of the last knot of all courses [s]
+  double heard_ = 0;             ///< time of the latest command, or of the end of its courses [s]
   bool commanded_ = false;
 };
 

@@ -11,18 +11,18 @@
 namespace frontalis
 {
 
-/// The frame that a bone follows: its motion takes the frame `rest` to the frame `frame`.
+/// The frame that a bone follows: the bone's motion takes the frame `rest` to the frame `frame`.
 struct BoneFrame
 {
   std::string bone, frame;
-  std::string rest;  ///< where `frame` is while the bone is at rest; empty: the face frame
+  std::string rest;  ///< frame where `frame` is while the bone is at rest; empty: the face frame
 };
 
-/// How messages that move the face are taken.
+/// Parameters of the messages that move the face.
 struct InputParameters
 {
   double command_timeout = 0;          ///< silence after which the face relaxes [simulated s]; 0: never
-  double relax_time = 0.5;             ///< over which it relaxes [simulated s]
+  double relax_time = 0.5;             ///< duration of the relaxation after this silence [simulated s]
   double stamp_tolerance = 1;          ///< greatest age of messages and transforms, in either direction [s]
   std::string blendshapes;             ///< file of the table of blendshapes; empty: none
   std::vector<BoneFrame> bone_frames;  ///< frames that bones follow
@@ -30,7 +30,7 @@ struct InputParameters
   bool demo = false;                   ///< whether to play the model's demo
 };
 
-/// What the colours of ~skin and ~skin_points show.
+/// The quantity that the colours of ~skin and ~skin_points show.
 enum class SkinColour
 {
   skin,
@@ -38,21 +38,21 @@ enum class SkinColour
   field          ///< FaceParameters::skin_field
 };
 
-SkinColour skin_colour_from_name(const std::string& name);  ///< throws Error unless it is the name of one
+SkinColour skin_colour_from_name(const std::string& name);  ///< throws Error if the name is unknown
 
 /// The private parameters of the node (doc/ros.md), checked.
 struct FaceParameters
 {
   std::string model;      ///< baked model file; empty: a scene is baked
-  BakeRequest bake;       ///< ~scene, ~mesh_dir, ~accuracy, ~cache, ~program (as find_program takes it)
+  BakeRequest bake;       ///< ~scene, ~mesh_dir, ~accuracy, ~cache, ~program (as in find_program())
   RunnerSettings runner;  ///< ~backend, ~threads, ~pace, ~frame_rate, ~guard_interval
   InputParameters inputs;
   SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
   SkinColour skin_colour = SkinColour::skin;
-  double colour_range = 0;                ///< value with the last colour; 0: that of the field (full_colour())
-  std::string face_id;                    ///< the face frame is face_<id>; empty: the model's
+  double colour_range = 0;                ///< value with the last colour; 0: full_colour() of the field
+  std::string face_id;                    ///< the face frame is face_<id>; empty: the model's frame
   std::string parent_frame = "map";       ///< parent of the face frame; empty: no static transform
-  double real_time_factor_warning = 0.5;  ///< diagnostics warn below this, at pace real_time
+  double real_time_factor_warning = 0.5;  ///< diagnostics warn below this factor, at pace real_time
 };
 
 /// Reads the parameters. Throws an Error that names every bad parameter, the value found and the allowed values.

@@ -28,8 +28,8 @@ public:
   /// `hair`: the fraction of each vertex that hair covers, 0..1 (see brow_cover); empty: no hair.
   explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
 
-  /// Fills `out` with one red, green and blue value per vertex, 0..1, as displays take them (gamma 2.2). The skin is in
-  /// the face frame. `values`: empty for the colours of skin, or one per vertex, which has the colour false_colour().
+  /// Fills `out` with one colour per vertex: red, green and blue, 0..1, encoded for displays (gamma 2.2). The skin is
+  /// in the face frame. `values`: empty for natural skin colours, or one number per vertex, coloured by false_colour().
   void colours(const SkinState& skin, const std::vector<float>& values, std::vector<std::array<float, 3>>& out) const;
 
 private:

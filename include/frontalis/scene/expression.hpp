@@ -13,24 +13,24 @@ namespace frontalis
 struct BonePose
 {
   std::string bone;
-  Vector3 shift{ 0, 0, 0 };  ///< [m], after the turn
+  Vector3 shift{ 0, 0, 0 };  ///< translation after the rotation [m]
   Vector3 turn{ 0, 0, 0 };   ///< rotation vector about the bone's centre (Scene::bone_centres) [rad]
-  double angle = 0;          ///< of the bone's joint (Scene::joints) [rad]; takes the place of both
+  double angle = 0;          ///< angle of the bone's joint (Scene::joints) [rad]; replaces shift and turn
 };
 
-/// What an expression or an action unit does at full intensity.
+/// Activations and poses of bones of an expression or an action unit at full intensity.
 struct FacePose
 {
-  /// By muscle, -1..1; the sum with the muscle's tone is limited to 0..1.
+  /// Change of each muscle's activation, -1..1. Its sum with the muscle's tone is limited to 0..1.
   std::map<std::string, double> activation;
-  std::vector<BonePose> bones;  ///< other bones stay where they are
+  std::vector<BonePose> bones;  ///< poses of bones; other bones stay where they are
 };
 
 /// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
 struct DemoPhase
 {
   std::string expression;       ///< empty: as in the phase before
-  std::vector<BonePose> bones;  ///< other bones stay where they are
+  std::vector<BonePose> bones;  ///< poses of bones; other bones stay where they are
   double ramp = 0.3;            ///< duration of the ramp [simulated s]
   double seconds = 1.0;         ///< duration of the phase, including the ramp [simulated s]
 };

@@ -24,7 +24,7 @@ struct Region
                  std::numeric_limits<double>::infinity() };
 };
 
-/// A built-in surface. A kind uses `edge` and the fields named beside it; lengths in metres.
+/// A built-in surface. Each kind uses `edge` and the fields named beside it. Lengths are in metres.
 struct Shape
 {
   enum class Kind
@@ -45,11 +45,11 @@ struct Shape
   double minor_radius = 0;
   double length = 0;
   double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size
-  std::string part;  ///< forehead and head only
+  std::string part;  ///< name of the part (forehead and head only)
   std::shared_ptr<const HeadTemplate> head;
-  /// Dimensions of the generated forehead or head [m] by name; those not given have their defaults.
+  /// Dimensions of the generated forehead or head [m] by name; dimensions that are not given have their defaults.
   std::map<std::string, double> dimensions;
-  double tissue = 1;  ///< head: depths of the bone below the skin, over those of the template
+  double tissue = 1;  ///< head: factor on the template's depths of the bone below the skin
 };
 
 struct Surface
@@ -59,7 +59,7 @@ struct Surface
   std::optional<Shape> shape;  ///< set if `file` is empty
   double unit = 1;             ///< metres per unit of the mesh (files only)
   int subdivide = 0;           ///< steps of Catmull-Clark subdivision (files only)
-  int mirror = -1;             ///< axis whose plane at 0 the file is mirrored at; -1: none
+  int mirror = -1;             ///< axis across which the file's mirror image is added; -1: none
   int line = 0;                ///< line in the scene file, for messages of the bake
 };
 

@@ -10,13 +10,13 @@
 namespace frontalis
 {
 
-/// A body that moves freely under forces instead of along a path.
+/// Data of a body that moves freely under forces instead of along a path.
 struct ScenePush
 {
   double mass = 0;           ///< [kg]
-  Vector3 force{ 0, 0, 0 };  ///< constant, scene axes [N]
-  double spring = 0;         ///< stiffness of the spring to where the body's bone holds it [N/m]
-  double damping = 0;        ///< force over velocity against that place [N s/m]
+  Vector3 force{ 0, 0, 0 };  ///< constant force in scene axes [N]
+  double spring = 0;         ///< stiffness of the spring that pulls the body to its place on its bone [N/m]
+  double damping = 0;        ///< damping force over the velocity relative to that place [N s/m]
 };
 
 struct SceneConstraint
@@ -32,15 +32,15 @@ struct SceneConstraint
   Kind kind = Kind::rigid;
   std::vector<std::string> surfaces;
   double within = -1;           ///< largest distance of restricted nodes outside the surface [m]; < 0: 0.75 voxel edges
-  std::vector<std::string> of;  ///< rigid: muscles; only nodes of voxels that hold some of these; empty: all nodes
+  std::vector<std::string> of;  ///< rigid only: holds only nodes of voxels with these muscles; empty: all nodes
   Region crop;
   std::string bone;     ///< bone that moves the rigid nodes or the sliding surface; empty: they are fixed in space
   double friction = 0;  ///< sliding, contact and self_contact: Coulomb friction coefficient
   std::string on;       ///< contact: surface of the tissue that touches; empty: the skin
-  std::optional<ScenePush> pushed;  ///< contact: empty: the body goes where its bone is
+  std::optional<ScenePush> pushed;  ///< contact only; empty: the body moves with its bone
   int line = 0;
 
-  /// Whether it is not a contact.
+  /// True unless the constraint is a contact.
   bool restricts_nodes() const { return kind == Kind::rigid || kind == Kind::sliding; }
 };
 
@@ -58,7 +58,7 @@ struct SceneLoad
   std::string surface;
   Vector3 value{ 0, 0, 0 };
   std::array<bool, 3> fixed{ true, true, true };
-  double within = -1;  ///< displacement only: as SceneConstraint::within
+  double within = -1;  ///< displacement only: see SceneConstraint::within
   double ramp = 0;     ///< [s]
   Region crop;
   int line = 0;

@@ -26,20 +26,20 @@ struct SceneLandmark
   std::string name;
   Vector3 position{ 0, 0, 0 };  ///< scene coordinates [m]; moved to the closest point of the skin
   int line = 0;
-  /// The head that has it, in place of `position`; left out where the published skin does not reach.
+  /// The generated head whose landmark this is; it replaces `position`. Left out if beyond the published skin.
   std::optional<Shape> head{};
-  HeadTemplate::Point point{};  ///< of that head
+  HeadTemplate::Point point{};  ///< the landmark's definition in the template of `head`
 };
 
-/// How a bone turns by one angle.
+/// The joint that turns a bone by one angle.
 struct SceneJoint
 {
   std::string bone;
   HeadTemplate::Joint joint;
-  std::optional<Shape> head;  ///< the head whose default has it; empty: the joint is in scene coordinates
+  std::optional<Shape> head;  ///< set: `joint` is that of the template's default head; empty: in scene axes
 };
 
-/// Pose in the scene of the published frame (REP-155 face frame: origin at the sellion, x out of the face, z up).
+/// Pose of the published frame in the scene (REP-155 face frame: origin at the sellion, x out of the face, z up).
 struct FaceFrame
 {
   std::string id = "face";
@@ -59,7 +59,7 @@ struct MassScaling
   Kind kind = Kind::none;
   double factor = 1;
   std::vector<std::string> materials;
-  double time_step = 0;  ///< critical time step that these voxels get [s]; 0: that of all other voxels
+  double time_step = 0;  ///< critical time step of these voxels [s]; 0: equal to that of all other voxels
 };
 
 /// Result of the command `frontalis accuracy` for a profile; see doc/accuracy.md.
@@ -82,10 +82,10 @@ struct AccuracyProfile
   bool assumed_strain = false;            ///< hourglass control: assumed strain instead of a scalar stiffness
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend
-  std::string time_step = "element";      ///< source of the critical time step: bound per node; assembled: whole model
-  std::string fibres = "sampled";      ///< voxels that a muscle acts on: those that it fills; spread: around them too
-  std::string boundary = "staircase";  ///< where bones attach tissue: nodes near them; true: at their surface
-  std::string gaps = "glued";          ///< tissue on both sides of a gap thinner than a voxel; or parted
+  std::string time_step = "element";      ///< source of the critical time step: element (a bound per node) or assembled
+  std::string fibres = "sampled";  ///< voxels that a muscle acts on: sampled (those it fills) or spread (also around)
+  std::string boundary = "staircase";  ///< where bones hold tissue: staircase (nodes near them) or true (their surface)
+  std::string gaps = "glued";          ///< the sides of a gap thinner than a voxel: glued or parted
   MeasuredAccuracy measured;
 };
 
@@ -120,8 +120,8 @@ struct Scene
   SceneTime time;
   AccuracyProfile accuracy;  ///< the chosen profile
   std::vector<AccuracyProfile> profiles;
-  std::map<std::string, Vector3>
-      bone_centres;  ///< that turns of bones in poses of the face go about [m]; else the face frame's origin
+  /// Centres of the rotations of bones in poses [m]. Other bones rotate about the face frame's origin.
+  std::map<std::string, Vector3> bone_centres;
   std::map<std::string, FacePose> action_units;
   std::map<std::string, FacePose> expressions;
   std::vector<DemoPhase> demo;

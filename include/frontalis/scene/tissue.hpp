@@ -11,13 +11,13 @@
 namespace frontalis
 {
 
-/// Passive material. Its law (physics/materials/) determines which parameters and directions it has.
+/// A passive material. Its law (physics/materials/) determines which parameters and directions it has.
 struct SceneMaterial
 {
   std::string name;
   std::string law = "neo_hookean";
   double density = 0;  ///< [kg/m3]
-  /// Values in SI units by key: those of the law's description, and `poisson`.
+  /// Values in SI units by key. The keys are those of the law's description, and `poisson`.
   std::map<std::string, double> parameters;
   /// One term of a Prony series: share of the instantaneous isochoric stress that relaxes, and its time constant [s].
   struct ViscousTerm
@@ -27,10 +27,10 @@ struct SceneMaterial
   };
   std::vector<ViscousTerm> viscosity;  ///< up to two terms
   std::array<Vector3, 2> families{};   ///< unit vectors along the fibres in scene axes, as many as the law uses
-  /// Surface that two fibre families follow: the shortest rotation from their common normal to the surface's normal at
-  /// the closest point turns them. Empty: the directions are the same everywhere.
+  /// Surface that two fibre families follow: they are turned by the shortest rotation from their common normal to the
+  /// surface's normal at the closest point. Empty: the directions are the same everywhere.
   std::string along;
-  bool of_library = false;  ///< from the file of `tissues`: left out if nothing uses it
+  bool of_library = false;  ///< whether it comes from the file `tissues`; left out if nothing uses it
   int line = 0;
 };
 
@@ -39,17 +39,17 @@ struct Layer
 {
   std::string name;
   std::string surface;
-  std::string volume;  ///< the tissue volume that it lies in
+  std::string volume;  ///< the tissue volume that contains the layer
   std::string material;
   double thickness = 0;  ///< [m]
   int line = 0;
-  bool shell = false;  ///< whether it is a shell that voxels carry, instead of a part of the voxels
+  bool shell = false;  ///< whether the layer is a shell that voxels carry, instead of a part of the voxels
 };
 
 /// Origin or insertion of a muscle's fibres: the region of the muscle nearest to a surface or to a polyline.
 struct MuscleEnd
 {
-  std::string surface;          ///< empty: `points` are used
+  std::string surface;          ///< surface at this end; empty: `points` are used
   std::vector<Vector3> points;  ///< vertices of the polyline [m]
 
   bool given() const { return !surface.empty() || !points.empty(); }
@@ -60,7 +60,7 @@ struct MuscleEnd
 struct ControlNet
 {
   std::array<int, 3> size{ { 0, 0, 0 } };  ///< numbers of points along, across and through the muscle, each at least 2
-  bool ring = false;                       ///< closed along the fibres
+  bool ring = false;                       ///< whether the net is closed along the fibres
   std::vector<Vector3> points;             ///< [m]; the index through the muscle runs fastest
   std::vector<double> weights;             ///< one positive weight per point; empty: all 1
 };
@@ -74,20 +74,20 @@ struct SceneMuscle
   bool passive = false;             ///< whether the fibres have the passive stress of Blemker et al. 2005
   bool tension_length = true;       ///< whether the active stress follows the tension-length curve
   int line = 0;
-  double rise_time = 0;             ///< time constant of increasing activation [s]; 0: no delay
-  double fall_time = 0;             ///< time constant of decreasing activation [s]; 0: no delay
-  double tone = 0;                  ///< activation at rest, 0..1
-  double cross_section = 0;         ///< of all fibres in people [m2]; 0: that of the muscle's volume
-  MuscleEnd origin{}, insertion{};  ///< both or neither are given
+  double rise_time = 0;      ///< time constant of increasing activation [s]; 0: no delay
+  double fall_time = 0;      ///< time constant of decreasing activation [s]; 0: no delay
+  double tone = 0;           ///< activation at rest, 0..1
+  double cross_section = 0;  ///< total cross-section of the fibres in people [m2]; 0: that of the muscle's volume
+  MuscleEnd origin{}, insertion{};  ///< ends of the fibres; both or neither are given
   std::optional<bool> ring{};       ///< whether the fibres run around a hole; absent: the shape decides
   std::optional<ControlNet> net{};
 };
 
-/// Loss of strength: palsy, or a toxin. Active stress is multiplied by the factors of all that hold at a place.
+/// Loss of strength by palsy or a toxin. The active stress at a place is multiplied by the factors of all that apply.
 struct SceneWeakness
 {
-  std::vector<std::string> muscles;  ///< empty: all
-  double keeps = 0;                  ///< share of the active stress that is left, 0..1
+  std::vector<std::string> muscles;  ///< muscles that are weakened; empty: all
+  double keeps = 0;                  ///< fraction of the active stress that is left, 0..1
   Vector3 centre{ 0, 0, 0 };         ///< scene coordinates [m]
   double radius = 0;                 ///< [m]; 0: everywhere
   bool dose = false;                 ///< the loss falls as exp(-(distance / radius)^2) instead of ending at the radius

@@ -44,10 +44,10 @@ struct AccuracyPlan
   AccuracySetting standard;               ///< the baseline; each sweep varies one of its knobs
   std::vector<AccuracyProfile> profiles;  ///< profiles of the scene, measured as further settings
   std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all, and combinations
-  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` only the reference has the last
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last is the reference's
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
-  std::string folder;      ///< where results of finished settings are stored
+  std::string folder;      ///< folder that stores the results of finished settings
   double budget = 0;       ///< wall seconds that the study may take; 0: no limit
   bool quick = false;      ///< fewer settings per knob
   int threads = 0;         ///< CPU threads; 0: one per core
@@ -64,13 +64,13 @@ struct VariantCost
 {
   std::string machine;      ///< processor or device, number of threads; empty: not measured
   double step = NAN;        ///< wall seconds per step, median of repeated timings
-  double spread = NAN;      ///< interquartile range of these timings over their median
-  double processors = NAN;  ///< processor time that the solver got while timed, over the most possible
+  double spread = NAN;      ///< interquartile range of the timings over their median
+  double processors = NAN;  ///< processor time of the solver while timed, over the time available
   double skin = NAN;        ///< wall seconds per published skin
   double memory = NAN;      ///< host memory of model and solver [bytes]
   double build = NAN;       ///< wall seconds to bake the model
 
-  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }  ///< other programs disturbed it
+  bool is_noisy() const { return spread > 0.2 || processors < 0.8; }  ///< whether other programs interfered
   void archive(ByteArchive& archive);
 };
 
@@ -81,7 +81,7 @@ struct AccuracyRow : VariantCost
   AccuracySetting setting;
   std::string fault;      ///< why there are no figures (unstable, no model); empty if there are figures
   SkinError error;        ///< largest over all phases of the history and the settled state
-  SkinError settled;      ///< in the settled state
+  SkinError settled;      ///< error in the settled state
   double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
   double landmark = NAN;  ///< largest error of a landmark in any phase [m]
   double energy = NAN;    ///< imbalance of the energy ledger over its largest term
@@ -104,7 +104,7 @@ struct AccuracyFindings
   std::vector<KnobLine> knobs;
   std::vector<std::size_t> front;  ///< indices of rows that none beats in cost and error (Pareto front), cheapest first
   AccuracySetting standard, reference;
-  bool closed_form = false;    ///< errors are against the closed form instead of the reference
+  bool closed_form = false;    ///< errors refer to the closed form instead of the reference
   double motion = 0;           ///< largest RMS displacement of the reference's skin in any phase [m]
   double reference_error = 0;  ///< estimated RMS error of the reference [m]
   double averaged_over = 0;    ///< standard deviation of the Gaussian that averages displacements [m]; 0: none

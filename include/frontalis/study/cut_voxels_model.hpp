@@ -5,7 +5,8 @@
 namespace frontalis
 {
 
-/// Gives each voxel the stress at the centroid of what is inside, found from samples^3 points.
+/// Evaluates the stress of each voxel at the centroid of its tissue, which is found from samples^3 points. `inside`:
+/// whether a point is in the tissue.
 void cut_at_surface(Model& model, const Condition& inside, int samples);
 
 }  // namespace frontalis

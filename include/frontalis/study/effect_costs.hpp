@@ -30,18 +30,18 @@ struct EffectCosts
   std::vector<EffectCost> effects;
 };
 
-/// The same voxels with neo-Hookean elasticity as the only effect, one-point integration and scalar hourglass control.
+/// The model's voxels with neo-Hookean elasticity alone, one-point integration and scalar hourglass control.
 Model plain_model(const Model& model);
 
 /// Times the model and copies that each lack one of its effects; `timer` measures the time per step.
 EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
                             const StepTimer& timer);
 
-/// The cost of an effect that a fraction of the voxels have (for sliding and friction: of the nodes of one face).
+/// The cost of an effect that a fraction of the voxels has, or, for sliding and friction, of the nodes of one face.
 struct PresenceCost
 {
   Effect effect;
-  double share;  ///< this fraction, 0..1
+  double share;  ///< fraction of the voxels or nodes, 0..1
   Spread step;   ///< time per step that the effect adds [s]; friction is compared with frictionless sliding
   double base;   ///< time per step without the effect [s]
 };
@@ -49,13 +49,13 @@ struct PresenceCost
 /// Measures a dense block of 64 x 40 x 40 voxels in which a contiguous fraction along y has one effect. Returns one
 /// entry per presence_shares() for each effect that single voxels or nodes may have.
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds);
-std::vector<double> presence_shares();  ///< ascending from 0 to 1
+std::vector<double> presence_shares();  ///< fractions in measure_presence(), ascending from 0 to 1
 
 /// Seconds per step of a model with its first muscle at activation 0.75 and the others at 0, and with all at 0.75.
 struct ActivationCost
 {
   double one = 0, all = 0;
-  double spread = 0;  ///< of `all` - `one`: half of the interquartile range [s]
+  double spread = 0;  ///< half of the interquartile range of `all` - `one` [s]
 };
 ActivationCost measure_activation(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
                                   const StepTimer& timer);

@@ -24,10 +24,10 @@ struct Plot
   };
   struct Curve
   {
-    std::string name;  ///< in the legend; empty: not in the legend
+    std::string name;  ///< name in the legend; empty: not in the legend
     std::vector<double> x{}, y{};
     Style style = Style::line_and_points;
-    std::vector<std::string> labels{};                ///< beside the points; empty: none
+    std::vector<std::string> labels{};                ///< labels beside the points; empty: none
     std::string label_place = "left offset 0.7,0.7";  ///< offset of labels from their points, in gnuplot's syntax
     bool coloured_labels = false;                     ///< labels have the colour of the curve
 
@@ -38,14 +38,14 @@ struct Plot
     }
   };
 
-  std::string title;             ///< lines end with \n
-  std::string x_label, y_label;  ///< with units
+  std::string title;             ///< \n separates lines
+  std::string x_label, y_label;  ///< labels of the axes, with units
   bool x_log = false, y_log = false;
-  /// Limits of each axis; equal: gnuplot chooses them.
+  /// Lower and upper limit of each axis; if they are equal, gnuplot chooses the limits.
   std::array<double, 2> x_range{}, y_range{};
   std::vector<double> x_ticks{}, y_ticks{};  ///< numbers on the axes; empty: gnuplot chooses them
   std::vector<std::string> x_names{};        ///< labels at x = 0, 1, 2, ... instead of numbers
-  double shaded_below = 0;                   ///< the plot is grey below this y; 0: nowhere
+  double shaded_below = 0;                   ///< the plot is grey below this y; 0: no grey
   std::string key = "top right";  ///< position of the legend in gnuplot's syntax; "below ...": under the axes
   std::vector<Curve> curves{};
   int width = 800, height = 500;  ///< pixels

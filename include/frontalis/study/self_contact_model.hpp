@@ -5,7 +5,7 @@
 namespace frontalis
 {
 
-/// Lets surfaces of a model touch each other; each is bound to the nearest voxels. `friction`: Coulomb's coefficient.
+/// Lets surfaces of a model, bound to the nearest voxels, touch each other. `friction`: Coulomb's coefficient.
 void let_touch(Model& model, const std::vector<TriangleMesh>& surfaces, double friction);
 
 }  // namespace frontalis

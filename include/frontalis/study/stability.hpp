@@ -18,15 +18,15 @@ namespace frontalis
 /// The result of a StabilityCase.
 struct Trial
 {
-  std::int64_t voxels = 0;                                          ///< number of voxels of its largest model
-  std::int64_t steps = 0;                                           ///< number of time steps of all its motions
+  std::int64_t voxels = 0;                                          ///< number of voxels of the case's largest model
+  std::int64_t steps = 0;                                           ///< number of time steps of all motions
   double worst_jacobian = std::numeric_limits<double>::infinity();  ///< smallest J = det F
-  /// Largest imbalance of the energy ledger and largest hourglass energy, over its largest term; NaN: no ledger.
+  /// Largest imbalance and largest hourglass energy, both over the ledger's largest term; NaN: no ledger.
   double energy_error = std::numeric_limits<double>::quiet_NaN();
   double hourglass_share = std::numeric_limits<double>::quiet_NaN();
   std::int64_t rollbacks = 0;  ///< how often the guard returned to an earlier state
-  Checks checks;               ///< all must pass
-  std::string stopped;         ///< the guard's report if it stopped the motion, which is no failure
+  Checks checks;               ///< checks, all of which must pass
+  std::string stopped;         ///< the guard's report if it stopped the motion, which is not a failure
   std::string failure;         ///< an error that ended the case or a fault of its file; empty: none
   std::string skipped;         ///< why the case was not run; empty: it ran
   Plots plots;

@@ -12,10 +12,10 @@ struct EquilibriumSettings
 {
   Backend backend = "cpu";
   double period = 0;              ///< approximate period of the slowest vibration [s]
-  double tolerance = 1e-4;        ///< of Solver::settle
+  double tolerance = 1e-4;        ///< tolerance of Solver::settle()
   float activation = 0;           ///< activation of every muscle, 0..1
   double ramp = 1;                ///< number of periods over which loads and activations grow
-  RigidTransform bone_pose = {};  ///< of every bone, at the end of the ramp
+  RigidTransform bone_pose = {};  ///< pose of every bone at the end of the ramp
 };
 
 /// Model at rest under its loads.
@@ -25,7 +25,7 @@ struct RestState
   Vectors displacements;  ///< [m]
 };
 
-/// Lets loads and activations grow, with damping that is critical for the period, and then calls Solver::settle().
+/// Lets loads and activations grow, with critical damping for the given period, and then calls Solver::settle().
 /// Throws Error if the model is not at rest within 60 periods.
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 

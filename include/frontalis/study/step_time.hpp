@@ -19,9 +19,9 @@ using StepTimes = std::vector<std::vector<double>>;
 
 /// Times the solvers in turn (first, second, ..., first, second, ...) for about `seconds` of wall time in total and at
 /// least five turns, so that a disturbance of the machine affects all of them alike. Before this, each solver moves to
-/// its controls during 0.1 s of simulated time and calms down for 0.1 s. A solver that needs more than `patience` wall
-/// seconds for that (0: `seconds`) keeps the controls that it has reached. `processor_time`: measure the processor time
-/// of this process, which excludes other programs; correct only for solvers that work in the calling thread.
+/// its controls during 0.1 s of simulated time and then comes to rest for 0.1 s. A solver that needs more wall seconds
+/// for this than `patience` (0: `seconds`) keeps the controls that it has reached. `processor_time`: measure the
+/// processor time of this process, without other programs; correct only for solvers in the calling thread.
 StepTimes time_in_turn(const std::vector<TimedSolver>& solvers, double seconds, bool processor_time = false,
                        double patience = 0);
 
@@ -48,8 +48,8 @@ Spread spread_of(std::vector<double> values);
 Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less);
 Spread spread_of(const StepTimes& times, std::size_t column);
 
-/// Bytes per second that large copies read and write, all threads together; median of several. It tells how fast a
-/// machine is when figures of the solver are compared.
+/// Bytes per second that large copies read and write, all threads together; median of several copies. Characterises the
+/// machine when times of the solver are compared.
 double copy_bandwidth(int threads);
 
 }  // namespace frontalis

@@ -11,7 +11,7 @@ namespace frontalis
 {
 
 /// The results of a study as text, markdown, CSV or JSON. Numbers have six significant digits in text and markdown, and
-/// in CSV and JSON all that are needed to restore them. NaN is an empty cell (JSON: null).
+/// as many as restore them exactly in CSV and JSON. NaN is an empty cell (JSON: null).
 class Table
 {
 public:
@@ -33,14 +33,14 @@ private:
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// A computed figure, the expected one and the largest error that passes.
+/// A computed figure, the expected value and the largest error that passes.
 struct Check
 {
   std::string name;
   std::string unit;
   double expected = 0;
   double found = 0;
-  double bound = 0;  ///< of error(); NaN: no bound, the figure is only shown
+  double bound = 0;  ///< bound of error(); NaN: no bound, the figure is only shown
   bool relative = true;
 
   double error() const;  ///< |found - expected|, divided by |expected| if relative
@@ -62,11 +62,11 @@ struct Checks : std::vector<Check>
   }
 };
 
-/// The heading of check_line(), and one line per check; `name` is that of its case.
+/// The heading of check_line(), and one line per check. `name`: name of the case.
 std::string check_heading();
 std::string check_line(const std::string& name, const Check& check);
 
-/// Slope of log y against log x by least squares: the order at which an error y falls with a voxel edge x.
+/// Slope of log y against log x by least squares: the order of convergence of an error y in the voxel edge x.
 double slope(const std::vector<double>& x, const std::vector<double>& y);
 
 /// The zero of an increasing function between `low` and `high`, by bisection.

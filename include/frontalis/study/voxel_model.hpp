@@ -29,7 +29,7 @@ struct VoxelBox
   Voxel size{ { 1, 1, 1 } };
   Point spacing{ { 1e-3, 1e-3, 1e-3 } };  ///< [m]
   std::vector<Material> materials;
-  std::function<double(const Voxel&)> fill{};   ///< fraction that is tissue, 0: no voxel; not set: 1 everywhere
+  std::function<double(const Voxel&)> fill{};   ///< proportion of tissue; 0: no voxel; not set: 1 everywhere
   std::function<int(const Voxel&)> material{};  ///< index of the voxel's material; not set: 0
 };
 
@@ -39,8 +39,8 @@ Model voxel_model(const Voxel& size, double edge, const Material& material);
 /// A block of x * y * z equal neo-Hookean voxels (hypodermis, edge 1 mm), fixed at x = 0, with gravity along -z.
 Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z);
 
-/// VoxelBox::fill of a shape: the fraction of samples^3 points that are inside; 0 below `fill_min`. Defaults as in
-/// baking.
+/// VoxelBox::fill of a shape: the fraction of samples^3 points that are inside, or 0 if it is below `fill_min`. The
+/// defaults are those of the bake.
 std::function<double(const Voxel&)> sampled_fill(const Point& spacing, const Condition& inside, int samples = 4,
                                                  double fill_min = 0.2);
 /// Sets the mixture of each voxel: materials and their proportions.
@@ -65,7 +65,7 @@ Vectors affine_displacements(const Model& model, const std::array<double, 9>& gr
 
 /// Nodes whose position at rest fulfils a condition, ascending.
 std::vector<std::int32_t> nodes_where(const Model& model, const Condition& condition);
-/// Makes these nodes rigid: fixed, or moved by the bone of that name, which is added if it is new.
+/// Makes the nodes that fulfil a condition rigid: fixed, or moved by the named bone, which is added if it is new.
 void hold(Model& model, const Condition& condition, const std::string& bone = {});
 /// Prescribes components of the displacement [m] of nodes, which grow linearly during `ramp` [s].
 void prescribe(Model& model, const std::vector<std::int32_t>& nodes, const std::array<bool, 3>& components,

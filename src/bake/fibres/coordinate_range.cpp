@@ -56,7 +56,7 @@ struct Limits
     }
   }
 
-  /// Averages over neighbouring bins, with weights 1, 2, 1, and fills empty ones.
+  /// Averages limits over neighbouring bins, with weights 1, 2, 1, and fills empty bins.
   void smooth(bool closed)
   {
     const Limits old = *this;

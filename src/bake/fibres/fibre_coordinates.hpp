@@ -12,18 +12,18 @@ struct RingHole
   Vector3d axis;  ///< unit vector
 };
 
-/// The largest hole; none if its area is less than a twentieth of that within the muscle's outline.
+/// The largest hole; none if its area is less than a twentieth of the area within the muscle's outline.
 std::optional<RingHole> find_hole(const MuscleGrid& grid);
 
 /// Two coordinates of points of a muscle, both from 0 to 1: u along the fibres and v across them, along the muscle's
 /// width. In a ring u starts at an arbitrary angle.
 struct FibreCoordinates
 {
-  std::vector<std::array<double, 2>> cells;    ///< at the centres of the grid's cells
-  std::vector<std::array<double, 2>> samples;  ///< at the samples of the muscle's surface; NaN if they lie in no cell
+  std::vector<std::array<double, 2>> cells;    ///< (u, v) at the centres of the grid's cells
+  std::vector<std::array<double, 2>> samples;  ///< (u, v) at the samples of the muscle's surface; NaN outside all cells
   double length = 0;                           ///< mean distance from u = 0 to u = 1 [m]
   double width = 0;                            ///< mean distance from v = 0 to v = 1 [m]
-  /// Ratio of the length along u to that along the next best direction; infinite if u follows from ends or a ring
+  /// Ratio of the length along u to that along the next best direction; infinite if u follows from ends or a ring.
   double distinctness = 0;
 };
 
@@ -31,14 +31,14 @@ struct FibreCoordinates
 struct FibreGuide
 {
   std::optional<RingHole> ring;
-  /// Distances of a point from the origin and the insertion [m]; either both are set or neither
+  /// Distances of a point from the origin and from the insertion [m]; either both are set or neither.
   std::function<double(const Vector3d&)> origin, insertion;
 };
 
-/// Both coordinates are scalar fields of trilinear elements on the grid's cells. u is the harmonic field between the
-/// ends or around the hole that `guide` gives, else the slowest mode of heat conduction in the muscle; the conductivity
-/// is lower along striations and narrow regions than across them. v is the slowest mode that is constant along the
-/// fibres. Throws Error if origin and insertion are at the same place.
+/// Finds both coordinates as scalar fields of trilinear elements on the grid's cells. If `guide` has ends or a hole, u
+/// is the harmonic field between the ends or around the hole. Otherwise u is the slowest mode of heat conduction in the
+/// muscle, whose conductivity is lower along striations and narrow regions than across them. v is the slowest mode that
+/// is constant along the fibres. Throws Error if origin and insertion are at the same place.
 FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& guide);
 
 }  // namespace frontalis

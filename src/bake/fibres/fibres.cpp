@@ -10,16 +10,16 @@ namespace frontalis
 namespace
 {
 
-constexpr double wanted_cells = 1500;  // in the grid of a muscle
+constexpr double wanted_cells = 1500;  // number of cells in the grid of a muscle
 // Below this ratio of length to width the shape alone does not determine the fibre direction.
 constexpr double least_distinctness = 1.1;
 constexpr double least_kept = 0.9;       // least proportion of a muscle in its largest connected component
-constexpr double largest_misfit = 0.25;  // RMS distance of a fitted volume over the muscle's width
-constexpr double farthest_end = 0.5;     // distance of an origin or insertion over the muscle's length
+constexpr double largest_misfit = 0.25;  // largest RMS distance of a fitted volume from the muscle, over its width
+constexpr double farthest_end = 0.5;     // largest distance of an origin or insertion, over the muscle's length
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
-/// The control net that a muscle's only surface was made from, if it is a part of a head.
+/// The control net of a muscle whose only surface is a part of a generated head; empty for other muscles.
 std::optional<ControlNet> made_net(const Scene& scene, const SceneMuscle& muscle)
 {
   const auto named = [](const auto& list, const std::string& name)

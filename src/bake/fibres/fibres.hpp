@@ -13,7 +13,7 @@ struct MuscleFibres
   std::optional<NurbsVolume> volume;
   double fitted_size = 0;  ///< size of `volume` if it was fitted to the muscle [m3], else 0
 
-  /// Place of p along the fibres: from 0 to 1 in a volume, else along the direction [m].
+  /// Coordinate of p along the fibres: from 0 to 1 in a `volume`, otherwise the component along `direction` [m].
   double along(const Vector3d& p) const { return volume ? volume->closest(p)[0] : p.dot(direction); }
   Vector3d at(const Vector3d& p) const { return volume ? volume->fibre(p) : direction; }
 };
@@ -27,14 +27,14 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
 void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                 BakeMonitor& monitor);
 
-/// Lets each muscle act on the voxels around its own too, with weights 1/4, 1/2 and 1/4 along each axis (the discrete
-/// delta function of Peskin 2002, Acta Numerica 11:479, two voxels wide to each side). A muscle thinner than about two
-/// voxels then pulls as evenly as a thicker one; its volume, and so its force, stays. Fills directions anew.
+/// Spreads the weights of each muscle to the neighbours of its voxels, by 1/4, 1/2 and 1/4 along each axis (the
+/// discrete delta function of Peskin 2002, Acta Numerica 11:479, two voxels wide to each side). A muscle thinner than
+/// about two voxels then pulls as evenly as a thicker one. Keeps its volume and so its force. Fills directions anew.
 void spread_fibres(Model& model);
 
-/// Scales each muscle's reference stress so that its force is that of people's cross-section, where the scene gives
-/// one: by the given cross-section over that of the model, which is the muscle's volume there over the mean length of
-/// its fibres. Lists all muscles in the report.
+/// Scales each muscle's reference stress by the cross-section that the scene gives, if any, over that of the model, so
+/// that the muscle's force is that of people. The cross-section of the model is the muscle's volume in voxels over the
+/// mean length of its fibres. Lists all muscles in the report.
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                     BakeReport* report);
 

@@ -23,7 +23,7 @@ struct Cholesky : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>
   }
 };
 
-/// [a][b]: integrals over the unit cube of dN_i/dx_a dN_j/dx_b for the trilinear shape functions N (i rows, j columns).
+/// Entry [a][b] has the integrals over the unit cube of dN_i/dx_a dN_j/dx_b for the trilinear shape functions N_i, N_j.
 std::array<std::array<Stiffness, 3>, 3> unit_stiffness()
 {
   const double mass[2][2] = { { 1.0 / 3, 1.0 / 6 }, { 1.0 / 6, 1.0 / 3 } };
@@ -108,7 +108,7 @@ void GridField::assemble()
 
 Eigen::SparseMatrix<double> GridField::shifted() const
 {
-  // far below every eigenvalue except that of the constant mode, which is 0
+  // the shift is far below every eigenvalue except the eigenvalue 0 of the constant mode
   const double extent = std::cbrt(mass_.sum());
   Eigen::SparseMatrix<double> matrix = matrix_;
   matrix.diagonal() += 1e-7 / (extent * extent) * mass_;

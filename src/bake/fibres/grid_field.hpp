@@ -35,7 +35,7 @@ public:
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
   /// The field of least energy with given values at nodes: pairs (node, value).
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// The correction with which the energy of `field` plus correction is least.
+  /// The correction that minimises the energy of `field` plus correction.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:
@@ -51,7 +51,7 @@ private:
   Eigen::VectorXd mass_;
 };
 
-/// Fibre direction inferred from the muscle's surface around a cell: along striations or along a narrow muscle. Its
+/// Fibre direction inferred from the muscle's surface around a cell: along striations or along a narrow muscle. The
 /// sign is arbitrary.
 struct SurfaceDirection
 {
@@ -59,14 +59,14 @@ struct SurfaceDirection
   double certainty = 0;  ///< 0 to 1
 };
 
-/// Computed from the covariance of the surface's normals within about `reach` [m] of each cell.
+/// Finds directions from the covariance of the surface's normals within about `reach` [m] of each cell.
 std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double reach);
 
 /// Conductivity of each cell: 1 across its direction and 1 - certainty, but at least 0.02, along it.
 std::vector<Eigen::Matrix3d> conductivities(const std::vector<SurfaceDirection>& directions);
 
-/// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The weight of the surface's
-/// direction is its certainty times the cosine of their angle, which is small where the muscle's end is cut straight.
+/// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The surface's direction is
+/// weighted by its certainty times the cosine of the angle between both, which is small where a muscle is cut straight.
 std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
                                     const std::vector<SurfaceDirection>& directions,
                                     const std::vector<Vector3d>& gradients);
@@ -85,8 +85,9 @@ private:
 };
 
 /// Rescales the coordinate of index `stretched` so that at every value of the other coordinate it runs from 0 to 1
-/// between its smoothed limits on the muscle's surface. Lines of constant other coordinate keep their shape. `closed`:
-/// the other coordinate runs around a ring. Closer than `ends` to 0 or 1, the limits at that distance are used.
+/// between its smoothed limits on the muscle's surface. Lines on which the other coordinate is constant keep their
+/// shape. `closed`: the other coordinate runs around a ring. Where the other coordinate is closer than `ends` to 0 or
+/// 1, the limits at `ends` or 1 - `ends` are used.
 void stretch(const MuscleGrid& grid, std::size_t stretched, bool closed, double ends, FibreCoordinates& coordinates);
 
 }  // namespace frontalis

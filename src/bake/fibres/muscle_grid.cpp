@@ -85,7 +85,7 @@ void flood_outside(CellBox& box)
 }
 
 /// Largest connected component of the cells that are not outside; faces, edges and corners connect cells. `kept`
-/// receives the proportion of these cells that are in it.
+/// receives the proportion of these cells in the component.
 std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
   std::vector<Vector3i> steps;
@@ -168,7 +168,7 @@ MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coar
   MuscleGrid grid;
   const Box bounds = bounding_box(mesh);
   const double diagonal = bounds.diagonal().norm();
-  // edge for the wanted number of cells: from the volume, or from the area if the muscle is thinner than a cell
+  // the edge of cells follows from the volume, or from the area if the muscle is thinner than a cell
   const double wanted_edge =
       std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * surface_area(mesh) / (1.5 * wanted)));
   grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, wanted_edge));

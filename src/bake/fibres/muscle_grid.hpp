@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Cubic cells that fill a muscle's mesh: the cells that its surface passes through and those enclosed by them. Strands
-/// closer to each other than a cell merge, and voids are filled.
+/// Cubic cells that fill a muscle's mesh: the cells through which its surface passes and the cells that these enclose.
+/// Strands closer to each other than a cell merge, and voids are filled.
 struct MuscleGrid
 {
   /// A point of the surface that represents the area around it.
@@ -15,11 +15,11 @@ struct MuscleGrid
     Vector3d point;
     Vector3d normal;
     double area = 0;         ///< [m2]
-    std::int32_t cell = -1;  ///< -1: its cell was removed from the grid
+    std::int32_t cell = -1;  ///< index of the sample's cell; -1: the cell was removed from the grid
   };
 
   Vector3d lower{ 0, 0, 0 };  ///< lower corner of the grid [m]
-  double edge = 0;            ///< of a cell [m]
+  double edge = 0;            ///< edge of a cell [m]
   std::vector<Eigen::Vector3i> cells;
   std::vector<std::array<std::int32_t, 8>> cell_nodes;  ///< nodes of each cell; corner b = i + 2j + 4k
   std::vector<Eigen::Vector3i> nodes;
@@ -48,10 +48,10 @@ std::vector<Place> flood(const Place& seed, const std::vector<Place>& steps, con
   return reached;
 }
 
-/// Makes cells with the edge with which about `wanted` of them fill the mesh, multiplied by `coarser`.
+/// Fills the mesh with cells. Their edge is `coarser` times the edge at which about `wanted` cells fill the mesh.
 MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coarser = 1);
 
-/// Averages tensors, one per cell, over cells within about `reach` [m]. They are 0 outside the muscle.
+/// Averages tensors, one per cell, over cells within about `reach` [m]. Tensors outside the muscle count as 0.
 void smooth(const MuscleGrid& grid, double reach, std::vector<Eigen::Matrix3d>& tensors);
 
 }  // namespace frontalis

@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-/// Mean length of the fibres of a NURBS volume [m]: of 3 x 3 fibres, by 32 chords each.
+/// Mean length of the fibres of a NURBS volume [m], from 3 x 3 fibres of 32 chords each.
 double mean_length(const NurbsVolume& volume)
 {
   constexpr int chords = 32;

@@ -144,7 +144,7 @@ Vector3d NurbsVolume::closest(const Vector3d& p) const
       for (int b = 0; b < 3; ++b)
         matrix(a, b) = point.derivative[a].dot(point.derivative[b]);
       gradient[a] = point.derivative[a].dot(residual);
-      // a parameter at 0 or 1 that would leave [0, 1] stays there
+      // a parameter at 0 or 1 that would leave [0, 1] stays where it is
       if (!axes_[a].closed() && ((parameter[a] <= 0 && gradient[a] < 0) || (parameter[a] >= 1 && gradient[a] > 0)))
         gradient[a] = 0;
     }

@@ -61,7 +61,7 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
       continue;
     }
     const Solver solver(alike / alike.trace());
-    // added to the variances so that a smooth sheet, where two of them are nearly 0, has no direction in its plane
+    // This is added to the variances, so that a smooth sheet, with two variances near 0, has no direction in its plane.
     constexpr double least_variance = 0.02;
     const Vector3d variance = solver.eigenvalues().cwiseMax(0.0).array() + least_variance;
     const double ratio = variance[0] / variance[1];

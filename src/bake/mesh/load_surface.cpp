@@ -43,9 +43,9 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
     append(scene, *node.mChildren[c], transform, unit, mesh);
 }
 
-// A surface is refused as self-intersecting above these limits: proportion of the enclosed volume that is enclosed
-// twice or inside-out; depth of such a region over the surface's size; for an open surface, extent of a group of
-// crossing triangles over that of the surface. Meshes segmented from images of a head reach 0.6 %, 1.7 % and 1.8 %;
+// Limits above which a surface is refused as self-intersecting: the proportion of the enclosed volume that is enclosed
+// twice or inside-out; the depth of such a region over the surface's size; for an open surface, the extent of a group
+// of crossing triangles over the surface's extent. Meshes segmented from images of a head reach 0.6 %, 1.7 % and 1.8 %;
 // surfaces that really overlap reach ten times as much (doc/baking.md).
 constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
@@ -61,7 +61,7 @@ TriangleMesh import_cage(const Surface& surface)
   return subdivide(cage, surface.subdivide);
 }
 
-/// Whether an open mesh is inside-out: the winding number with the largest magnitude in its bounding box is negative.
+/// Whether an open mesh is inside-out, that is, whether the winding number of largest magnitude in its box is negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);
@@ -73,7 +73,7 @@ bool open_and_inside_out(const TriangleMesh& mesh)
     if (std::abs(w) > std::abs(strongest))
       strongest = w;
   }
-  // patches and domes, whose winding numbers are weaker, do not enclose enough to decide
+  // patches and domes have smaller winding numbers: they do not enclose enough to decide
   return strongest < -0.75;
 }
 

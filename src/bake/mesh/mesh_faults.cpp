@@ -185,7 +185,7 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh)
   find_thin_triangles(half_edges, faults);
   find_pieces(half_edges, faults);
   find_crossings(half_edges, faults);
-  // touching bodies were separated at their common edges, which then are borders but not holes
+  // touching bodies were separated at their common edges: these edges are borders now, but not holes
   if (!unbalanced_edges(mesh).empty())
     faults.holes = holes_of(half_edges);
   return faults;

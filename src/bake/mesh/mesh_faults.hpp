@@ -11,11 +11,11 @@ struct MeshFaults
   struct Kind
   {
     std::size_t count = 0;
-    Vector3d place{ 0, 0, 0 };  ///< position of the first; of crossings: middle of the widest group [m]
+    Vector3d place{ 0, 0, 0 };  ///< position of the first fault; for crossings: middle of the widest group [m]
   };
   struct Hole
   {
-    double length = 0;  ///< of its border [m]
+    double length = 0;  ///< length of the hole's border [m]
     Vector3d centre{ 0, 0, 0 };
   };
 
@@ -26,8 +26,8 @@ struct MeshFaults
   Kind crossings;  ///< pairs of triangles that cross
   double crossing_extent = 0;        ///< box diagonal of the widest connected group of crossing triangles [m]
   std::vector<Hole> holes;           ///< longest first
-  std::vector<std::int32_t> piece;   ///< of each triangle: index of its component, connected by edges
-  std::vector<bool> crossing_piece;  ///< of each piece: whether one of its triangles crosses another
+  std::vector<std::int32_t> piece;   ///< for each triangle the index of its edge-connected component
+  std::vector<bool> crossing_piece;  ///< for each component whether one of its triangles crosses another
 };
 
 /// Uses the exact predicates of CGAL's Polygon Mesh Processing.
@@ -35,21 +35,21 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh);
 
 std::vector<MeshFaults::Hole> find_holes(const TriangleMesh& mesh);
 
-/// Numbers of triangles that were repaired without changing the shape of a mesh.
+/// Numbers of repaired triangles. Repairs do not change the shape of a mesh.
 struct MeshRepairs
 {
   std::size_t collapsed = 0;     ///< removed because two corners are the same vertex
   std::size_t repeated = 0;      ///< removed because the same triangle exists already
   std::size_t back_to_back = 0;  ///< pairs of opposite triangles removed, since they enclose nothing
-  std::size_t flat = 0;          ///< removed because they have no area; their neighbour is split at their middle vertex
+  std::size_t flat = 0;          ///< removed because they have no area; a neighbour is split at the middle vertex
   std::size_t turned = 0;        ///< flipped to agree with their neighbours
 };
 
-/// Joins equal vertices and makes these repairs.
+/// Joins equal vertices and makes the repairs that MeshRepairs lists.
 MeshRepairs repair_mesh(TriangleMesh& mesh);
 
-/// Flips the pieces of a closed mesh that are inside-out (their winding number just outside is -1) and returns their
-/// number. `nested` receives the number of pieces that lie inside others and face outwards.
+/// Flips the components of a closed mesh that are inside-out (winding number -1 just outside) and returns their number.
+/// `nested` receives the number of components that lie inside others and face outwards.
 std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::size_t& nested);
 
 }  // namespace frontalis

@@ -15,7 +15,7 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
 void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
-  // Triangles with the same corners and opposite orientations cancel each other. One of the rest is kept.
+  // Triangles with the same corners and opposite orientations cancel each other. Of equal triangles left, one is kept.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {
@@ -41,7 +41,7 @@ void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
     mesh = keep_triangles(mesh, keep);
 }
 
-/// The corner of a triangle without area that lies between the other two; 3: the triangle has an area.
+/// The corner, 0..2, that lies between the other two in a triangle without area; 3 if the triangle has an area.
 std::size_t middle_corner(const TriangleMesh& mesh, const Triangle& t)
 {
   std::array<Point, 3> p;

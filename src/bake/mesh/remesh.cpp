@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-// Mean length of the edges over the length that the algorithm is given, measured on spheres.
+// Ratio of the mean edge length to the length given to the algorithm, as measured on spheres.
 constexpr double mean_over_target = 0.87;
 
 TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge)

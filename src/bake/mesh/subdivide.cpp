@@ -63,7 +63,7 @@ Vector3d middle(const PolygonMesh& mesh, const Face& face)
   return sum / static_cast<double>(face.size());
 }
 
-/// What surrounds a vertex.
+/// The neighbourhood of a vertex.
 struct Ring
 {
   double valence = 0, faces = 0;
@@ -145,8 +145,8 @@ PolygonMesh subdivide_once(const PolygonMesh& mesh)
   return fine;
 }
 
-/// Limit of a vertex of valence n among quadrilaterals: (n^2 v + 4 sum of its neighbours + sum of the opposite corners
-/// of its faces) / (n (n + 5)). A vertex of the border has the limit of a cubic B-spline.
+/// Limit position of a vertex v of valence n among quadrilaterals: (n^2 v + 4 * sum of its neighbours + sum of the
+/// opposite corners of its faces) / (n (n + 5)). A border vertex has the limit of a cubic B-spline.
 Vector3d limit(const Vector3d& p, const Ring& r)
 {
   if (r.rim_edges > 0)

@@ -12,7 +12,7 @@ PreparedSurface::PreparedSurface(std::string name, TriangleMesh mesh)
       box_(bounding_box(mesh_)),
       rim_(unbalanced_edges(mesh_))
 {
-  // pseudonormal of an edge: sum of its faces' normals; of a vertex: their sum, weighted by the faces' angles
+  // pseudonormals: of an edge the sum of its faces' normals, of a vertex this sum weighted by the faces' angles
   std::map<std::pair<std::int32_t, std::int32_t>, Vector3d> edges;
   vertex_normals_.assign(mesh_.vertices.size(), Vector3d::Zero());
   for (const Triangle& t : mesh_.triangles)

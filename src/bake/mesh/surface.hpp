@@ -62,7 +62,7 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 /// Reads a mesh file of any format known to assimp, with coordinates in `unit` [m]. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Closed mesh with outward normals of a built-in shape, not for the forehead. Throws Error on impossible sizes.
+/// Closed mesh, with outward normals, of a built-in shape other than the forehead. Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
 
 struct LoadedSurface
@@ -72,7 +72,7 @@ struct LoadedSurface
 };
 
 /// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
-/// unit `unit` [m]. Throws Error, with position and remedy, if all triangles have no area, if an odd number of
+/// unit `unit` [m]. Throws Error, with position and remedy, if no triangle has an area, if an odd number of
 /// triangles meet at an edge, if a closed surface encloses nothing, or if a surface passes through itself. Holes are
 /// allowed here; check_openings() refuses those that do harm.
 LoadedSurface load_surface(const Surface& surface, double unit);

@@ -178,7 +178,7 @@ std::size_t make_orientation_consistent(TriangleMesh& mesh)
   struct Neighbour
   {
     std::int32_t triangle = -1;
-    bool disagrees = false;  // both triangles run along the edge in the same direction
+    bool disagrees = false;  // true: both triangles run along the edge in the same direction
   };
   std::vector<std::array<Neighbour, 3>> neighbours(mesh.triangles.size());
   bool any_wrong = false;
@@ -295,7 +295,7 @@ void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
       const std::int32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
       const double bd = (vertex(mesh, d) - vertex(mesh, b)).squaredNorm();
       const double ac = (vertex(mesh, c) - vertex(mesh, a)).squaredNorm();
-      // the shorter diagonal; if both are equal, the diagonals are mirrored about the middle column
+      // take the shorter diagonal; if both are equal, mirror the diagonals about the middle column
       if (std::abs(ac - bd) < 1e-9 * ac ? n % 2 == 0 && i < n / 2 : ac > bd)
       {
         mesh.triangles.push_back({ a, b, d });

@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf, of which a Four has the boxes
+constexpr std::int32_t leaf_size = 4;  // largest number of triangles in a leaf; a Four holds their boxes
 
 /// Closest point of a triangle (Ericson, Real-Time Collision Detection 2005, 5.1.5). `feature`: see ClosestPoint.
 Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c,
@@ -72,7 +72,7 @@ bool overlap(const std::array<Vector3d, 3>& corners, const Box& box)
 }
 
 /// Whether the line from p along `direction` passes to the left of the edge from a to b, seen against `direction`. The
-/// computation starts at the vertex of the lower number. So the two triangles of an edge, which run along it in
+/// computation starts at the vertex with the lower number. So the two triangles at an edge, which run along it in
 /// opposite directions, get opposite answers even if the line meets the edge.
 bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, const Vector3d& b, std::int32_t number_a,
              std::int32_t number_b)
@@ -232,7 +232,7 @@ ClosestPoint TriangleTree::closest(const Vector3d& p, double bound, std::int32_t
       const double x = p[static_cast<Eigen::Index>(a)];
       away += (four.lower[a] - x).max(x - four.upper[a]).max(0).square();
     }
-    // the nearest one comes on top
+    // the nearest child comes on top of the stack
     const int first = top;
     for (int c = 0; c < 4; ++c)
     {
@@ -323,7 +323,7 @@ TriangleTree::Expansion TriangleTree::expand(const Node& range) const
     const Vector3d normal = 0.5 * (b - a).cross(c - a);
     const Vector3d middle = (1.0 / 3) * (a + b + c);
     node.dipole += normal;
-    // mean over the triangle of offsets j and k from the centre, multiplied
+    // mean over the triangle of the product of the offsets j and k from the centre
     const auto moment = [&](std::size_t j, std::size_t k)
     { return (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + 9 * middle[j] * middle[k]) / 12; };
     const double moments[6] = { moment(0, 0), moment(1, 1), moment(2, 2), moment(0, 1), moment(1, 2), moment(2, 0) };

@@ -10,8 +10,7 @@ struct ClosestPoint
   Vector3d point{ 0, 0, 0 };
   double distance = 0;         ///< [m]
   std::int32_t triangle = -1;  ///< -1: no triangle lies within the bound
-  /// Where on the triangle the point lies. 0: face; 1 to 3: edge that begins at corner `feature` - 1; 4 to 6: corner
-  /// `feature` - 4
+  /// Part of the triangle at the point. 0: face; 1 to 3: edge from corner `feature` - 1; 4 to 6: corner `feature` - 4.
   std::int8_t feature = 0;
 };
 
@@ -27,8 +26,8 @@ public:
 
   const TriangleMesh& mesh() const { return *mesh_; }
 
-  /// The closest point within `bound` [m] of p. `hint` is a triangle that is probably near; it saves time without
-  /// changing the result.
+  /// The closest point within `bound` [m] of p. `hint`, the index of a triangle that is probably near, saves time
+  /// without changing the result.
   ClosestPoint closest(const Vector3d& p, double bound = 1e300, std::int32_t hint = -1) const;
 
   bool overlaps(const Box& box) const;
@@ -37,7 +36,7 @@ public:
   /// Appends the triangles that overlap the box, in ascending order of index.
   void gather(const Box& box, std::vector<std::int32_t>& triangles) const;
 
-  /// 1 inside a closed surface whose normals point outwards, 0 outside it, and between 0 and 1 near a hole.
+  /// The winding number: 1 inside a closed surface with outward normals, 0 outside it, between 0 and 1 near a hole.
   double winding_number(const Vector3d& p) const;
 
 private:
@@ -58,7 +57,7 @@ private:
   };
 
   /// Walks down from the root to the children of nodes for which enter(node index) is true, and calls leaf(index in
-  /// order_) for each triangle reached, until leaf returns true. Returns whether it did.
+  /// order_) for each triangle reached, until a call returns true. Returns whether one did.
   template <class Enter, class Leaf>
   bool visit(const Enter& enter, const Leaf& leaf) const
   {
@@ -85,11 +84,11 @@ private:
     return false;
   }
 
-  /// Four boxes that are compared with a point at once: those of grandchildren of a node, or of a leaf's triangles.
+  /// Four boxes that are compared with a point at once: boxes of the grandchildren of a node, or of a leaf's triangles.
   struct Four
   {
     std::array<Eigen::Array4d, 3> lower, upper;  ///< corners of the boxes; an unused one is infinitely far
-    std::array<std::int32_t, 4> below{};  ///< index of the four boxes in this one; ~index in order_ of a triangle
+    std::array<std::int32_t, 4> below{};         ///< index of the Four in each box; ~index in order_ of a triangle
   };
   void add_four(std::int32_t node);  ///< appends the boxes below a node
 

@@ -10,7 +10,7 @@ namespace
 
 double bell(double x, double width) { return std::exp(-(x / width) * (x / width)); }
 
-/// 0 below 0, 1 above 1, smooth (twice differentiable) between.
+/// A step that is 0 below x = 0, 1 above x = 1 and twice differentiable.
 double smooth_step(double x)
 {
   const double t = std::min(1.0, std::max(0.0, x));
@@ -79,7 +79,7 @@ private:
     // the profile leans and curves backwards above the brow and is straight below
     const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
 
-    // relief along the horizontal normal: the brow ridge, strongest above the medial half of the orbit; the glabella;
+    // the relief along the horizontal normal: the brow ridge, highest above the medial half of the orbit; the glabella;
     // the nasal root; the temples
     const double arc = std::abs(s);
     const double ridge = d.ridge * bell(above, 9e-3) * (0.45 + 0.55 * bell(arc - 22e-3, 18e-3)) *
@@ -96,11 +96,11 @@ private:
 
   ForeheadDimensions dimensions_;
   double depth_axis_;  ///< semi-axis of the horizontal section along x [m]
-  double shift_ = 0;   ///< along x, puts the sellion on the skin at the origin [m]
+  double shift_ = 0;   ///< shift along x that puts the sellion on the skin at the origin [m]
 };
 
 /// Middle surface of a flat muscle. `place` gives arc length and height [m], `depth` the depth as a proportion of the
-/// soft tissue. a runs from 0 to 1 to the subject's left, b from 0 to 1 upwards or along the fibres.
+/// soft tissue. The parameter a runs from 0 to 1 to the subject's left, b from 0 to 1 upwards or along the fibres.
 struct Sheet
 {
   std::function<std::array<double, 2>(double, double)> place;
@@ -133,7 +133,7 @@ TriangleMesh thicken(const ForeheadMap& map, const Sheet& sheet, double edge)
 
 double mix(double a, double b, double t) { return a + (b - a) * t; }
 
-/// Distance of the frontalis from the midline [m]: 3 mm at the brow (share 0), 12 mm at the upper end (share 1).
+/// Distance of the frontalis from the midline [m]: 3 mm at the brow (share = 0), 12 mm at the upper end (share = 1).
 double frontalis_inner(double share) { return mix(3e-3, 12e-3, share * share); }
 
 constexpr double frontalis_width = 38e-3;  // [m]
@@ -185,7 +185,7 @@ Sheet procerus(const ForeheadMap& map)
   return { place, depth, d.muscle_thickness, 10e-3, 25e-3 };
 }
 
-/// Tendon sheet from the upper edge of the frontales, and from the gap between them, to the hairline.
+/// The galea is a tendon sheet from the upper edge of the frontales, and from the gap between them, to the hairline.
 Sheet galea(const ForeheadMap& map)
 {
   const ForeheadDimensions& d = map.dimensions();

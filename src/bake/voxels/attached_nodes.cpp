@@ -16,7 +16,7 @@ namespace
 
 bool attaches(const Scene& scene, const SceneConstraint& constraint)
 {
-  // a constraint with a `within` of its own holds the nodes that it asks for
+  // a constraint with a `within` of its own keeps its nodes instead of attaching tissue
   return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
 }
 
@@ -25,14 +25,14 @@ struct Candidate
 {
   AttachedNode node;
   const PreparedSurface* surface = nullptr;
-  double side = 0;             ///< of the tissue
-  double distance = 0;         ///< from the surface, positive in the tissue [m]
-  Vector3d normal{ 0, 0, 0 };  ///< into the tissue, local axes
+  double side = 0;             ///< side of the surface on which the tissue is: +1 or -1
+  double distance = 0;         ///< distance from the surface, positive in the tissue [m]
+  Vector3d normal{ 0, 0, 0 };  ///< the surface's normal into the tissue, local axes
 };
 
-/// Whether the tissue around a node continues in a voxel near it, so that the node may follow a node of that voxel. In
-/// a model with flaps, voxels at one place or side by side may belong to the two sides of a gap. They are not connected
-/// by nodes, at least not by a way that is about straight.
+/// Finds whether the tissue around a node continues in a voxel near it, so that the node may follow a node of that
+/// voxel. In a model with flaps, voxels at the same place or side by side may belong to the two sides of a gap. Then
+/// nodes do not connect them, or only by a long way around the gap.
 class ContinuousTissue
 {
 public:
@@ -51,7 +51,7 @@ public:
     ring_.assign(model.voxels.size(), 0);
   }
 
-  /// Of two or more nodes that are joined, the one that stands for all.
+  /// The node that represents all nodes joined to `node`.
   std::int32_t joined(std::int32_t node) const { return one_.empty() ? node : one_[node]; }
 
   void begin_at(std::int32_t node)
@@ -62,7 +62,7 @@ public:
     found_.clear();
     rings_ = 0;
   }
-  /// From the node towards the middle of the voxels around it; 0 in models without flaps [m].
+  /// Vector from the node towards the middle of the voxels around it [m]; 0 in models without flaps.
   Vector3d inwards() const
   {
     Vector3d sum(0, 0, 0);
@@ -76,7 +76,7 @@ public:
     if (one_.empty())
       return true;
     const auto at = rest_place(model_, model_.nodes[node_]), place = rest_place(model_, model_.voxels[voxel]);
-    std::int32_t apart = 0;  // in voxels
+    std::int32_t apart = 0;  // distance in voxels
     for (std::size_t a = 0; a < 3; ++a)
       apart = std::max({ apart, place[a] - at[a], at[a] - place[a] - 1 });
     while (rings_ < apart + 1)
@@ -113,9 +113,9 @@ private:
 
   const Model& model_;
   std::vector<std::int32_t> one_;                     ///< see joined(); empty without flaps
-  std::vector<std::vector<std::int32_t>> voxels_of_;  ///< around each node that stands for others
+  std::vector<std::vector<std::int32_t>> voxels_of_;  ///< voxels around each representative node
   std::int32_t node_ = 0, rings_ = 0;
-  std::vector<std::int32_t> ring_;   ///< of each voxel, from 1; 0: not found
+  std::vector<std::int32_t> ring_;   ///< ring of each voxel, from 1; 0: not found
   std::vector<std::int32_t> found_;  ///< voxels in the order of rings
 };
 
@@ -135,7 +135,7 @@ public:
     mark(model.rigid);
     mark(model.sliding);
     mark(model.prescribed);
-    // settle_joints() gives what restricts a node to those that are joined to it
+    // a restricted node also restricts the nodes joined to it: see settle_joints()
     std::vector<bool> any(model.nodes.size(), false);
     for (std::size_t n = 0; n < any.size(); ++n)
       if (restricted_[n])
@@ -146,11 +146,11 @@ public:
 
   double edge() const { return edge_; }
 
-  /// Fills the master and the ratio. Returns whether there is a master.
+  /// Fills the candidate's master and ratio. Returns whether there is a master.
   bool find(Candidate& candidate)
   {
     tissue_.begin_at(candidate.node.node);
-    // a little inwards, since the node may be on the wall of a gap
+    // move the foot a little inwards, because the node may be on the wall of a gap
     const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal + 1e-3 * tissue_.inwards();
     for (double height = 1; height < 3.1; height += 0.25)
     {
@@ -164,7 +164,7 @@ public:
     return find_beside(foot + 1.5 * edge_ * candidate.normal, candidate);
   }
 
-  /// Distance of a node from the candidate's surface, positive in the tissue [m]; not a number where it is not known.
+  /// Distance of a node from the candidate's surface, positive in the tissue [m]; NaN where it is unknown.
   double distance(const Candidate& candidate, std::int32_t node) const
   {
     if (candidate.node.surface >= 0)
@@ -184,7 +184,7 @@ private:
 
   Vector3d rest(std::int32_t node) const { return to_vector(rest_position(model_, node)); }
 
-  /// The nearest voxel with free corners within 2.5 edges of a point above the surface.
+  /// Takes a master from the nearest voxel with free corners within 2.5 edges of a point above the surface.
   bool find_beside(const Vector3d& above, Candidate& candidate)
   {
     constexpr std::int32_t reach = 3;
@@ -206,7 +206,7 @@ private:
                        [&](const auto& place) { return take(place.second, above, candidate); });
   }
 
-  /// Takes the corner nearest to y of a voxel with free corners as master.
+  /// Makes the corner nearest to y of the voxel at `place` the master, if all corners are free.
   bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate)
   {
     std::int32_t voxel = index_.find(place);
@@ -220,7 +220,7 @@ private:
     const std::int32_t master = *std::min_element(
         corners.begin(), corners.end(),
         [&](std::int32_t a, std::int32_t b) { return (rest(a) - y).squaredNorm() < (rest(b) - y).squaredNorm(); });
-    // free corners are low only where a crop ends the constraint
+    // a free corner is close to the surface only where a crop ends the constraint
     const double height = distance(candidate, master);
     if (!(height >= 0.5 * edge_))
       return false;
@@ -304,7 +304,7 @@ private:
     return nearest;
   }
 
-  /// The tissue's side; where it is on both, the side of a node at the distance `outwards`.
+  /// The side of a surface with tissue, +1 or -1; if both have tissue, the side of a node at the distance `outwards`.
   double side_at(const PreparedSurface& surface, double outwards)
   {
     const auto known = side_.find(&surface);
@@ -334,13 +334,13 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor)
 {
-  // without the effect, nodes near bones stay held or keep their distance where they are
+  // without the effect, nodes near bones stay rigid or slide at their own distance
   if (scene.accuracy.boundary != "true" || scene.switched_off.has(Effect::attachment))
     return;
   CandidateFinder candidates(scene, surfaces, frame, model);
   MasterFinder masters(frame, model);
   std::size_t held = 0, freed = 0;
-  // keeps the nodes of a list that are not attached
+  // attaches nodes of a list, and keeps the others in the list
   const auto attach = [&](auto& list)
   {
     std::size_t kept = 0;

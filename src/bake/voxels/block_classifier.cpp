@@ -248,7 +248,7 @@ void BlockClassifier::decide_depth(std::size_t field, const Box& box, BlockState
 
 void BlockClassifier::decide_sight(std::size_t volume, const Box& box, BlockState& state) const
 {
-  // undecided as long as a hiding surface may pass through the block
+  // the answer is undecided as long as a hiding surface may pass through the block
   const Volumes::Entry& entry = volumes_.entries()[volume];
   if (entry.any_hiding([&](std::size_t b) { return state.inside_body[b] == Answer::unknown; }))
     return;

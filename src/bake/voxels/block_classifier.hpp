@@ -12,13 +12,13 @@ enum class Answer : std::int8_t
   unknown
 };
 
-/// What is known about all points of a block of voxels.
+/// Facts that are known to hold for all points of a block of voxels.
 struct BlockState
 {
   struct Depth
   {
-    bool known = false;  ///< no threshold of the depth field lies in the block
-    double value = 0;    ///< if known: depth of the block's centre [m], between the same thresholds as all its depths
+    bool known = false;  ///< whether no threshold of the depth field lies in the block
+    double value = 0;    ///< if known: depth of the centre [m]; all depths lie between the same thresholds
   };
   std::vector<Answer> inside_body;    ///< one answer per body
   std::vector<Depth> depth;           ///< one per depth field
@@ -38,9 +38,9 @@ public:
   /// Adds the voxels of the block from `begin` to `end` (exclusive).
   void visit(const VoxelPlace& begin, const VoxelPlace& end);
 
-  /// For each sample of a voxel whether it is tissue.
+  /// Tells for each sample of a voxel whether it is tissue.
   std::vector<char> tissue_samples(const VoxelPlace& place);
-  /// Adds the part of a voxel that the samples chosen represent. The voxel's fill is that part too.
+  /// Adds the part of a voxel that the `chosen` samples represent. The fill of the added voxel is that of the part.
   void add_part(const VoxelPlace& place, const std::vector<char>& chosen);
 
   Voxels take() { return std::move(voxels_); }
@@ -50,7 +50,7 @@ private:
   void visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state);
   void sample_alone(const VoxelPlace& place);
 
-  // These determine unknown entries of a block's state. decide() returns whether all entries are known then.
+  // The next functions determine unknown entries of a block's state. decide() returns whether all are known then.
   bool decide(const Box& box, BlockState& state);
   void decide_volume(std::size_t volume, const Box& box, BlockState& state);
   void decide_body(std::size_t body, const Box& box, BlockState& state) const;
@@ -58,7 +58,7 @@ private:
   void decide_sight(std::size_t volume, const Box& box, BlockState& state) const;
   Answer volume_answer(std::size_t volume, const Box& box, const BlockState& state) const;
 
-  // These sample a voxel.
+  // The next functions sample a voxel.
   void sample(const Box& box, const BlockState& state);
   bool sample_volume(std::size_t volume, const Vector3d& p, const BlockState& state);
   bool sample_body(std::size_t body, const Vector3d& p, const BlockState& state);
@@ -75,20 +75,20 @@ private:
   const std::vector<const PreparedSurface*>& kept_at_;
   double voxel_volume_;
   double reach_;                               ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;              ///< from the voxel's lower corner to the samples, in voxel edges
-  const std::vector<char>* chosen_ = nullptr;  ///< samples that are looked at; null: all
-  std::vector<char>* is_tissue_ = nullptr;     ///< receives whether each sample is tissue; null: it is not asked for
+  std::vector<Vector3d> offsets_;              ///< offsets of the samples from the voxel's lower corner, in voxel edges
+  const std::vector<char>* chosen_ = nullptr;  ///< samples to use; null: all
+  std::vector<char>* is_tissue_ = nullptr;     ///< receives whether each sample is tissue; null: not needed
   Vector3d mean_offset_{ 0, 0, 0 };
   Voxels voxels_;
 
-  /// Proportions of a voxel, or of each voxel of a uniform block, by index.
+  /// Proportions of materials and muscles in a voxel, or in each voxel of a uniform block, by index.
   struct Proportions
   {
     std::vector<double> material, muscle, volume;
     std::vector<std::vector<double>> band;
   };
   Proportions nothing_, share_;
-  Vector3d tissue_offset_{ 0, 0, 0 };  ///< sum of the offsets of the samples with a material, times their shares
+  Vector3d tissue_offset_{ 0, 0, 0 };  ///< sum of the samples' offsets times their shares of material
 
   // Data computed once per sampled voxel, near its middle, and used for all its samples.
   struct NearbyBody
@@ -101,16 +101,16 @@ private:
   struct NearbyDepth
   {
     bool known = false;
-    std::int32_t triangle = -1;  ///< closest to the middle
-    double distance = 0;         ///< of the middle [m]
-    double depth = 0;            ///< of the middle [m]
-    bool steady = false;         ///< no border is so near that the depth may change sign without passing 0
+    std::int32_t triangle = -1;  ///< triangle closest to the voxel's middle
+    double distance = 0;         ///< distance of the middle from the surface [m]
+    double depth = 0;            ///< depth of the middle [m]
+    bool steady = false;         ///< false: a border is so near that the depth may change sign without passing 0
   };
   Vector3d middle_{ 0, 0, 0 };
   std::vector<NearbyBody> nearby_body_;
   std::vector<NearbyDepth> nearby_depth_;
 
-  // answers found for the current sample; -1 or NaN: none yet
+  // answers for the current sample; -1 or NaN: not computed yet
   std::vector<std::int8_t> body_here_;
   std::vector<double> depth_here_;
 };

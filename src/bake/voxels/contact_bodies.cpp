@@ -10,13 +10,13 @@ namespace frontalis
 namespace
 {
 
-constexpr double largest_spacing = 0.5e-3;  // of samples [m]
-constexpr double spacing_share = 0.5;       // the same in shortest voxel edges
-constexpr double reach_share = 2;           // how far from a surface there are samples, in longest voxel edges
-constexpr double deepest_inside = 20e-3;    // how deep in a body there are samples, more than any tissue is thick [m]
-constexpr double overlap_share = 0.5;       // how deep tissue may lie in a body at rest, in shortest voxel edges
+constexpr double largest_spacing = 0.5e-3;  // largest distance between samples of the field [m]
+constexpr double spacing_share = 0.5;       // largest distance between samples, over the shortest voxel edge
+constexpr double reach_share = 2;           // reach of the field from a surface, over the longest voxel edge
+constexpr double deepest_inside = 20e-3;    // reach of the field into a body, more than the thickness of tissue [m]
+constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, over the shortest voxel edge
 
-// A closed surface, outwards positive.
+// A closed surface. The distance from it is positive outside.
 struct Body
 {
   const PreparedSurface* surface;
@@ -123,7 +123,7 @@ Vector3 centre_of(const TriangleMesh& mesh)
   return to_array(box.center());
 }
 
-// Index in the model of the bone of this name, added if it is new; -1: none.
+// Index of a bone in the model, which is added if it is new; -1 without a name.
 std::int32_t bone_of(const std::string& name, Model& model)
 {
   if (name.empty())

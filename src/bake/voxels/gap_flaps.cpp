@@ -15,7 +15,7 @@ namespace
 
 constexpr int most_flaps = 100;
 
-/// A point of the grid and the voxels around it. Those of one group are joined there.
+/// A point of the grid and the voxels around it. Voxels of the same group are joined at the point.
 struct GridPoint
 {
   VoxelPlace at{};
@@ -42,7 +42,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
     joined.insert(tissue.joined.begin(), tissue.joined.end());
   VoxelIndex all(voxels.place, grid_.size);
 
-  // the points of the grid around all tissue that was looked at
+  // the points of the grid around all tissue at gaps and beside them
   std::map<VoxelPlace, GridPoint> points;
   for (const Tissue& tissue : tissue_)
     for (int c = 0; c < 8; ++c)
@@ -81,7 +81,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
       point.group.push_back(sets.find_set(a));
   }
 
-  // Voxels at points with several groups, and copies, are given flaps; sets of them that are joined get one together.
+  // Voxels at points with several groups, and copies of voxels, need flaps. Voxels that are joined get the same flap.
   std::map<std::uint32_t, std::vector<const GridPoint*>> points_of;
   for (const auto& [at, point] : points)
     if (point.parted())
@@ -156,7 +156,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
       ++f;
     if (f < 4)
       continue;
-    // the list meets itself around the end of a gap: voxel by voxel
+    // the joined voxels extend around the end of a gap and meet themselves: choose a flap for each voxel
     for (const std::uint32_t voxel : list)
     {
       for (f = 0; f < most_flaps && !put({ voxel }, f); ++f)
@@ -167,7 +167,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
     }
   }
 
-  // joints of a voxel in a flap: at each of its corners, to the lowest flap of its group
+  // join a voxel in a flap, at each of its corners, to the voxel of its group in the lowest flap
   for (const auto& [at, point] : points)
     for (std::size_t b = 0; b < point.voxel.size(); ++b)
     {

@@ -5,7 +5,7 @@
 namespace frontalis
 {
 
-/// The surfaces that separate tissue: those that bound tissue volumes, and slits. Scene coordinates.
+/// The walls that separate tissue: bodies (see Volumes::Entry) that bound tissue volumes, and slits. Scene coordinates.
 class GapWalls
 {
 public:
@@ -19,24 +19,24 @@ public:
   GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces);
 
   /// For each cell of the grid, in the order of places, whether a slit passes through it or, with `thin_gaps`, a gap
-  /// that is less than 2.2 voxel edges wide across a wall.
+  /// beside a wall, less than 2.2 voxel edges wide.
   std::vector<char> cells_with_gaps(const Volumes& volumes, const Grid& grid, bool thin_gaps,
                                     BakeMonitor& monitor) const;
 
   std::vector<Piece> pieces_in(const Box& box) const;
   /// The bodies that enclose a point, one bit each.
   std::uint64_t enclosing(const Vector3d& p) const;
-  /// The same for a point p of a box, from those that enclose its centre and the pieces in the box.
+  /// The bodies that enclose a point p of a box, found from those around the box's centre and the pieces in the box.
   std::uint64_t enclosing(const Vector3d& p, const Vector3d& centre, std::uint64_t at_centre,
                           const std::vector<Piece>& pieces) const;
-  /// Whether tissue between p and q is interrupted: by a slit, or by something else with tissue behind it. `enclosing`:
-  /// of p; `pieces`: at least those between the points.
+  /// Whether the line from p to q is cut by a slit, or leaves the tissue and enters it again. `enclosing`: bodies
+  /// around p; `pieces`: at least the pieces between the points.
   bool part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
   {
     return way_out(p, enclosing, q, pieces) == Way::and_in;
   }
 
-  /// Whether the way from a point p of the tissue to q leaves the tissue or is cut by a slit.
+  /// Whether the line from a point p of the tissue to q leaves the tissue or is cut by a slit.
   bool leaves(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
   {
     return way_out(p, enclosing, q, pieces) != Way::inside;
@@ -46,11 +46,11 @@ private:
   enum class Way
   {
     inside,
-    out,     ///< leaves the tissue
-    and_in,  ///< leaves it and comes back, or is cut by a slit
+    out,     ///< the line leaves the tissue
+    and_in,  ///< the line leaves the tissue and comes back, or is cut by a slit
   };
   Way way_out(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const;
-  /// The conditions of a tissue volume; bits of bodies.
+  /// The conditions of a tissue volume, with one bit per body.
   struct Tissue
   {
     std::uint64_t closed_by = 0, inside = 0, outside = 0;
@@ -60,7 +60,7 @@ private:
   double gap_at(const Volumes& volumes, const Vector3d& p, const Vector3d& away, double widest) const;
 
   std::vector<const PreparedSurface*> walls_;  ///< bodies, then slits
-  std::vector<double> sign_;                   ///< of the normals that point out of the tissue, for each body
+  std::vector<double> sign_;                   ///< for each body the factor that turns its normals out of the tissue
   std::size_t bodies_ = 0;
   std::vector<Tissue> tissue_;
 };

@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr int points_per_edge = 6;
-constexpr double reach = 0.45;  // of a search for joined points [voxel edges]
+constexpr double reach = 0.45;  // largest distance of points that are tested for a joint [voxel edges]
 
 using Sets = boost::disjoint_sets_with_storage<>;
 
@@ -25,7 +25,7 @@ std::uint64_t pair_of(std::uint32_t a, std::uint32_t b)
 
 VoxelPlace sum(const VoxelPlace& a, int i, int j, int k) { return { { a[0] + i, a[1] + j, a[2] + k } }; }
 
-/// Calls call(neighbour) for the 26 neighbours of a place, or for those that come after it.
+/// Calls call(neighbour) for the 26 neighbours of a place, or for those that come after the place in the grid.
 template <class Call>
 void each_neighbour(const VoxelPlace& place, bool half, const Call& call)
 {
@@ -197,7 +197,7 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
       }
   if (any)
     return;
-  // little tissue: the nearest points
+  // with so little tissue no points are close: test the nearest two
   double best = std::numeric_limits<double>::max();
   std::pair<std::size_t, std::size_t> nearest;
   for (std::size_t i = 0; i < tissue.points.size(); ++i)
@@ -306,7 +306,7 @@ bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) c
   constexpr std::size_t most_looks = 8;
   const auto looks = static_cast<std::ptrdiff_t>(std::min(near.size(), most_looks));
   std::partial_sort(near.begin(), near.begin() + looks, near.end());
-  // surfaces of bone and the limits of tissue may be a little apart
+  // the surface of a bone and the limit of the tissue may be a little apart
   const double tolerance = 0.1 * grid_.spacing.minCoeff();
   return std::any_of(near.begin(), near.begin() + looks,
                      [&](const auto& entry)

@@ -9,54 +9,52 @@
 namespace frontalis
 {
 
-/// Tissue near gaps that are thinner than voxels, and slits: which of it is joined to which.
-///
-/// In each voxel near a gap points of the tissue are joined if the line between them does not leave the tissue and is
-/// not cut by a slit; what is joined forms a part. Parts of neighbouring voxels are joined alike. A voxel with several
-/// parts is replaced by one voxel per part, with its own filling. At a point of the grid the voxels around it form
-/// groups that are joined there; each group gets a node of its own, because voxels of groups that are not joined are
-/// put in different flaps (Model::flaps).
+/// Separates the two sides of slits and of gaps that are thinner than voxels.  In each voxel near a gap, two points of
+/// the tissue are joined if the line between them does not leave the tissue and no slit cuts it. Points that are joined
+/// form a part; parts of neighbouring voxels are joined by the same rule. A voxel with several parts is replaced by one
+/// voxel per part, with its own filling. Around a point of the grid, voxels that are joined form a group, and each
+/// group gets a node of its own: voxels of different groups are put in different flaps (Model::flaps).
 class Gaps
 {
 public:
   /// The arguments must outlive this object.
   Gaps(const Scene& scene, const Volumes& volumes, const PreparedSurfaces& surfaces, const Grid& grid);
 
-  /// Parts the voxels at gaps: sets their flaps and joints. Voxels that are replaced get flap -1. A part that fills
-  /// less than fill_min of a voxel, or has no sample, is counted to the largest part of that voxel. Changes nothing if
-  /// there is no gap.
+  /// Divides the voxels at gaps and sets their flaps and joints. Voxels that are replaced get flap -1. A part that
+  /// fills less than fill_min of a voxel, or has no sample, is counted to the largest part of that voxel. Changes
+  /// nothing if there is no gap.
   void part(Voxels& voxels, BakeMonitor& monitor);
 
-  /// The voxel whose tissue a point in or just beside the tissue belongs to, if it is near a gap.
+  /// The voxel whose tissue contains a point near a gap, or is nearest to it.
   struct Owner
   {
-    Vector3d centre{ 0, 0, 0 };  ///< of the voxel, scene coordinates [m]
+    Vector3d centre{ 0, 0, 0 };  ///< centre of the voxel, scene coordinates [m]
     int flap = 0;
   };
   std::optional<Owner> owner(const Vector3d& p) const;
 
-  /// Whether the tissue of a voxel extends to a point of a surface, so that the surface may hold it: there is no gap in
-  /// between. `centre`: of the voxel, scene coordinates. True for voxels that are not near a gap.
+  /// Whether the tissue of a voxel extends to a point of a surface without a gap in between, so that the surface may
+  /// hold it. `centre`: centre of the voxel, scene coordinates. True for voxels that are not near a gap.
   bool extends_to(const Vector3d& centre, int flap, const Vector3d& point) const;
   bool near_gap(const Vector3d& p) const { return level(place_of(p)) == Level::at_gap; }
 
 private:
-  /// Tissue in a voxel.
+  /// The tissue in a voxel.
   struct Tissue
   {
     std::uint32_t voxel = 0;
     std::vector<Vector3d> points;
     std::vector<int> sample;               ///< number of each point in the sequence of samples
     std::vector<std::uint64_t> enclosing;  ///< bodies around each point
-    std::vector<int> part;                 ///< of each point; -1: of none that is kept
-    std::vector<GapWalls::Piece> pieces;   ///< in and around the voxel
-    std::vector<std::uint32_t> copies;     ///< voxels that stand for the parts
-    std::vector<std::uint64_t> joined;     ///< pairs of voxels of this and of neighbours that are joined
+    std::vector<int> part;                 ///< part of each point; -1: a part that is not kept
+    std::vector<GapWalls::Piece> pieces;   ///< pieces of walls in and around the voxel
+    std::vector<std::uint32_t> copies;     ///< voxels that represent the parts
+    std::vector<std::uint64_t> joined;     ///< joined pairs of a voxel of this tissue and one of a neighbour
   };
   enum class Level : char
   {
-    far,     ///< nothing is asked
-    beside,  ///< neighbour of a voxel at a gap; in one part
+    far,     ///< no neighbour is at a gap
+    beside,  ///< neighbour of a voxel at a gap; has one part
     at_gap
   };
 
@@ -75,15 +73,15 @@ private:
   const Volumes& volumes_;
   const Grid& grid_;
   const PreparedSurfaces& surfaces_;
-  std::optional<GapWalls> walls_;  // only if there may be gaps
+  std::optional<GapWalls> walls_;  // set only if there may be gaps
   bool thin_gaps_;
-  int samples_;  ///< along each edge of the scene's voxels
+  int samples_;  ///< number of samples along each voxel edge
   std::vector<const PreparedSurface*> none_;
-  std::vector<Level> level_;             ///< of each cell of the grid; empty: there is no gap
-  std::vector<std::int32_t> tissue_of_;  ///< for each cell its entry in tissue_, or -1
+  std::vector<Level> level_;             ///< level of each cell of the grid; empty: there is no gap
+  std::vector<std::int32_t> tissue_of_;  ///< for each cell its index in tissue_, or -1
   std::vector<Tissue> tissue_;
-  std::vector<std::int8_t> flap_;  ///< of each voxel
-  std::vector<VoxelPlace> place_;  ///< of each voxel
+  std::vector<std::int8_t> flap_;  ///< flap of each voxel
+  std::vector<VoxelPlace> place_;  ///< place of each voxel
 };
 
 }  // namespace frontalis

@@ -61,7 +61,7 @@ void renumber(std::vector<Restricted>& list, const std::vector<std::int32_t>& nu
   list.resize(kept);
 }
 
-/// Keeps the entries of the voxels that stay. In each list, those of voxel e are begin[e] .. begin[e + 1].
+/// Keeps the entries of the voxels that stay. In each list, voxel e has the entries begin[e] .. begin[e + 1].
 template <class... Lists>
 void keep_entries(const std::vector<bool>& keep, std::vector<std::int32_t>& begin, Lists&... lists)
 {

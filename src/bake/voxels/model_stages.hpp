@@ -7,7 +7,7 @@ namespace frontalis
 
 struct MuscleFibres;
 
-/// Number of the flap that a voxel of the model is in, from 1; 0: the body.
+/// Number of the flap that has a voxel of the model, from 1; 0: the voxel is in the body.
 inline int flap_of(const Model& model, std::size_t voxel)
 {
   const auto above = [&](const Model::Flap& flap) { return flap.first > model.voxels[voxel][2]; };
@@ -19,7 +19,7 @@ struct LocalFrame
 {
   int first = 0;
   Vector3d origin{ 0, 0, 0 };  ///< scene coordinates [m]
-  const Gaps* gaps = nullptr;  ///< null: there are none
+  const Gaps* gaps = nullptr;  ///< null: the model has no gaps
 
   int scene_axis(int local) const { return (first + local) % 3; }
   /// Local components of a vector given by its scene components.
@@ -52,7 +52,7 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
-  /// The voxel whose tissue a point in local coordinates belongs to, if it is near a gap; -1 elsewhere.
+  /// The voxel to whose tissue a point near a gap belongs; -1 elsewhere. Local coordinates.
   std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
@@ -69,54 +69,54 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
 
 /// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.
 void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
-/// The poses of bones in expressions, action units and the demo, once the model has its bones.
+/// Copies the poses of bones in expressions, action units and the demo. The model must have its bones.
 void copy_poses(const Scene& scene, Model& model);
 
-/// Lowers the weights of muscles where the scene makes them weak. The last stage: reports count whole muscles.
+/// Lowers the weights of muscles where the scene weakens them. The last stage, because reports count whole muscles.
 void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the
-/// side with most of the tissue within two voxels of it. If several constraints apply to a node, rigid takes precedence
-/// over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several sliding
-/// surfaces the nearest. Throws Error for a constraint that restricts no node.
+/// side with most of the tissue that is at most two voxels away. If several constraints apply to a node, rigid takes
+/// precedence over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several
+/// sliding surfaces the nearest. Throws Error for a constraint that restricts no node.
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
-/// Of the nodes `near` a bone, those where a muscle originates: corners of its voxels at the end of its fibres (15 % of
-/// their length) of which the larger part is near. Empty if none of its ends is near.
+/// Chooses among the nodes `near` a bone those where a muscle originates: corners of its voxels in one end (15 %) of
+/// the fibres' length, the end with the larger proportion of near nodes. Empty if neither end is near.
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 
-/// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: those of constraints
-/// without a `within` of their own.
+/// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: the surfaces of
+/// constraints without a `within` of their own.
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
-/// With `boundary: true`, turns the rigid and sliding nodes of those constraints into attached nodes. The master of a
-/// node is a corner of the voxel that holds the nearest point up the surface's normal, one to three edges high, all of
-/// whose corners are free. Where there is none, tissue is too thin: nodes up to half an edge above the surface stay
-/// restricted, and the others become free. Sliding with friction stays as it is.
+/// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. To find
+/// the master of a node, goes along the surface's normal, one to three voxel edges high, to the first voxel with free
+/// corners only, and takes one of them. If there is none, tissue is too thin: nodes up to half an edge above the
+/// surface stay restricted, and the others become free. Nodes that slide with friction are not attached.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 
-/// Makes joints of flaps agree with what restricts their nodes: nodes that are joined rest at one place and so are
-/// restricted alike, unless tissue on two sides of a gap is attached to a bone differently.
+/// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place, so they
+/// are restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
 void settle_joints(Model& model);
 
-/// Removes loose components. Only a common face connects voxels, not an edge or a corner. It keeps the largest
+/// Removes loose components of voxels, which only common faces connect, not edges or corners. Keeps the largest
 /// component and all others with a restricted node and at least a hundredth of the largest one's voxels.
 void remove_islands(Model& model, BakeMonitor& monitor);
 
 /// Mixes the material of each layer that is too thin to be sampled into the voxels through which its surface passes.
 /// Area in voxels that were left out is added to the voxel below. All these voxels get the same proportion of the
-/// layer's material, which preserves its volume. So no voxel with little tissue gets stiffer than others, which would
-/// shorten the time step.
+/// layer's material, because a voxel with little tissue and more of a stiff layer would shorten the time step. The
+/// volume of the layer is preserved.
 void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
 /// Fills the model's directions of materials whose fibre families follow a surface. In each voxel the families are
 /// turned by the shortest rotation from the normal of their plane to the surface's normal at the point closest to the
-/// voxel's centre. The sign of the plane's normal is that which agrees with the surface's normals in most voxels. In a
-/// voxel with several such materials the one with the largest proportion is used.
+/// voxel's centre. The sign of the plane's normal is chosen to agree with the surface's normals in most voxels. In a
+/// voxel with several such materials, the one with the largest proportion is used.
 void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
@@ -126,7 +126,7 @@ struct BoundMesh
   TriangleMesh mesh;
   Binding binding;
   std::size_t triangles = 0;    ///< number of triangles inside the crop
-  std::size_t too_far = 0;      ///< number of these with a vertex too far from every voxel
+  std::size_t too_far = 0;      ///< number of those triangles with a vertex too far from every voxel
   Vector3d unbound{ 0, 0, 0 };  ///< one such vertex, scene coordinates [m]
 };
 /// Largest distance of a bound point from its voxel [m].
@@ -140,7 +140,7 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
-/// Volumes of the muscles that are bounded by surfaces, in the order of the model's muscles.
+/// Volumes of the muscles that surfaces bound, in the order of the model's muscles.
 std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double points_per_muscle = 10000;  // about, for the integration
+constexpr double points_per_muscle = 10000;  // approximate number of points of the integration
 
 /// Appends the coordinates x [m] at which the line along x through (y, z) enters (+1) or leaves (-1) a mesh.
 void add_crossings(const TriangleTree& tree, const Box& box, double y, double z, double step,
@@ -32,7 +32,7 @@ void add_crossings(const TriangleTree& tree, const Box& box, double y, double z,
   }
 }
 
-/// Whether a point of a muscle lies in the tissue and within the muscle's limits, or the condition that fails.
+/// Tells whether a point of a muscle lies in the tissue and within the muscle's limits, or the condition that fails.
 Membership in_tissue(const Volumes& volumes, const Volumes::Entry& muscle, const Vector3d& p)
 {
   Membership best = Membership::cropped;

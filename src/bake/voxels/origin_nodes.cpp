@@ -5,14 +5,14 @@ namespace frontalis
 namespace
 {
 
-constexpr double end_share = 0.15;  // of the fibres' length
+constexpr double end_share = 0.15;  // length of a muscle's end over that of its fibres
 
 }  // namespace
 
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model)
 {
-  std::vector<std::pair<std::size_t, double>> voxels;  // with their places along the fibres
+  std::vector<std::pair<std::size_t, double>> voxels;  // voxels of the muscle, with their coordinates along the fibres
   double first = 1e300, last = -1e300;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (std::int32_t f = model.fibre_begin[e]; f < model.fibre_begin[e + 1]; ++f)
@@ -34,7 +34,7 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
           if (near[node])
             ends[end].push_back(node);
         }
-  // the end that lies on the bone, even if the other one is wider and has more nodes near the bone
+  // compare proportions, not numbers: the other end may be wider and so have more nodes near the bone
   const auto share = [&](int end) { return static_cast<double>(ends[end].size()) / corners[end]; };
   return share(0) >= share(1) ? ends[0] : ends[1];
 }

@@ -12,7 +12,7 @@ namespace
 
 constexpr std::size_t grain = 4096;
 
-/// Signed distance [m] of each node that a surface restricts; not a number for the others.
+/// Signed distance [m] of each node that a surface restricts; NaN for all other nodes.
 using Distances = std::vector<double>;
 
 /// Finds the nodes that a surface restricts.
@@ -35,7 +35,7 @@ public:
           voxels_of_[n].push_back(e);
   }
 
-  /// Distances of nodes from a surface of a constraint or a load. `within` below 0 stands for the default.
+  /// Distances of nodes from a surface of a constraint or a load. A `within` below 0 means the default.
   Distances find(const PreparedSurface& surface, double within, const Region& crop)
   {
     const double reach = reach_of(within);
@@ -52,7 +52,7 @@ public:
                    const ClosestPoint closest = surface.tree().closest(p, bound);
                    if (closest.triangle < 0)
                      return;
-                   // on the far side, but not merely beside an open surface
+                   // accept farther nodes on the far side of the surface, but not those beside an open surface
                    const double height = (p - closest.point).dot(surface.pseudonormal(closest));
                    if ((closest.distance <= reach || side * height < -0.5 * closest.distance) &&
                        tissue_extends(n, closest.point))
@@ -98,14 +98,14 @@ private:
   const LocalFrame& frame_;
   const Model& model_;
   BakeMonitor& monitor_;
-  std::vector<std::vector<std::size_t>> voxels_of_;  ///< of each node those near gaps; empty without gaps
-  double edge_ = 0;                                  ///< longest of a voxel [m]
+  std::vector<std::vector<std::size_t>> voxels_of_;  ///< for each node its voxels near gaps; empty without gaps
+  double edge_ = 0;                                  ///< longest edge of a voxel [m]
   std::vector<Vector3d> positions_;
   std::map<const PreparedSurface*, double> side_;
   std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;
 };
 
-/// Index in the model of the bone that a constraint moves with, added if it is new; -1: none.
+/// Index in the model of the bone of a constraint, which is added if it is new; -1 without a bone.
 std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
 {
   if (constraint.bone.empty())
@@ -136,7 +136,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     Kind kind = Kind::free;
     std::int32_t of = -1;  // bone of a rigid node, surface of a sliding one
     std::int32_t constraint = -1;
-    double distance = 0;  // from the surface of a sliding node [m]
+    double distance = 0;  // distance of a sliding node from its surface [m]
   };
   std::vector<Restriction> restrictions(nodes);
   std::vector<const PreparedSurface*> bones;  // surfaces that restrict nodes
@@ -144,8 +144,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     if (constraint.kind != SceneConstraint::Kind::contact)
       for (const std::string& name : constraint.surfaces)
         bones.push_back(&named_surface(surfaces, name, place_in_scene(scene, "constraint", constraint)));
-  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; of surfaces
-  // to slide on, it is the sheet that faces tissue
+  // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; with
+  // `slides`, `surface` is the sheet of the surface that faces tissue
   const auto for_each_node = [&](const std::string& place, const std::vector<std::string>& names, const auto& part,
                                  const auto& restrict, bool slides = false)
   {
@@ -261,7 +261,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
         true);
   }
 
-  // Nodes may also slide on to bones that hold others.
+  // Nodes may also slide on to bones that hold other nodes rigidly: add the sheets of these bones.
   for (std::size_t s = 0; s < sheets.size(); ++s)
     for (const SceneConstraint& constraint : scene.constraints)
       if (constraint.kind == SceneConstraint::Kind::rigid &&
@@ -275,12 +275,12 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
               std::any_of(sheets[s].begin(), sheets[s].end(), is_it))
             continue;
           const PreparedSurface& sheet = finder.sheet_of(whole, bones);
-          // no tissue faces it if it is whole
+          // a sheet that is the whole surface means that no tissue faces it
           if (sheet.mesh().triangles.size() < whole.mesh().triangles.size())
             sheets[s].push_back({ &whole, &sheet });
         }
 
-  std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // of the nodes that slide on each
+  std::vector<std::vector<std::array<double, 3>>> rest(sheets.size());  // positions of the nodes that slide on each
   for (std::size_t n = 0; n < nodes; ++n)
     if (restrictions[n].kind == Kind::sliding)
       rest[restrictions[n].of].push_back(rest_position(model, static_cast<std::int32_t>(n)));

@@ -12,13 +12,13 @@ namespace frontalis
 namespace
 {
 
-// Tissue is looked for at this distance from a triangle on both sides, in longest voxel edges.
+// Distance from a triangle, on both sides, at which tissue is looked for, in longest voxel edges.
 constexpr double search_distance = 0.75;
 
-// Share of a surface's area that must have tissue on one side only, less that with tissue on the other side only.
+// Least magnitude of area_behind() of a surface that is a boundary of the tissue.
 constexpr double least_agreement = 0.2;
 
-// Area with tissue behind it less area with tissue in front of it, over the whole area.
+// The area with tissue behind it minus the area with tissue in front of it, over the whole area.
 double area_behind(const TriangleMesh& mesh, const LocalFrame& frame, const Model& model, const VoxelIndex& voxels)
 {
   const Vector3d spacing = to_vector(model.spacing);

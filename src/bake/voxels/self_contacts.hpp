@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Fills the surfaces of the model that touch each other, turned so that tissue is behind them. Throws Error for a
-/// surface of which nothing can be bound, and for one that is not a boundary of the tissue.
+/// Fills the surfaces of the model that touch each other, oriented so that tissue is behind them. Throws Error if no
+/// part of a surface can be bound, or if it is not a boundary of the tissue.
 void bind_self_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                         BakeMonitor& monitor);
 

@@ -14,12 +14,11 @@ namespace frontalis
 namespace
 {
 
-// Length of edges over that of a voxel. At 1.2 a bent plate has 1 % too much energy, at 0.8 8 % and at 0.5 50 %; longer
-// ones resolve short wrinkles less well (doc/wrinkles.md).
+// Edge length of triangles over that of voxels. The energy of a bent plate is too large by 1 % at 1.2, 8 % at 0.8 and
+// 50 % at 0.5; longer edges resolve short wrinkles less well (doc/wrinkles.md).
 constexpr double edge_ratio = 1.2;
 
-// Largest distance of a vertex from its voxel in voxel edges. Farther ones would have large weights, and shorten the
-// time step.
+// Largest distance of a vertex from its voxel in voxel edges. Large weights farther away would shorten the time step.
 constexpr double farthest = 1;
 
 // moves vertices against their normals
@@ -36,16 +35,16 @@ void sink(TriangleMesh& mesh, double depth)
     mesh.vertices[v] = to_array(to_vector(mesh.vertices[v]) - depth * normals[v].normalized());
 }
 
-// Layers that are shells and lie on each other.
+// A stack of adjacent layers that are shells.
 struct Plate
 {
   const Layer* top = nullptr;
   std::string name;
   std::size_t layers = 0;
-  int material = 0;  // of the top layer
+  int material = 0;  // material of the top layer
   double thickness = 0;
-  // sums over the layers of Young's modulus times thickness, and of that times depth, depth squared and Poisson's
-  // ratio; depth below the surface; depth squared is that averaged over the layer
+  // `stiffness` is the sum over the layers of Young's modulus times thickness. The other sums have as further factor
+  // the mean depth below the surface, the mean squared depth, or Poisson's ratio of the layer.
   double stiffness = 0, first = 0, second = 0, poisson = 0;
 
   void add(const Layer& layer, int index, const Material& of, double depth)
@@ -67,9 +66,9 @@ struct Plate
   }
   double neutral() const { return first / stiffness; }
 
-  // Turns several layers into a homogeneous one with their stiffness in the surface and in bending about their neutral
-  // surface: apart, each would bend about a middle of its own, and a thin stiff one would fold in waves that no voxel
-  // resolves.
+  // Replaces several layers by a homogeneous one with their membrane stiffness and their bending stiffness about the
+  // common neutral surface. As separate shells each layer would bend about its own middle, and a thin stiff one would
+  // fold in waves that no voxel resolves.
   void make_homogeneous(Model& model)
   {
     if (layers == 1)
@@ -90,7 +89,7 @@ std::vector<Plate> plates_of(const Scene& scene, const Model& model)
 {
   struct Below
   {
-    double depth = 0;  // at which the next layer begins
+    double depth = 0;  // depth at which the next layer begins
     std::size_t plate = 0;
     bool on_plate = false;
   };
@@ -126,7 +125,7 @@ void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const Loc
     const Layer& layer = *plate.top;
     const std::string place = place_in_scene(scene, "layer", layer);
     const Region crop = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")].crop;
-    // the part near the tissue: triangles of the surface itself may be larger than the tissue
+    // take the part near the tissue, because triangles of the surface may be larger than the tissue
     Box tissue;
     for (const auto& corner : { Vector3d(0, 0, 0), Vector3d(model.size[0], model.size[1], model.size[2]) })
       tissue.extend(frame.grid_point(model, corner[0], corner[1], corner[2]));

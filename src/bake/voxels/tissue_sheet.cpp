@@ -20,7 +20,7 @@ namespace frontalis
 namespace
 {
 
-/// How far nodes may slide beyond the area in which nodes rest [m]: farther than skin moves.
+/// Distance that nodes may slide beyond the area in which nodes rest [m]. It is greater than motions of skin.
 constexpr double travel = 20e-3;
 
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
@@ -41,9 +41,9 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
   return false;
 }
 
-/// Extends a selection of triangles across their edges by up to `travel`, as long as the surface does not turn by more
-/// than 78 degrees from the triangle from which it was entered: round the rim of a bone, but not behind it. Enters only
-/// triangles for which enters(triangle) is true.
+/// Extends a selection of triangles across their edges by up to `travel`, as long as normals differ by at most 78
+/// degrees from that of the selected triangle where the way began: so it goes round the rim of a bone, but not behind
+/// the bone. Enters only triangles for which enters(triangle) is true.
 template <class Enters>
 void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& enters)
 {
@@ -61,7 +61,7 @@ void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& e
   {
     double way;
     std::size_t triangle;
-    Vector3d at, normal;  ///< of the selected triangle that it came from
+    Vector3d at, normal;  ///< middle of the edge of entry; normal of the triangle where the way began
     bool operator<(const Entry& other) const { return way > other.way; }
   };
   std::priority_queue<Entry> entries;
@@ -92,8 +92,8 @@ void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& e
   }
 }
 
-/// Centre and radius of the sphere that a closed mesh approximates, if it does: vertices lie on it within a thousandth
-/// of its radius, and middles of triangles within a hundredth.
+/// Centre and radius of the sphere that a closed mesh approximates. All vertices must lie on the sphere within a
+/// thousandth of its radius, and middles of triangles within a hundredth; otherwise the result is empty.
 std::optional<std::pair<Vector3d, double>> sphere_of(const PreparedSurface& surface)
 {
   const TriangleMesh& mesh = surface.mesh();
@@ -123,7 +123,7 @@ std::optional<std::pair<Vector3d, double>> sphere_of(const PreparedSurface& surf
   return std::pair(centre, radius);
 }
 
-/// Whether the parts of each triangle, numbered as ClosestPoint::feature, lie on the rim of the mesh.
+/// For each triangle and each ClosestPoint::feature, whether that part of the triangle lies on the rim of the mesh.
 std::vector<std::array<bool, 7>> rim_features(const TriangleMesh& mesh)
 {
   std::set<std::pair<std::int32_t, std::int32_t>> edges;
@@ -144,7 +144,7 @@ std::vector<std::array<bool, 7>> rim_features(const TriangleMesh& mesh)
   return features;
 }
 
-/// Whether a triangle faces one of the other surfaces within `gap` [m], or overlaps it by less than that.
+/// Whether a triangle faces one of the other surfaces within `gap` [m], or overlaps it by less than `gap`.
 bool faces(const std::vector<const PreparedSurface*>& others, const std::array<Vector3d, 3>& triangle, double gap)
 {
   const Vector3d middle = (triangle[0] + triangle[1] + triangle[2]) / 3, normal = normal_of(triangle);
@@ -156,7 +156,7 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
-/// What a sheet leaves out of the surface that it is part of. Triangles have the same order in both.
+/// The triangles of a surface that are not in its sheet. The triangles have the same order in both.
 TriangleMesh rest_of(const SlidingSurface& surface)
 {
   const TriangleMesh &whole = surface.whole->mesh(), &sheet = surface.sheet->mesh();
@@ -200,8 +200,7 @@ public:
     const Vector3d away = p - closest.point;
     const double height = away.dot(normal(closest));
     const bool at_rim = on_rim_[closest.triangle][closest.feature];
-    // A point inside a closed surface is not above its sheet, even if the sheet alone suggests it: then another part of
-    // the surface is closer.
+    // A point inside a closed surface counts as below its sheet, also if another part of the surface is closer.
     const double bound = closest.distance + 1e-9;
     if (height > 0 && of_.whole->closed() && rest_tree_.closest(p, bound).triangle >= 0 &&
         of_.whole->signed_distance(p, of_.whole->tree().closest(p, bound)) < 0)
@@ -214,7 +213,7 @@ public:
 private:
   SlidingSurface of_;
   std::vector<std::array<bool, 7>> on_rim_;
-  std::unique_ptr<TriangleMesh> rest_;  ///< of the whole surface, without the sheet
+  std::unique_ptr<TriangleMesh> rest_;  ///< the whole surface without the sheet
   TriangleTree rest_tree_;
 };
 
@@ -264,7 +263,7 @@ double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, cons
 {
   constexpr std::size_t grain = 4096;
   const double edge = to_vector(model.spacing).maxCoeff();
-  // tissue near the surface, and how much more of it lies on the outer side than on the other
+  // amount of tissue near the surface, and the amount on the outer side minus that on the inner side
   using Sums = std::array<double, 2>;
   const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, Sums sums)
   {
@@ -324,7 +323,7 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std
                           [&](const Vector3d& p)
                           { return (side >= 0 && is_tissue(p + ahead)) || (side <= 0 && is_tissue(p - ahead)); });
   }
-  // tissue thinner than a voxel
+  // no triangle faces tissue if the tissue is thinner than a voxel: keep the whole surface
   if (std::find(facing.begin(), facing.end(), true) == facing.end())
     return mesh;
   grow(mesh, facing, [&](std::size_t t) { return !is_wall(t); });

@@ -10,17 +10,16 @@ namespace frontalis
 /// Whether a surface is stored as centre and radius.
 bool is_sphere(const PreparedSurface& surface);
 
-/// +1: the tissue within two voxels of a surface lies on the side of its outward normals, -1: on the other, 0: on both.
+/// The side of a surface on which the tissue within two voxels lies. +1: that of its normals, -1: the other, 0: both.
 double tissue_side(const PreparedSurface& surface, const LocalFrame& frame, const Model& model);
 
-/// The part of a surface that faces tissue, extended by the distance that sliding nodes may move beyond it: the outer
-/// table of a bone, for example, without the inner one. A closed sphere is returned unchanged. side: tissue_side().
-/// bones: other surfaces that restrict nodes;
-/// parts that face one of them within a voxel, such as the wall of a suture, are left out.
+/// The part of a surface that faces tissue, such as the outer table of a bone, extended by the distance that sliding
+/// nodes may move beyond it. A closed sphere is returned unchanged. `side`: see tissue_side(). `bones`: other surfaces
+/// that restrict nodes; parts that face one of them within a voxel, such as the wall of a suture, are left out.
 TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std::vector<const PreparedSurface*>& bones,
                           const LocalFrame& frame, const Model& model);
 
-/// A surface that nodes slide on, and its sheet.
+/// A surface that nodes slide on, and its part that faces tissue.
 struct SlidingSurface
 {
   const PreparedSurface* whole;

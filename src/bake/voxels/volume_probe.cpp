@@ -10,7 +10,7 @@ namespace
 
 constexpr int samples = 2000;
 constexpr double clear_winding = 0.75;  // least winding number of a point that is clearly inside
-constexpr double most_unclear = 0.1;    // largest proportion of other points among those inside
+constexpr double most_unclear = 0.1;    // largest proportion of points inside that are not clearly inside
 
 bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {

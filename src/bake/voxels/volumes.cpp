@@ -54,8 +54,8 @@ Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sa
 
 void Volumes::add_layers(const Scene& scene, double sample_spacing)
 {
-  // Layers of one volume and surface lie one below the other. A thin layer or a shell forms no band: the next band
-  // begins at the bottom of the last one.
+  // Layers of one volume and surface lie one below the other. A thin layer or a shell forms no band; the next band
+  // begins where the last band ends.
   struct Stack
   {
     double bottom = 0, next_band = 0;

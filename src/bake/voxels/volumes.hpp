@@ -39,13 +39,13 @@ public:
     std::optional<std::size_t> closed_by;  ///< body
     std::vector<std::size_t> inside;       ///< bodies
     std::vector<std::size_t> outside;      ///< bodies: those of `outside`, then those of `without`
-    std::size_t hiding = 0;                ///< so many bodies at the start of `outside` hide points behind them
+    std::size_t hiding = 0;                ///< number of bodies, the first of `outside`, that hide points behind them
     std::optional<std::size_t> within;     ///< depth field
     int material = -1;                     ///< index; -1: none
     int muscle = -1;                       ///< index; -1: none
     std::vector<Band> bands;
 
-    /// Whether the volume excludes points that an `outside` body hides from the surface of their depth.
+    /// Whether the volume excludes points if an `outside` body lies between them and the surface of the depth field.
     bool needs_sight() const { return within && hiding > 0; }
     /// Whether condition(body index) is true for any of the hiding bodies.
     template <class Condition>
@@ -74,7 +74,7 @@ public:
 private:
   /// Bounds of a tissue volume. Throws Error if it has none or they are empty.
   Box bounds_of(const Entry& entry) const;
-  /// Index of the body enclosed by these surfaces. Bodies and depth fields are made on first use.
+  /// Index of the body that the named surfaces enclose. Bodies and depth fields are made on first use.
   std::size_t body_of(const std::vector<std::string>& names);
   /// Index of the depth field of a surface, to which the thresholds are added.
   std::size_t depth_field_below(const std::string& name, const std::array<double, 2>& thresholds);
@@ -90,23 +90,23 @@ private:
   std::vector<ThinLayer> thin_layers_;
 };
 
-/// Whether a point lies in a volume, or the first of its conditions that fails.
+/// Tells whether a point lies in a volume, or the first of the volume's conditions that fails.
 enum class Membership
 {
   inside,
-  cropped,   ///< outside its crop
-  beyond,    ///< outside the surfaces that enclose it
-  excluded,  ///< inside one of its `outside` or `without` surfaces
+  cropped,   ///< outside the volume's crop
+  beyond,    ///< outside the surfaces that enclose the volume
+  excluded,  ///< inside an `outside` or `without` surface
   wrong_depth,
   hidden  ///< an `outside` surface lies between the point and the surface from which its depth is measured
 };
 
-/// Membership of a single point: slow, but independent of the optimised sampling of voxels, which it can check.
+/// Membership of a single point. Slow, but independent of the optimised sampling of voxels, so that it can check that.
 Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p);
 
-/// Throws Error, with the length and position of the largest hole, for a volume with a surface whose holes do harm:
-/// more than a tenth of the points inside are so near to a hole that the winding number is below 3/4. Pinholes, gaps
-/// and holes far from the volume (the neck of a head whose forehead is baked) are harmless.
+/// Throws Error, with the length and position of the largest hole, if the holes of a volume's surface do harm: for more
+/// than a tenth of the points inside, the winding number is below 3/4, because a hole is near. Pinholes, gaps and holes
+/// far from the volume (the neck of a head whose forehead is baked) are harmless.
 void check_openings(const Scene& scene, const Volumes& volumes);
 
 }  // namespace frontalis

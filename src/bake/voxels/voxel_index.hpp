@@ -14,7 +14,7 @@ namespace frontalis
 class VoxelIndex
 {
 public:
-  /// Voxels by the places where they rest; several may rest at one place.
+  /// Indexes the voxels by the places where they rest; several may rest at one place.
   explicit VoxelIndex(const Model& model) : VoxelIndex(model.voxels, model.size)
   {
     if (model.flaps.empty())

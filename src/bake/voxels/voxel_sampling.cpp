@@ -10,7 +10,7 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
-  // not exactly the centre, because scenes symmetric to the grid have edges and corners of surfaces there
+  // avoid the exact centre, because scenes that are symmetric to the grid have edges and corners of surfaces there
   middle_ = box.center() + Vector3d(0.0131, 0.0073, -0.0113).cwiseProduct(grid_.spacing);
 
   const double share = 1.0 / static_cast<double>(offsets_.size());
@@ -127,7 +127,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
     nearby.depth = -surface->signed_distance(middle_, closest);
     nearby.steady = surface->closed() || !surface->rim_within(middle_, closest.distance + 2.2 * reach_);
   }
-  // Depths at two points differ by at most their distance. If no threshold is that near, the middle's depth will do.
+  // Depths at two points differ by at most their distance. If no threshold is that near, use the middle's depth.
   const double way = (p - middle_).norm();
   const auto next = std::lower_bound(thresholds.begin(), thresholds.end(), nearby.depth - way);
   if (nearby.steady && (next == thresholds.end() || *next > nearby.depth + way))

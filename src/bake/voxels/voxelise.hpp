@@ -24,14 +24,14 @@ struct Grid
 /// The message names the length unit that was probably meant.
 Grid make_grid(const Scene& scene, const Volumes& volumes);
 
-/// Per voxel a list of indices, of materials or muscles, and their shares; voxel e has begin[e] .. begin[e + 1].
+/// For each voxel a list of indices, of materials or muscles, and their shares. Voxel e has begin[e] .. begin[e + 1].
 struct Shares
 {
   std::vector<std::int32_t> begin{ 0 };
   std::vector<std::int16_t> number;
   std::vector<float> share;
 
-  /// Adds the list of the next voxel: all positive `shares`, divided by `whole`, and their indices.
+  /// Adds the list of the next voxel: the indices of all positive `shares`, and these shares divided by `whole`.
   void add(const std::vector<double>& shares, double whole);
   void append(const Shares& other);
 };
@@ -43,18 +43,18 @@ struct Voxels
   std::vector<float> fill;
   std::vector<std::array<float, 3>> centre;  ///< centroid of the tissue, from -1 to 1 along each axis
   Shares materials, muscles;
-  /// Empty, or the flap of each voxel (Model::flaps); 0: the body. Voxels of different flaps may have the same place.
+  /// The flap of each voxel (Model::flaps), 0 for the body; or empty. Voxels of different flaps may share a place.
   std::vector<std::int8_t> flap;
-  /// Where voxels of different flaps are joined: both and a common point of the grid. The first is of the lower flap.
+  /// Two voxels of different flaps that are joined at a point of the grid. The first is in the lower flap.
   struct Joint
   {
     std::uint32_t a = 0, b = 0;
     VoxelPlace at{};
   };
   std::vector<Joint> joints;
-  /// For each volume of the scene its size in the tissue [m3], before voxels with too little tissue are left out.
+  /// Size of each volume of the scene in the tissue [m3], before voxels with too little tissue are left out.
   std::vector<double> volume_size;
-  /// For each volume with layers the size of each band and, last, of the rest of the volume [m3].
+  /// For each volume with layers, the size of each band and, as last entry, of the rest of the volume [m3].
   std::vector<std::vector<double>> band_size;
 
   /// Adds the voxels of another block of the same grid.
@@ -63,9 +63,9 @@ struct Voxels
 
 /// Finds the materials and muscles in each voxel. A block of voxels through which no surface, depth threshold or crop
 /// passes is decided as a whole; others are halved down to single voxels, which are sampled at samples^3 points of the
-/// low-discrepancy sequence R3. Its projections on each axis are evenly spread too, so that surfaces along the axes are
-/// sampled as well as oblique ones. Voxels with a smaller proportion of tissue than `fill_min` are left out, but for
-/// those that one of the surfaces `kept_at` passes through.
+/// low-discrepancy sequence R3. The sequence is evenly spread along each axis too, so that surfaces along the axes are
+/// sampled as well as oblique ones. Voxels with a smaller proportion of tissue than `fill_min` are left out, except
+/// where one of the surfaces `kept_at` passes through them.
 Voxels voxelise(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
                 const std::vector<const PreparedSurface*>& kept_at, BakeMonitor& monitor);
 

@@ -23,8 +23,8 @@ double share_kept(const SceneWeakness& weakness, const Vector3& place)
 
 }  // namespace
 
-// A weak voxel has less of the muscle. Of muscles with passive stress, the difference is another muscle, NAME_passive,
-// which is never active: so backends know nothing of weakness, and models without it pay nothing.
+// Lowers the weight of the muscle in weak voxels, so that backends need no code for weakness and models without it no
+// time. If the muscle has passive stress, the difference goes to another muscle, NAME_passive, which is never active.
 void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
 {
   if (scene.weakness.empty())

@@ -34,15 +34,15 @@ namespace frontalis
 namespace
 {
 
-constexpr int full = 1000;                    // of a slider, at activation 1
-constexpr std::chrono::seconds untouched(1);  // after which a slider shows the activation of the face again
+constexpr int full = 1000;                    // value of a slider at activation 1
+constexpr std::chrono::seconds untouched(1);  // time after an edit until a slider shows the face's activation again
 
 bool ends_with(const std::string& text, const std::string& end)
 {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// The name without its side.
+/// The name of a muscle without its side.
 std::string stem(const std::string& muscle)
 {
   for (const std::string side : { "_left", "_right" })

@@ -27,9 +27,9 @@ class QTabWidget;
 namespace frontalis
 {
 
-/// A panel of rviz that moves a face and shows its state: a slider per muscle, left and right in one row, and per
-/// action unit, buttons for expressions, pause and reset, the colours of the skin, gauges. It talks to the face by
-/// topics and services alone. The name of a slider as a QObject is that of its muscle or action unit.
+/// A panel of rviz that moves a face and shows its state. It has a slider per muscle (left and right in one row) and
+/// per action unit, buttons for expressions, pause and reset, a choice of skin colours, and gauges. It talks to the
+/// face by topics and services alone. Each slider's QObject name is that of its muscle or action unit.
 class FacePanel : public rviz::Panel
 {
   Q_OBJECT
@@ -43,7 +43,7 @@ public:
 private:
   /// Subscribes and advertises under the name of the face, and forgets its muscles.
   void connect_to_face();
-  /// Looks for finished calls of services, and for the muscles of the face if they are not known.
+  /// Handles finished calls of services, and asks for the muscles of the face if they are unknown.
   void poll();
   void show_muscles(const ListMuscles::Response& face);
   QSlider* new_slider(const std::string& name);
@@ -53,7 +53,7 @@ private:
   void on_muscle(const std::string& muscle);
   void on_action_unit();
   void express(const std::string& name);
-  /// Calls a service in another thread, because a face may answer late; `use` has the outcome later, in this thread.
+  /// Calls a service in another thread, because a face may answer late. `use` gets the answer later, in this thread.
   template <typename Service>
   void call(const char* service, const Service& request,
             std::function<void(const typename Service::Response&)> use = {});
@@ -71,15 +71,15 @@ private:
   QProgressBar* speed_;
   QLabel* energy_;
   QLabel* message_;
-  std::map<std::string, QSlider*> slider_of_;  ///< by muscle
-  std::map<std::string, QSlider*> unit_of_;    ///< by action unit
+  std::map<std::string, QSlider*> slider_of_;  ///< sliders by the name of the muscle
+  std::map<std::string, QSlider*> unit_of_;    ///< sliders by the name of the action unit
 
   ros::NodeHandle handle_;
   ros::Publisher activation_, action_units_, expression_;
   ros::Subscriber state_;
   bool paused_ = false;
-  bool asked_ = false;                              ///< a call for the muscles is under way
-  std::chrono::steady_clock::time_point edited_{};  ///< when a slider was moved the last time
+  bool asked_ = false;                              ///< whether a call of ~list_muscles is under way
+  std::chrono::steady_clock::time_point edited_{};  ///< when a slider was moved last
   std::list<std::future<std::function<void()>>> calls_;
 };
 

@@ -17,7 +17,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double with_settling = 1.5;  // rough ratio of wall times: history and settling over history alone
+constexpr double with_settling = 1.5;  // rough ratio of wall times: history with settling over history alone
 
 // A file consists of this signature, a hash of its content, and the content as bytes.
 const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
@@ -30,7 +30,7 @@ constexpr const char* extension<VariantCost> = ".cost";
 template <>
 constexpr const char* extension<VariantCheckpoint> = ".checkpoint";
 
-// returns nothing if the file is missing, incomplete or of another generation
+// reads a result; empty if the file is missing, incomplete or of another generation of motions
 template <class T>
 std::optional<T> read(const std::string& key)
 {
@@ -106,8 +106,8 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
          content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// The backend of a stored motion. Single-precision motions of other backends are accepted too, so that a folder may
-// come from a faster machine; a GPU always computes in single precision.
+// The backend of a stored motion. For single precision, motions of other backends are accepted too, so that a folder
+// may come from a faster machine, such as one with a GPU, which always computes in single precision.
 std::optional<Backend> VariantBench::kept_backend(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
@@ -124,13 +124,13 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
-// Whether no timing is missing. The reference is never timed: it is slow and not offered as a choice.
+// Whether a setting needs no further timing. The reference is never timed: it is slow and nobody would choose it.
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
 }
 
-// updates the estimates for later variants with the wall seconds of one
+// updates the estimates for later variants with the wall seconds that a variant took
 void VariantBench::learn(const AccuracySetting& setting, double wall)
 {
   const double relative = relative_time(setting);
@@ -196,7 +196,7 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      // The reference keeps no ledger, which would double its time on a GPU: its energy balance is not reported.
+      // The reference has no energy ledger: its balance is not reported, and a ledger would double its time on a GPU.
       motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
                             { read<VariantCheckpoint>(key), [&](const VariantCheckpoint& c) { keep(key, c); } }, go_on);
       if (!motion)

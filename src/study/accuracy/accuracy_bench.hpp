@@ -19,22 +19,22 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< backend of the motion: another than the setting's if it was stored by another machine
+  Backend played_by;  ///< backend of the motion; differs from the setting's if another machine stored the motion
   VariantMotion motion;
   VariantCost cost;
 };
 
-/// Measures variants (settings of a study) one by one and reuses earlier results from the study's folder. It has one
-/// file each for a variant's motion, cost and checkpoint; files are written completely or not at all.
+/// Measures variants (settings of a study) one by one and reuses earlier results from the study's folder. The folder
+/// has a file each for a variant's motion, cost and checkpoint. Files are written completely or not at all.
 class VariantBench
 {
 public:
-  /// Keeps references to its arguments. Throws Error if there is no folder or no model of the standard setting.
+  /// The arguments must outlive this object. Throws Error if folder or model of the standard setting cannot be made.
   VariantBench(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
-  /// Returns the index in done(). Throws Error, StudyInterrupted.
+  /// Measures a setting and returns its index in done(). Throws Error, StudyInterrupted.
   std::size_t measure(const AccuracySetting& setting, const std::string& name = {});
-  /// Null if the setting was not measured in this study.
+  /// The results of a setting; null if it was not measured in this study.
   const MeasuredVariant* find(const AccuracySetting& setting) const;
   const std::vector<MeasuredVariant>& done() const { return done_; }
 
@@ -71,13 +71,13 @@ private:
   std::vector<MeasuredVariant> done_;
   std::map<std::string, std::size_t> index_;  // key to index in done_
   std::vector<AccuracySetting> pending_;
-  // estimated wall seconds: of the shortest variant, per unit of relative_time(), of timing a variant
+  // estimates of wall seconds: of the shortest variant, per unit of relative_time(), and of timing a variant
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };
 
-/// The figures of a variant against the plan's closed form, or otherwise against the reference's motion. With `average`
-/// (may be null) also the error of averaged displacements.
+/// The figures of a variant. Errors refer to the plan's closed form, if there is one, otherwise to the reference's
+/// motion. With `average` (may be null) the row also has the error of averaged displacements.
 AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
                    const SkinAverage* average);
 
@@ -86,7 +86,7 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings);
 
-/// Adds notes on the order of convergence to the closed form, for the standard and the reference's settings.
+/// Adds notes on the order of convergence to the closed form, for the standard setting and that of the reference.
 void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings);
 
 /// Indices of the rows that are Pareto-optimal among those that a scene's profile can express, cheapest first. Errors

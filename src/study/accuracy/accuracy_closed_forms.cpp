@@ -1,9 +1,9 @@
-// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever": a bar in plane strain whose
-// ends get the displacements of a beam under a force at its end: Timoshenko & Goodier, Theory of Elasticity, article
-// 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block":
-// neo-Hookean, stretched to 1.3 times its length with free sides. "active_bar": the same block without loads,
-// contracted by a muscle without tension-length relation. The stretches of both follow from the derivatives of the
-// strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2; they are uniform, so that voxels represent them exactly.
+// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever" is a bar in plane strain. Its
+// ends are displaced like those of a beam under a force at its tip: Timoshenko & Goodier, Theory of Elasticity, article
+// 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block" is
+// neo-Hookean and stretched to 1.3 times its length with free sides. "active_bar" is the same block without loads; a
+// muscle without tension-length relation contracts it. The stretches of both blocks follow from the derivatives of the
+// strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 and are uniform, so that voxels represent them exactly.
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
@@ -16,7 +16,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;                      // young in Pa
+constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;                      // young [Pa]
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
 constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
 
@@ -89,7 +89,7 @@ ClosedForm closed_form(const std::string& name, std::vector<double> edges,
   return form;
 }
 
-// a block that `drive` stretches uniformly along x; `along`: length over length at rest
+// a block that `drive` stretches uniformly along x; `along`: its length over the length at rest
 ClosedForm uniform(const std::string& name, double along, const std::function<void(Model&)>& drive)
 {
   const auto make = [drive](const AccuracySetting& setting)

@@ -62,7 +62,7 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings)
 {
-  // solutions with the reference's settings, coarse to fine
+  // solutions with the reference's setting at each voxel edge, coarse to fine
   std::vector<const MeasuredVariant*> levels;
   for (const double edge : plan.edges)
     if (const MeasuredVariant* known = bench.find(reference_setting(plan.standard, edge));

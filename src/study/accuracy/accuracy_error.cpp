@@ -136,7 +136,7 @@ double richardson(double before, double finest, double difference, double order)
 SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
 {
   const auto& rest = reference.phases.at(0).vertices;
-  // cubes as large as the cut-off radius: all neighbours of a vertex are in its cube or the 26 around it
+  // the cubes are as large as the cut-off radius, so all neighbours of a vertex are in its cube or the 26 around it
   std::map<Cube, std::vector<std::size_t>> cubes;
   for (std::size_t v = 0; v < weights_.size(); ++v)
     cubes[cube_of(rest[v], reach * deviation)].push_back(v);

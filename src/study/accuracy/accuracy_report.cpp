@@ -16,7 +16,7 @@ namespace
 
 double mm(double metres) { return 1e3 * metres; }
 
-// the rows that have an error and a cost, cheapest first; `label` returns the text beside a point
+// a curve of the rows that have an error and a cost, cheapest first; `label` returns the text beside a point
 Plot::Curve curve_of(
     const AccuracyFindings& findings, std::vector<std::size_t> rows, const std::string& name, Plot::Style style,
     const std::function<std::string(const AccuracyRow&)>& label = [](const AccuracyRow&) { return std::string(); })

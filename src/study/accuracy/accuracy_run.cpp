@@ -21,9 +21,9 @@ namespace frontalis
 namespace
 {
 
-constexpr int repetitions = 9;                  // timings of a published skin
-constexpr double seconds_per_checkpoint = 60;   // least wall time between checkpoints
-constexpr double share_of_checkpoints = 0.025;  // largest fraction of wall time: one of a large model takes seconds
+constexpr int repetitions = 9;                  // number of timings of a published skin
+constexpr double seconds_per_checkpoint = 60;   // least wall time between checkpoints [s]
+constexpr double share_of_checkpoints = 0.025;  // largest fraction of wall time for checkpoints
 
 int thread_count(int threads)
 {
@@ -91,7 +91,7 @@ std::string machine_of(const Solver& solver, int threads)
 
 double heap_bytes()
 {
-  const auto info = mallinfo2();  // of all arenas
+  const auto info = mallinfo2();  // the figures cover all arenas
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
@@ -122,7 +122,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     }
     catch (const Error&)
     {
-      // a checkpoint of another solver: the motion starts from rest
+      // the checkpoint is from another solver, so the motion starts from rest
     }
     if (motion.phases.empty())
       add_phase();
@@ -161,14 +161,14 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       if (interrupted)
         return std::nullopt;
     }
-    // settling has no checkpoints; if it is interrupted, it starts again from this one
+    // settling has no checkpoints; an interrupted one starts again from here
     state.solver = solver->pack();
     const VariantCheckpoint played = state;
     motion.steps /= length;
     const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
     motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
 
-    // the model is settled when the skin no longer moves, even if nodes inside it do
+    // the model counts as settled when its skin no longer moves, even if nodes inside move
     VariantMotion last;
     last.area = motion.area;
     last.phases = { motion.phases[0], motion.phases.back() };
@@ -224,7 +224,7 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   // processor time, which excludes other programs, is meaningful only for a single thread
   const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();
-  // long patience: while activations grow, frequent estimates of the time step would distort the cost per step
+  // be patient: while activations grow, frequent estimates of the time step would distort the cost per step
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;

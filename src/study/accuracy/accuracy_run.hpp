@@ -21,8 +21,8 @@ struct SkinPhase
 struct VariantMotion
 {
   std::string fault;              ///< why the motion cannot be used; empty: it can
-  std::vector<SkinPhase> phases;  ///< at rest, mid-ramp, end of ramp, end of history, settled
-  std::vector<float> area;        ///< area of the skin at rest that belongs to each vertex [m2]
+  std::vector<SkinPhase> phases;  ///< skins at rest, mid-ramp, end of ramp, end of history, settled
+  std::vector<float> area;        ///< area of the skin at rest that each vertex represents [m2]
   double steps = 0;               ///< number of time steps per second of the activation history
   double energy = 0;              ///< imbalance of the energy ledger over its largest term
   double residual = 0;            ///< remaining motion over the displacement, as in Solver::settle()
@@ -34,9 +34,9 @@ struct VariantMotion
 /// An interrupted motion.
 struct VariantCheckpoint
 {
-  VariantMotion motion;     ///< until now; its `steps` is the total number of steps
+  VariantMotion motion;     ///< the motion so far; `steps` is the total number of steps
   std::int64_t slices = 0;  ///< slices of the history that have been simulated
-  std::string solver;       ///< Solver::pack()
+  std::string solver;       ///< state of the solver, from Solver::pack()
 
   void archive(ByteArchive& archive);
 };
@@ -44,7 +44,7 @@ struct VariantCheckpoint
 /// The machine on which costs are measured: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
-using GoOn = std::function<bool(double done)>;  ///< gets the completed fraction, 0..1; false: interrupt
+using GoOn = std::function<bool(double done)>;  ///< receives the completed fraction, 0..1; returns false to interrupt
 
 /// The checkpoint to resume a motion from, and a function that stores further ones: about one per minute of wall time,
 /// and one if the motion is interrupted.
@@ -54,8 +54,8 @@ struct Checkpoints
   std::function<void(const VariantCheckpoint&)> keep;
 };
 
-/// Simulates the history and settling. Returns nothing if `go_on` interrupted it; an unstable motion is returned with
-/// its fault. Without `ledger` its energy is NaN. A resumed motion has bitwise the same result as an uninterrupted one.
+/// Simulates the history and settling. Returns nothing if `go_on` interrupted it. An unstable motion is returned with
+/// its fault. Without `ledger`, its `energy` is NaN. A resumed motion has bitwise the result of an uninterrupted one.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
                                           const Checkpoints& checkpoints, const GoOn& go_on);
@@ -70,7 +70,8 @@ double heap_bytes();
 /// Differences between the displacements of two motions, per phase. Throws Error if they do not have the same skin.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
-/// The rest and settled phases of a motion, and those with settled displacements [m] as a function of position [m].
+/// The first function returns the rest and settled phases of a motion. The second replaces the settled displacements
+/// [m] by a function of the position at rest [m].
 VariantMotion settled_part(const VariantMotion& motion);
 VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement);
 double landmark_error(const VariantMotion& found, const VariantMotion& exact);
@@ -91,18 +92,19 @@ public:
   SkinError error(const VariantMotion& motion) const;
 
 private:
-  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex
-  VariantMotion reference_;                                          // averaged
+  std::vector<std::vector<std::pair<std::size_t, float>>> weights_;  // per vertex: neighbours and their weights
+  VariantMotion reference_;                                          // averaged motion of the reference
 };
 
-/// The order p for which errors C h^p explain the differences between solutions at three edges, coarse to fine:
-/// `coarse` between the first and the second, `fine` between the second and the third. NaN if there is none in 0..8.
+/// The order p for which errors C h^p explain the differences between solutions at three edges h, coarse to fine.
+/// `coarse`: difference between the first and the second; `fine`: between the second and the third. NaN: no p in 0..8.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
-inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }  ///< good enough to extrapolate with
+/// Whether the order is good enough for richardson().
+inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }
 /// Richardson's estimate of the error at edge `finest`, from the difference to the solution at edge `before`.
 double richardson(double before, double finest, double difference, double order);
 
-/// The settings of one knob, all others as in the standard setting.
+/// Settings that differ from the standard setting in one knob.
 struct Sweep
 {
   std::string knob, words;  ///< names on the command line and in plots
@@ -110,7 +112,7 @@ struct Sweep
 };
 /// `critical`: time step of the standard setting without scaled mass [s].
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical);
-/// The combinations of settings that are measured at one voxel edge.
+/// The combinations of knobs that are measured at one voxel edge.
 std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge, double critical);
 /// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its time step is estimated from
 /// the assembled model; the study checks the effect of halving it.

@@ -40,7 +40,7 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // number of voxel edges of variants, which exclude the reference's
+  // number of voxel edges for variants, without the edge that is for the reference only
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
@@ -55,8 +55,8 @@ private:
   AccuracyFindings findings_;
 };
 
-// Measures the reference's settings from the largest to the smallest voxel edge. Times of earlier edges predict those
-// of later ones, which are left out if the budget does not suffice.
+// Measures the reference's setting from the largest to the smallest voxel edge. The times of earlier edges predict
+// those of later edges, which are left out if the budget does not suffice.
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
@@ -127,7 +127,7 @@ void Study::measure_knobs()
   }
 }
 
-// measures at each voxel edge the combinations that were not clearly worse than another at the previous edge
+// measures at each voxel edge the combinations that were not clearly worse than another one at the previous edge
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -230,7 +230,7 @@ AccuracyFindings Study::run()
         "Motions of {} settings were computed earlier by backend {} and read from the folder.", count, backend));
   if (!plan_.exact)
   {
-    // the reference has no error against itself and is not offered as a choice
+    // the reference has no error against itself and is not a setting to choose
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// three significant digits, enough for the target of a time step
+// rounds to three significant digits, enough for the target of a time step
 double rounded(double value)
 {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -68,7 +68,7 @@ std::vector<AccuracySetting> sweep(const AccuracySetting& standard, const std::v
 
 }  // namespace
 
-// in the order of the command line's help
+// the sweeps are in the order of the command line's help
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
 {
   const AccuracySetting& s = plan.standard;
@@ -192,7 +192,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
 double relative_time(const AccuracySetting& setting)
 {
   const AccuracyProfile& p = setting.profile;
-  // rough factors that only predict how long a study takes
+  // the factors are rough, because they only predict the duration of a study
   double time = 1 / (p.voxel[0] * p.voxel[1] * p.voxel[2] * std::min({ p.voxel[0], p.voxel[1], p.voxel[2] }));
   time *= 0.9 / p.time_step_share / setting.time_scaling;
   time *= p.integration == "selective_reduced" ? 2.5 : p.assumed_strain ? 1.4 : 1;

@@ -26,7 +26,7 @@ double time_steps(Solver& solver, const Controls& controls, double steps, bool p
   return (now() - start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
-// number of steps that take about `seconds`; trials become longer, since a coarse clock may show 0 for a few steps
+// number of steps that take about `seconds`. Tries ever more steps, since a coarse clock may show 0 for a few.
 double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
 {
   for (double steps = 64;; steps *= 2)
@@ -37,7 +37,7 @@ double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
   }
 }
 
-// Moves to the controls and calms down. After `seconds` of wall time it stops at the controls reached.
+// Moves a solver to its controls and lets it come to rest. After `seconds` of wall time, stops at the controls reached.
 void approach_controls(TimedSolver& timed, double seconds)
 {
   Solver& solver = *timed.solver;

@@ -14,9 +14,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double relative_tolerance = 1e-12;  // of gradients, below which they count as zero
+constexpr double relative_tolerance = 1e-12;  // relative size of gradients that count as zero
 
-// the minimum over the free variables while the others stay where they are
+// the minimum over the free variables, with the other variables fixed
 VectorXd minimum_of_free(const MatrixXd& h, const VectorXd& g, const VectorXd& x, const std::vector<Index>& free)
 {
   VectorXd held = x;
@@ -38,13 +38,13 @@ VectorXd bounded_minimum(const MatrixXd& h, const VectorXd& g, const VectorXd& l
     if (lower[i] < x[i] && x[i] < upper[i])
       free.push_back(i);
   const double zero = relative_tolerance * std::max(g.cwiseAbs().maxCoeff(), h.diagonal().maxCoeff());
-  // each round frees one variable or ends; rounding may let one go back and forth between two bounds
+  // each round frees one variable or ends; the limit is for variables that rounding lets alternate between their bounds
   for (Index round = 0; round < 10 * count; ++round)
   {
     while (!free.empty())
     {
       const VectorXd best = minimum_of_free(h, g, x, free);
-      // go towards `best` until the first variable meets its limit; then hold that variable there
+      // move towards `best` until the first variable reaches its limit, and hold this variable there
       double share = 1;
       Index first = -1;
       for (const Index i : free)

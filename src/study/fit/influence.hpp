@@ -15,7 +15,7 @@
 namespace frontalis
 {
 
-// Vectors of places have x, y and z of each landmark of the model in turn, in the face frame [m].
+// Vectors of places hold x, y and z of each landmark of the model, in this order, in the face frame [m].
 
 /// The simulations of a fit, all of which start at rest.
 class ForwardRuns
@@ -23,17 +23,17 @@ class ForwardRuns
 public:
   ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings);
 
-  /// Names what the next simulations are for.
+  /// Names the stage of the fit to which the next simulations belong.
   void announce(const std::string& stage, double done);
   /// Places of the landmarks in equilibrium. Throws Error if there is none.
   Eigen::VectorXd settle(const std::map<std::string, double>& values);
-  /// Places at each of these times under controls that change linearly between knots.
+  /// Places of the landmarks at each of the given times, under controls that change linearly between knots.
   std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
 
   const Model& model() const { return *model_; }
 
 private:
-  SkinState skin();  // in the face frame
+  SkinState skin();  // the present skin, in the face frame
 
   std::shared_ptr<const Model> model_;
   std::function<void(const std::string&, double)> watch_;
@@ -43,29 +43,28 @@ private:
   Guard guard_;
 };
 
-/// How far each unknown moves the landmarks by itself: measured at two of its values.
+/// The displacements of landmarks that each unknown causes by itself, measured at two of its values.
 struct Influence
 {
   struct Column
   {
-    std::array<double, 2> at{};                ///< values of the unknown
-    std::array<Eigen::VectorXd, 2> displaced;  ///< from `rest`
+    std::array<double, 2> at{};                ///< values of the unknown at which it is measured
+    std::array<Eigen::VectorXd, 2> displaced;  ///< displacements from `rest`
   };
   Eigen::VectorXd rest;  ///< places in equilibrium with all unknowns at rest
   std::map<std::string, Column> columns;
 };
 
-/// The influence of the unknowns from the file of the model in the folder `settings.cache`. What is missing there is
-/// measured and added; if the folder cannot be written, nothing is kept. `seconds`: receives the wall time that
-/// measuring took.
+/// Reads the influence of the unknowns from the model's file in the folder `settings.cache`. Measures missing unknowns
+/// and adds them to the file, unless the folder cannot be written. `seconds` receives the wall time of the measurement.
 Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknowns, const FitSettings& settings,
                            double& seconds);
 
-/// The value of an unknown at rest: the tone of a muscle, 0 of a bone.
+/// The value of an unknown at rest: the tone of a muscle, or 0 for a bone.
 double rest_value(const Model& model, const std::string& unknown);
 
-/// The displacement of landmarks as the sum of what each unknown does by itself. That is the parabola through rest and
-/// the two measured values.
+/// The displacement of landmarks as the sum of the displacements that each unknown causes by itself. Each of these is a
+/// parabola through rest and the two measured values.
 class InfluenceLaw
 {
 public:

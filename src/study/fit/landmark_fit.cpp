@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int iterations = 30;          // of Gauss-Newton
-constexpr int halvings = 8;             // of a step that does not lower the cost
-constexpr double smallest_step = 1e-6;  // of an unknown's range
+constexpr int iterations = 30;          // largest number of Gauss-Newton iterations
+constexpr int halvings = 8;             // largest number of halvings of a step that does not lower the cost
+constexpr double smallest_step = 1e-6;  // change of an unknown over its range, below which iterations end
 
 }  // namespace
 

@@ -8,23 +8,24 @@
 namespace frontalis
 {
 
-/// The least-squares problem of a fit: unknowns, the coordinates of landmarks that are given, and a weak preference for
-/// rest, which decides what the targets leave open. Its standard deviation is half of an unknown's range.
+/// The least-squares problem of a fit: unknowns, given coordinates of landmarks, and a weak preference for rest, which
+/// determines what the targets leave open. The preference's standard deviation is half an unknown's range.
 class LandmarkFit
 {
 public:
   LandmarkFit(const Model& model, const Influence& influence, const std::vector<Unknown>& unknowns, double deviation);
 
-  /// The targets: displacements from rest of all landmarks [m], of which those that are NaN are free.
+  /// The targets: displacements of all landmarks from rest [m]. NaN means a free coordinate.
   void set_targets(const Eigen::VectorXd& displacements);
-  /// What a simulation with `values` has shown. From then on displacements are those that were simulated, and
-  /// differences from there are predicted, by the influence and by what the simulations so far differed from it.
+  /// Takes the displacements that a simulation with `values` has shown. Later predictions start from them and add the
+  /// change by the influence, corrected by the errors of earlier predictions.
   void learn(const Eigen::VectorXd& values, const Eigen::VectorXd& displacements);
 
   /// The best values, by a damped Gauss-Newton iteration from `begin`.
   Eigen::VectorXd solve(const Eigen::VectorXd& begin) const;
   Eigen::VectorXd predicted(const Eigen::VectorXd& values) const;
-  /// Sum of squares over standard deviations of displacements (NaN in targets: left out) and preferences.
+  /// Sum of the squared errors of displacements, without free coordinates, and of the squared distances from rest, each
+  /// over its standard deviation.
   double cost(const Eigen::VectorXd& values, const Eigen::VectorXd& displacements) const;
   Eigen::MatrixXd covariance(const Eigen::VectorXd& values) const;
 
@@ -32,7 +33,7 @@ public:
   const Eigen::VectorXd& rest_values() const { return law_.rest_values(); }
 
 private:
-  /// Matrix and right side of the linear problem at some values: weighted residuals below, preferences in H's diagonal.
+  /// Matrix and right side of the linear problem at some values, over the standard deviation; 0 for free coordinates.
   Eigen::MatrixXd weighted_derivative(const Eigen::VectorXd& values) const;
   Eigen::VectorXd weighted_residual(const Eigen::VectorXd& displacements) const;
 
@@ -41,8 +42,8 @@ private:
   Eigen::VectorXd lower_, upper_, preference_;  // preference: standard deviation of each unknown
   Eigen::VectorXd targets_;
   bool learned_ = false;
-  Eigen::VectorXd at_, displaced_;  // of the latest simulation
-  Eigen::MatrixXd correction_;      // of the derivative
+  Eigen::VectorXd at_, displaced_;  // values and displacements of the latest simulation
+  Eigen::MatrixXd correction_;      // correction of the influence's derivative
 };
 
 }  // namespace frontalis

@@ -214,7 +214,7 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
     }
     for (std::size_t t = 0; t < values.size(); ++t)
     {
-      // each moment is corrected for itself, so that inertia does not pass for an influence
+      // correct each time separately, so that effects of inertia do not count as influence
       LandmarkFit moment(problem);
       moment.set_targets(targets[t]);
       moment.learn(values[t], reached[t]);

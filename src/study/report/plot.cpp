@@ -30,7 +30,7 @@ std::string replaced(const std::string& text, const char* what, const char* by)
   return std::regex_replace(text, std::regex(what), by);
 }
 
-// a string of gnuplot in single quotes, which are doubled inside; only double quotes understand a line break
+// a gnuplot string in single quotes, which are doubled inside; text with a line break needs double quotes
 std::string quoted(const std::string& text)
 {
   return "'" + replaced(replaced(text, "'", "''"), "\n", "'.\"\\n\".'") + "'";
@@ -41,7 +41,7 @@ const char* colour_of(std::size_t index) { return colours[index % std::size(colo
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colour_of(index) + "'";
-  // colours that are used again get other marks
+  // a colour that is used again gets other marks
   const bool again = index >= std::size(colours);
   const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
   const std::map<Plot::Style, std::string> styles = {

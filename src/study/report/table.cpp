@@ -30,7 +30,7 @@ std::string shown(const Table::Cell& cell)
   return number != nullptr ? readable(*number) : std::get<std::string>(cell);
 }
 
-// length in characters of UTF-8 text
+// number of characters of UTF-8 text
 std::size_t width(const std::string& text)
 {
   return static_cast<std::size_t>(

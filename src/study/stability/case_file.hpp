@@ -24,8 +24,8 @@ public:
   /// `count`: required number of values; 0: one or more.
   std::vector<double> numbers(const std::string& key, const std::string& unit = {}, std::size_t count = 0) const;
   double number(const std::string& key, const std::string& unit = {}) const { return numbers(key, unit, 1)[0]; }
-  double seconds(const std::string& key) const;                             ///< given in ms or s
-  std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< voxels
+  double seconds(const std::string& key) const;  ///< a time [s], which the file gives in ms or s
+  std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< a size in voxels
 
   /// Keys of the file that no function has read.
   std::vector<std::string> unused() const;

@@ -57,7 +57,7 @@ void GuardedTrial::advance(const Phase& phase)
 {
   for (int i = 0; i < phase.parts; ++i)
   {
-    // linear in time: a part covers 1 / (number of parts left) of the remaining change of the controls
+    // controls change linearly in time: a part covers 1 / (number of parts left) of the remaining change
     guard_->advance(phase.seconds / phase.parts,
                     interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)));
     record();

@@ -19,11 +19,11 @@ struct CaseRun : CaseFile
   const StabilitySettings& settings;
   Trial& trial;
 
-  /// The file's count KEY, or KEY_in_full in long runs.
+  /// The number KEY of the file, or KEY_in_full in long runs.
   double count(const std::string& key) const;
-  /// Checks a figure `found` (`what`: its name) within bounds.KEY of the file, which has the same unit.
+  /// Checks that `found` differs from `expected` by at most bounds.KEY of the file, in the same unit. `what`: its name.
   void check(const std::string& what, const std::string& unit, double expected, double found, const std::string& key);
-  /// The same, with the bound in percent of the expected figure.
+  /// Like check(), with the bound in percent of the expected figure.
   void check_relative(const std::string& what, const std::string& unit, double expected, double found,
                       const std::string& key);
 };
@@ -78,8 +78,8 @@ public:
   void set(const Vectors& displacements, const Vectors& velocities = {});
 
   Vectors displacements() const;
-  const Monitor& monitor() const { return monitor_; }       ///< as last recorded
-  const EnergyLedger& energies() const { return ledger_; }  ///< as last recorded
+  const Monitor& monitor() const { return monitor_; }       ///< as recorded last
+  const EnergyLedger& energies() const { return ledger_; }  ///< as recorded last
 
   /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
   /// motion to `picture` if that is not empty.
@@ -111,7 +111,7 @@ private:
 Material soft_tissue(double poisson = 0.49);
 /// A box of soft tissue with voxels of edge 1 mm; size and damping come from the case's file.
 Model damped_block(const CaseFile& file);
-/// Makes the lowest or highest plane of nodes along an axis rigid, like hold(), or both; the bone moves the highest.
+/// Make nodes rigid like hold(): the lowest or highest plane along an axis, or both, of which `bone` moves the highest.
 void hold_face(Model& model, int axis, bool upper, const std::string& bone = {});
 void hold_ends(Model& model, int axis, const std::string& bone = {});
 
@@ -119,7 +119,7 @@ inline physics::Vec3<double> vector(const Point& p) { return { p[0], p[1], p[2] 
 /// Largest |a - b| [m] of all nodes; without `b`, largest |a|.
 double farthest(const Vectors& a, const Vectors& b = {});
 
-/// Rigid motion by a rotation vector [rad] about a point [m], and by a shift [m].
+/// Rotation by a rotation vector [rad] about a point [m].
 RigidTransform turned_about(const Point& rotation, const Point& point);
 RigidTransform shifted(const Point& shift);
 

@@ -15,11 +15,10 @@ namespace frontalis
 namespace
 {
 
-// Corners (x, z) [m] of a surface that is endless along y.
+// Corners (x, z) [m] of a surface that is infinite along y.
 using Profile = std::vector<std::array<double, 2>>;
 
-// Distance from a surface: signed, positive above it, or `thin`, positive on both sides, so that nodes can go round its
-// ends.
+// Distance from a surface, positive above it, or with `thin` on both sides, so that nodes can go round its ends.
 double distance_to(const Profile& profile, bool thin, const Point& p)
 {
   double nearest = 1e300, height = 0;
@@ -43,7 +42,7 @@ void slide(Model& model, const Profile& profile, const Condition& condition)
       [&](const Point& p) { return distance_to(profile, false, p); }, nodes_where(model, condition), 0.5e-3, 100e-3);
 }
 
-// largest error of the level that sliding nodes keep in the field of their surface, and their largest displacement
+// largest deviation of sliding nodes from their level in the field of their surface [m], and their largest displacement
 // along x [m]
 std::pair<double, double> slid(const GuardedTrial& motion)
 {
@@ -64,8 +63,8 @@ std::pair<double, double> slid(const GuardedTrial& motion)
 
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
-// Advances by the case's `drag` [s] in forty parts, activation(i) being that of part i. Checks the kept levels
-// after each, and finally that nodes have travelled `least_travel` [mm] along x.
+// Advances by the case's `drag` [s] in forty parts, with activation(i) in part i. Checks the levels of sliding nodes
+// after each part, and at the end that nodes have travelled `least_travel` [mm] along x.
 void drag(
     CaseRun& run, GuardedTrial& motion, const std::string& of, double least_travel,
     const std::function<float(int)>& activation = [](int) { return 0.0F; })
@@ -106,7 +105,7 @@ void off_the_edge(CaseRun& run)
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
     Model model = damped_block(run);
-    // the spacing is below two thirds of the distance, so that the other side does not reach the nodes' cells
+    // the field's spacing is below two thirds of the nodes' distance, so that their cells do not reach the other side
     const Profile sheet{ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } };
     slide_on(
         model, "sheet", [&](const Point& p) { return distance_to(sheet, true, p); }, nodes_where(model, underside),
@@ -121,7 +120,7 @@ void off_the_edge(CaseRun& run)
 
 void two_surfaces(CaseRun& run)
 {
-  // a layer of one voxel between surfaces that are 0.6 mm apart where it starts and 0.4 mm where it ends
+  // a layer of one voxel between two surfaces, whose distance falls from 0.6 mm where it starts to 0.4 mm where it ends
   Model model = damped_block(run);
   slide(model, { { -40e-3, 0.2e-3 }, { 60e-3, 0.2e-3 } }, underside);
   slide(model, { { -40e-3, 0.8e-3 }, { 10e-3, 0.8e-3 }, { 30e-3, 0.6e-3 }, { 60e-3, 0.6e-3 } },

@@ -33,7 +33,7 @@ SampledField wedge(const Model& model, double x, double z)
     const double beside = std::abs(p[0] - x), above = p[2] - z;
     return above < -beside ? std::hypot(beside, above) : (beside - above) * std::sqrt(0.5);
   };
-  constexpr double depth = 6e-3;  // how deep tissue may get into the wedge
+  constexpr double depth = 6e-3;  // greatest depth of tissue in the wedge [m]
   return sample_band({ { x - depth, -1e-3, z } }, { { x + depth, 1e-3 * (model.size[1] + 1), z + depth } }, distance,
                      0.5e-3, depth);
 }
@@ -54,7 +54,7 @@ Point millimetres(const CaseRun& run, const std::string& key)
 
 Point plus(const Point& a, const Point& b) { return { { a[0] + b[0], a[1] + b[1], a[2] + b[2] } }; }
 
-// Largest depth [m] of a point of the tissue in the body that it touches.
+// Largest depth [m] of a point of the tissue inside the body that it touches.
 double deepest(GuardedTrial& motion)
 {
   const Model& model = motion.model();
@@ -95,7 +95,7 @@ void let_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, const s
 
 void finger(CaseRun& run)
 {
-  // skin on fat on bone
+  // skin lies on fat, and fat on bone
   VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { neo_hookean(4e3, 0.49), neo_hookean(40e3, 0.49) } };
   box.material = [&](const Voxel& v) { return v[2] + 2 >= box.size[2] ? 1 : 0; };
   Model model = voxel_model(box);
@@ -120,7 +120,7 @@ void blinking(CaseRun& run)
   const auto half = static_cast<std::int32_t>(std::ceil(1e3 * (eye + thick)) + 1);
   const Point centre{ { 1e-3 * half, 1e-3 * half, 0 } };
   const double half_width = run.number("half_width", "rad"), height = run.number("height", "rad");
-  // angles about z and above the equator, and distance from the centre
+  // polar coordinates: angle about z, angle above the equator, distance from the centre
   const auto polar = [=](const Point& p) -> Point
   {
     const double x = p[0] - centre[0], y = p[1] - centre[1], z = p[2] - centre[2], r = std::hypot(x, y, z);

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// the translation that the file gives as drawn_by [mm]
+// the translation `drawn_by` of the file, which is in mm
 RigidTransform drawn_by(const CaseRun& run)
 {
   const std::vector<double> by = run.numbers("drawn_by", "mm", 3);

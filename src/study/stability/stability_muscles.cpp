@@ -111,14 +111,14 @@ void strong_muscle(CaseRun& run)
 // activates every muscle of a face fully within one time step, and deactivates them likewise
 void switch_on(CaseRun& run, const std::string& scene)
 {
-  // the guard checks every 128 steps, because the motion after a switch lasts only a few hundred steps
+  // let the guard check every 128 steps, because the motion after a switch lasts only a few hundred steps
   GuardedTrial motion(run, run.settings.scene(scene), true, { 128 });
   motion.advance({ motion.solver().time_step(), motion.controls(1), 1 });
   motion.advance({ run.seconds("on"), motion.controls(1), 40 });
   motion.advance({ motion.solver().time_step(), motion.controls(0), 1 });
   motion.advance({ run.seconds("off"), motion.controls(0), 40 });
   motion.check_balance("every muscle on and off at once");
-  // no plot of the real head, whose data are private
+  // the real head gets no plot, because its data are private
   if (scene == "forehead")
     motion.plot(scene + "_switched", "Every muscle switched on in one step, and off");
 }

@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-/// Cuts a box of equal cubic voxels half-way up, from x = 0 over `length` voxels: the layer above the cut is a flap.
+/// Cuts a box of equal cubic voxels at half its height, from x = 0 over `length` voxels. The layer above is a flap.
 void cut(Model& model, std::int32_t length)
 {
   const std::int32_t middle = model.size[2] / 2, first = model.size[2] + 1, shift = first - middle;
@@ -33,7 +33,7 @@ void cut(Model& model, std::int32_t length)
   }
 }
 
-/// Adds one side of the cut to the surface that touches itself: `k` is the layer of voxels behind it.
+/// Adds one side of the cut to the surface that touches itself. `k`: the layer of voxels behind this side.
 void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper, std::int32_t length)
 {
   const auto first = static_cast<std::int32_t>(contact.surface.vertices.size());
@@ -58,7 +58,7 @@ void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upp
     }
 }
 
-/// Widths of the slit [m] at the nodes on it: least and largest.
+/// The least and the largest width of the slit [m] at its nodes.
 std::pair<double, double> widths(GuardedTrial& motion, std::int32_t length)
 {
   const Model& model = motion.model();

@@ -76,12 +76,12 @@ SceneConstraint constraint_at(const std::string& surface, SceneConstraint::Kind 
   return constraint;
 }
 
-// U and W at the outer radius b of a layer on a sphere of radius a, stiff from radius c on, under the body force f
-// [N/m3] against z.
+// U and W of curved_layer() at the outer radius b of a layer on a sphere of radius a, which is stiff beyond radius c.
+// The body force f [N/m3] acts against z.
 std::pair<double, double> radial_solution(double a, double b, double c, double poisson, bool slides, double f)
 {
   constexpr int n = 4000;
-  using Row = Eigen::Vector4d;  // of U and W at the lower node, then at the upper one
+  using Row = Eigen::Vector4d;  // coefficients of U and W at the lower node, then at the upper node
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(2 * n + 2);
   for (int e = 0; e < n; ++e)
@@ -172,7 +172,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
   if (!stiff)
     body.bound = 0.03;
-  // so weak that strains are about 1e-4
+  // gravity is so weak that strains are about 1e-4
   const double gravity = slides ? 0.1 : 1;
   body.scene.gravity = { 0, 0, -gravity };
   const auto [radial, tangential] = radial_solution(a, b, c, poisson, slides, density * gravity);
@@ -216,8 +216,8 @@ BoundaryBody pressed_sphere(double poisson)
 BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
 {
   const double length = round ? 30e-3 : 40e-3, half = round ? 5e-3 : 4e-3;
-  constexpr double below = 2.7e-3;    // the bar's mesh goes on in the bone, so that the grid does not start at it
-  constexpr double curvature = 0.03;  // [1/m]; twist per length the same
+  constexpr double below = 2.7e-3;    // length of the bar inside the bone [m], so that the grid starts in the bone
+  constexpr double curvature = 0.03;  // curvature, or twist per length [1/m]
   const bool bends = load == BarLoad::bending;
   const double poisson = bends ? 0 : 0.3;
   const Eigen::Matrix3d turn =
@@ -238,7 +238,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   BoundaryBody body;
   body.name = std::string(round ? "round bar, " : "square bar turned, ") + (bends ? "bending" : "torsion");
   body.scene = scene_between(bone, bar, poisson);
-  body.scene.skin.extrapolation = 10e-3;  // of the part in the bone
+  body.scene.skin.extrapolation = 10e-3;  // for the part of the skin in the bone
   body.scene.constraints = { constraint_at("bone", SceneConstraint::Kind::rigid) };
   body.exact = [=](const Point& p) -> Point
   {
@@ -264,7 +264,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
     const Eigen::Vector3d y = turn.transpose() * to_vector(p);
     return turn * (bends ? Eigen::Vector3d(0, 0, -y[0]) : Eigen::Vector3d(-y[1], y[0], 0));
   };
-  // tractions act at the middles of the end's triangles: scale them so that their moment is the exact one
+  // tractions act at the middles of the end's triangles: scale them so that their moment is exact
   const double moment = (round ? pi / 4 : 4.0 / 3) * std::pow(half, 4) * (bends ? 1 : 2);
   double of_triangles = 0;
   for (const auto& t : body.end.triangles)
@@ -274,7 +274,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   }
   body.traction = [=](const Point& p) -> Point
   { return to_point(moment / of_triangles * modulus * curvature * unit_traction(p)); };
-  // of a cantilever's first mode, whose wave number is 1.875 / length; torsion is faster
+  // bending has the period of a cantilever's first mode, with the wave number 1.875 / length; torsion is faster
   const double slowness = bends ? 0.5 * half : length / 1.875;
   body.period = bends ? 2 * pi * length * length / (3.516 * slowness * std::sqrt(young / density))
                       : 4 * length / std::sqrt(modulus / density);

@@ -106,7 +106,7 @@ Sparse voxel_stiffness(const Model& model, const std::array<double, 9>& gradient
   return sparse(size, size, entries);
 }
 
-// Central differences of the law of each triangle, passed on to the nodes that carry its vertices.
+// Central differences of the forces of each triangle, transferred to the nodes that carry its vertices.
 Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient)
 {
   const ShellMesh mesh(model);
@@ -205,7 +205,7 @@ struct LinearStatics::System
 {
   std::vector<std::array<int, 3>> unknown;  // row of each component of each node; -1: fixed
   Vectors fixed;                            // prescribed displacements [m]
-  Eigen::VectorXd forces;                   // that prescribed displacements cause [N]
+  Eigen::VectorXd forces;                   // forces that prescribed displacements cause [N]
   Eigen::SimplicialLLT<Sparse> factor;
 
   template <class Visit>
@@ -280,7 +280,7 @@ Vectors face_forces(const Model& model, int axis, std::int32_t index, const Poin
     for (const int side : { 0, 1 })
     {
       const auto first = corners[static_cast<std::size_t>(side) << axis];
-      // count a face once: for the voxel below it, or in plane 0, which has none, for the voxel above it
+      // count a face once: for the voxel below it, or in plane 0, which has no voxel below, for the voxel above it
       if (model.nodes[first][axis] != index || (side == 0 && index != 0))
         continue;
       for (std::size_t b = 0; b < 8; ++b)

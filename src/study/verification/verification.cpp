@@ -82,7 +82,7 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// the sections of text.md by the names of their cases; none if the file is missing
+// the sections of text.md by the names of their cases; empty if the file is missing
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);

@@ -18,10 +18,10 @@ using Ratio = std::array<int, 3>;  // proportions of a voxel's edges
 
 struct Deflection
 {
-  double tip_force, own_weight;  // mean over the end [m], for each of the two loads
+  double tip_force, own_weight;  // mean deflection of the end under each of the two loads [m]
 };
 
-// linear deflections of a square cantilever with `n` voxels through its height; only their ratios are used
+// deflections of a square cantilever by linear statics, with `n` voxels through its height; only ratios are used
 Deflection deflection(double poisson, int n, HourglassControl form, const Ratio& ratio,
                       Integration integration = Integration::one_point)
 {
@@ -108,8 +108,8 @@ void verify_cantilever(const Backend&, Finding& finding)
 namespace
 {
 
-// Period [s] of a bar of length 0.2 m, from the zero crossings of its end's displacement. Its nodes start with
-// velocities velocity(x / length) [m/s] along the axis; `guess` is the expected period.
+// Period [s] of a bar of length 0.2 m, from the zero crossings of its end's displacement. Nodes start with the velocity
+// velocity(x / length) [m/s] along the axis. `guess`: the expected period.
 double measured_period(const Model& model, const Backend& backend, int axis, double guess,
                        const std::function<double(double)>& velocity)
 {
@@ -122,7 +122,7 @@ double measured_period(const Model& model, const Backend& backend, int axis, dou
   const double interval = guess / 200;
   double before = 0, first = 0;
   int crossings = 0;
-  constexpr int wanted = 7;  // zero crossings, which span three periods
+  constexpr int wanted = 7;  // number of zero crossings, which span three periods
   for (int sample = 1; sample < 200 * 8; ++sample)
   {
     solver->advance(interval, solver->controls());

@@ -1,4 +1,4 @@
-// bodies whose sides do not follow the grid, baked as a user's scene is
+// bodies whose sides do not follow the grid, baked like the scene of a user
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/trilinear.hpp"
@@ -17,7 +17,7 @@ namespace frontalis
 namespace
 {
 
-/// A folder that goes with its owner.
+/// A folder that is removed with this object.
 struct ScratchFolder
 {
   std::filesystem::path path =
@@ -31,7 +31,7 @@ struct ScratchFolder
   }
 };
 
-/// The transposed rotation: from the scene's axes to the local ones.
+/// Turns a vector from scene axes to local axes by the transposed rotation.
 Point turned_back(const RigidTransform& to_scene, const Point& v)
 {
   Point out{};
@@ -120,7 +120,7 @@ void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& m
   }
 }
 
-/// RMS error of the displacement over its RMS.
+/// RMS error of the displacement over the RMS displacement.
 double error_of(const BoundaryBody& body, double edge, const Backend& backend, const BakeScene& bake)
 {
   Scene scene = body.scene;
@@ -130,7 +130,7 @@ double error_of(const BoundaryBody& body, double edge, const Backend& backend, c
   load_end(body, model);
   EquilibriumSettings search;
   search.backend = backend;
-  // settling is judged in windows of some hundred steps, which are many periods of a thin layer at coarse voxels
+  // settling is tested over windows of some hundred steps, which are many periods of a thin layer of coarse voxels
   search.period = std::max(body.period, 0.04);
   const RestState state = find_equilibrium(model, search);
   std::array<std::vector<double>, 3> u;

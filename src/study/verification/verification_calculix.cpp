@@ -36,12 +36,12 @@ struct SolidProblem
   };
   Point size;  // [m]
   std::vector<Material> materials;
-  std::function<int(const Point&)> material;  // index at a position [m]; not set: 0
+  std::function<int(const Point&)> material;  // index of the material at a position [m]; not set: 0
   std::vector<Hold> holds;
   Point gravity{};  // [m/s2]
 };
 
-// A solution per node: rest positions [m], displacements [m], forces of the supports [N].
+// A solution: for each node the rest position [m], the displacement [m] and the force of the supports [N].
 struct SolidState
 {
   Vectors positions, displacements, forces;
@@ -129,7 +129,7 @@ std::string text_of(const std::filesystem::path& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// the last table `name` of CalculiX's output, of `count` nodes; `unit` converts its numbers to SI units
+// reads the last table `name`, of `count` nodes, in CalculiX's output; the factor `unit` converts numbers to SI units
 Vectors last_block(const std::string& output, const std::string& name, std::size_t count, double unit)
 {
   const std::size_t at = output.rfind(name);
@@ -174,7 +174,7 @@ SolidState solve_by_calculix(const SolidProblem& problem, const Lattice& element
   return state;
 }
 
-// the same with voxels of edge `edge` [m], which must divide the box's; `period` as in EquilibriumSettings
+// Solves the problem with voxels of edge `edge` [m], which must divide the box. `period`: see EquilibriumSettings.
 SolidState solve_by_voxels(const SolidProblem& problem, double edge, double period, const Backend& backend)
 {
   VoxelBox box{ {}, { { edge, edge, edge } }, problem.materials };
@@ -230,10 +230,10 @@ struct Comparison
   SolidProblem problem;
   Lattice elements;
   std::vector<double> edges;  // voxel edges [m]
-  double period;              // of the slowest vibration [s]
+  double period;              // period of the slowest vibration [s]
   std::array<std::string, 2> what, unit;
   std::function<std::array<double, 2>(const SolidState&)> figures;
-  bool second_is_small = false;  // the second figure is a small difference of large stresses and has no bound
+  bool second_is_small = false;  // the second figure is a small difference of large stresses, so it has no bound
 };
 
 bool start(const Point& p) { return p[0] < tiny; }

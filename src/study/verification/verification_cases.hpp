@@ -28,12 +28,13 @@ inline std::string name_of(HourglassControl form)
 /// Wrinkles of a stiff film on a deep soft base, both with Poisson's ratio 0.49, in plane strain.
 struct Wrinkles
 {
-  double wavelength = 0;   ///< in units of the film's thickness
-  double compression = 0;  ///< [%]
+  double wavelength = 0;   ///< wavelength over the film's thickness
+  double compression = 0;  ///< critical compression [%]
 };
-/// By plate theory (Cao & Hutchinson 2012); `contrast`: Young's modulus of the film over the base's.
+/// Wrinkles by plate theory (Cao & Hutchinson 2012). `contrast`: Young's modulus of the film over that of the base.
 Wrinkles expected_wrinkles(double contrast);
-/// Stretch across a base of Poisson's ratio 0.49 that leaves no stress in this direction, in plane strain.
+/// Stretch normal to a base at which there is no stress in this direction, if the base is stretched by `along` in its
+/// plane. Poisson's ratio is 0.49, in plane strain.
 double free_stretch(double along);
 
 /// A solver that works in the calling thread.

@@ -119,7 +119,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
     const std::vector<double> mass = lumped_masses(model);
     constexpr double dt = 2e-6;
     const auto solver = make(model, backend, false, dt);
-    // the block arrives obliquely and turning, so that no component is zero
+    // the block arrives obliquely and rotates, so that no component of momentum is zero
     Vectors velocity;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
     {
@@ -188,8 +188,8 @@ void verify_contact_incline(const Backend&, Finding& finding)
     finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1);
     for (const double degrees : { 35.0, 60.0 })
     {
-      // with damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
-      // next, q = exp(-c t)
+      // with damping c and acceleration a, a block that moves by w in a time t then moves by q w + a t (1 - q) / c in
+      // the same time, where q = exp(-c t)
       const auto solver = on_incline(degrees, backend);
       const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
       finding.checks.relative("acceleration at " + readable(degrees) + "°, " + backend, "m/s2",

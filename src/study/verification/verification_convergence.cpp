@@ -70,7 +70,7 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
 
 struct Surface
 {
-  double mean = 0, spread = 0;  // mean and standard deviation of radial displacement over Lame's
+  double mean = 0, spread = 0;  // mean and standard deviation of the radial displacement over that of Lame's solution
 };
 
 // inner and outer surface of an eighth of a hollow sphere, radii 1 cm and 2 cm, under a small pressure inside
@@ -104,9 +104,9 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
   model.skin.vertices.insert(model.skin.vertices.end(), outside.vertices.begin(), outside.vertices.end());
   model.skin.triangles = inside.triangles;
   model.skin_binding = bind_points(model, model.skin.vertices);
-  // tolerance above the rounding errors of single precision, 1e-4 at such small strains
+  // the tolerance is above the rounding errors of single precision, which are 1e-4 at such small strains
   const EquilibriumSettings relax{ backend, 4 * b / std::sqrt(young / 3 / 1000), 5e-4 };
-  // half the difference between the solutions with pressure and with suction has no second-order terms
+  // take half the difference between the solutions with pressure and with suction: it has no second-order terms
   SkinState skin[2];
   for (const int side : { 0, 1 })
   {

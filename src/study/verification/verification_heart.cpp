@@ -26,7 +26,7 @@ Material heart(double kappa)
   return material;
 }
 
-// final height [mm] of the upper edge of the beam's end; n voxels through its height
+// final height [mm] of the upper edge of the beam's end, with n voxels through the beam's height
 double beam(int n, double kappa, const Backend& backend)
 {
   Model model = voxel_model({ { 10 * n, n, n } }, 1e-3 / n, heart(kappa));
@@ -59,7 +59,7 @@ std::array<float, 3> wall_fibre(double x, double y, double z)
 
 struct Apex
 {
-  double inner, outer;  // distance from the ellipsoids' centre [mm]
+  double inner, outer;  // distances of the inner and outer apex from the ellipsoids' centre [mm]
 };
 
 // apices of the inflated and contracted ellipsoid, with voxels of edge h [m]

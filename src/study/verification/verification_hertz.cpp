@@ -12,8 +12,9 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 
-// Force on a rigid sphere pressed into an elastic layer that is bonded to a rigid ground, without friction: Hertz with
-// the factor of Dimitriadis et al., Biophysical Journal 82, 2002. chi: contact radius of Hertz over thickness.
+// A rigid sphere is pressed without friction into an elastic layer on a rigid ground, to which the layer is bonded. The
+// factor of Dimitriadis et al., Biophysical Journal 82, 2002, times the force of Hertz is the force on the sphere. chi:
+// Hertz's contact radius over the thickness of the layer.
 double layer_factor(double poisson, double chi)
 {
   const double a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson * poisson) / (1 - poisson);
@@ -42,12 +43,11 @@ struct Placement
 
 struct Pressed
 {
-  double force;      // on the sphere, along its motion [N]
+  double force;      // force on the sphere along its motion [N]
   double shortfall;  // depth of the sphere minus that of the tissue below its middle [m]
 };
 
-// Presses the sphere into half of a layer, cut at y = 0. Voxels are filled by the fraction of them that is in the
-// layer.
+// Presses the sphere into half of a layer, which is cut at y = 0. The fill of a voxel is its fraction in the layer.
 Pressed press(const Placement& placement, const Backend& backend)
 {
   const double c = std::cos(placement.turn * pi / 180), s = std::sin(placement.turn * pi / 180);
@@ -126,7 +126,7 @@ void verify_hertz(const Backend& backend, Finding& finding)
   {
     const Pressed pressed = press(placement, backend);
     finding.checks.relative("force, " + placement.name, "N", expected, pressed.force, 0.05);
-    // the difference is the penetration that contact allows
+    // the shortfall is the penetration that contact allows
     finding.checks.absolute("sphere deeper than tissue, " + placement.name, "voxels", 0, pressed.shortfall / edge,
                             0.05);
   }

@@ -215,7 +215,7 @@ void verify_simple_shear(const Backend& backend, Finding& finding)
     const Gradient F{ { 1, gamma, 0, 0, 1, 0, 0, 0, 1 } };
     solver->set_displacements(affine_displacements(model, F));
     const Gradient P = piola_stress(model, *solver);
-    // J = 1: sigma = P F^T
+    // Cauchy stress: sigma = P F^T, because J = 1
     const auto sigma = [&](int i, int j)
     {
       return (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) /

@@ -16,12 +16,12 @@ namespace
 
 constexpr double edge = 1e-3, young = 34e3, density = 1000, degree = 3.14159265358979 / 180;
 
-// lengths in voxels: sides and height of a block, and the gap between the two
+// lengths in voxels: sides and height of a block, and the gap between the two blocks
 constexpr double length = 18, width = 4, height = 6, gap = 3;
 
-// Two blocks, one above the other, in a grid that is turned about y and shifted along x and z. Voxels that tissue fills
-// in part have the stress of their centre and are left out below a fifth, or, if they are `cut`, that of the tissue's
-// centroid.
+// Two blocks, one above the other, in a grid that is turned about y and shifted along x and z. Normally, partly filled
+// voxels have the stress at their centre and are left out if less than a fifth is filled. With `cut` they have the
+// stress at the tissue's centroid.
 class Blocks
 {
 public:
@@ -39,14 +39,14 @@ public:
       const Point q = in_blocks(p);
       return q[0] > 0 && q[0] < length && q[2] > 0 && q[2] < top && (q[2] < height || q[2] > height + gap);
     };
-    constexpr int samples = 16;  // along each edge of a voxel
+    constexpr int samples = 16;  // number of samples along each edge of a voxel
     box.fill = cut ? sampled_fill(box.spacing, inside, samples, 0.02) : sampled_fill(box.spacing, inside);
     model = voxel_model(box);
     if (cut)
       cut_at_surface(model, inside, samples);
     for (const bool upper : { false, true })
     {
-      // the outer side keeps its distance from a plane, which is a bone above
+      // the outer side slides on a plane; the upper plane moves with a bone
       const double end = upper ? top : 0, normal = 1000;
       const Point centre = in_grid({ { 0.5 * length, 0.5 * width, end + normal / edge } });
       const auto surface =
@@ -65,7 +65,7 @@ public:
     let_touch(model, { side(height, true), side(height + gap, false) }, 0);
   }
 
-  /// Coordinates of the blocks, in voxels, and of the grid [m].
+  /// Transforms coordinates of the blocks [voxels] to coordinates of the grid [m], and back.
   Point in_grid(const Point& q) const
   {
     const double x = edge * q[0], z = edge * q[2];
@@ -76,7 +76,7 @@ public:
     const double x = p[0] - shift_, z = p[2] - shift_ - sine_ * edge * length;
     return { { (cosine_ * x - sine_ * z) / edge, p[1] / edge, (sine_ * x + cosine_ * z) / edge } };
   }
-  /// Component [m] of a vector across the surfaces.
+  /// Component [m] of a vector normal to the surfaces.
   double across(const Point& v) const { return sine_ * v[0] + cosine_ * v[2]; }
 
   Model model;
@@ -85,7 +85,7 @@ private:
   double cosine_, sine_, shift_;
 };
 
-// Displacement of a point across the surfaces [m].
+// Displacement of a point normal to the surfaces [m].
 double across_at(const Blocks& blocks, const Vectors& u, const Point& q)
 {
   const Binding there = bind_points(blocks.model, { blocks.in_grid(q) });
@@ -114,7 +114,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
   solver->advance(0.03, controls);
   solver->advance(0.06, controls);
   const Vectors u = displacements(*solver);
-  // away from the free sides, which are steps of the grid
+  // leave out the surroundings of the free sides, which are staircases
   constexpr double margin = height;
   double least = 1, most = 0, sum = 0, squeezed = 0;
   int count = 0;
@@ -130,7 +130,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
       squeezed += across_at(blocks, u, { { x, y, 1.5 } }) - across_at(blocks, u, { { x, y, height - 1.5 } });
       ++count;
     }
-  // the second term of the compression of neo-Hookean tissue, 1 + strain, is its stiffening
+  // neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), up to the second order
   const double found = squeezed / (count * (height - 3) * edge), pressure = found * (1 + found);
   const std::string of = ", " + place + ", ν = " + readable(poisson) + ", " + backend;
   finding.checks.relative("pressure over E" + of, "1", 0.05, pressure, 0.1);
@@ -144,7 +144,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
                           1e6 * sum / count, 0.03);
 }
 
-// The upper block flies at the lower one obliquely and turning, without damping.
+// The upper block flies obliquely towards the lower one and rotates, without damping.
 void collide(const Backend& backend, Finding& finding)
 {
   Blocks blocks(0, 0, 0.45, false);
@@ -165,7 +165,7 @@ void collide(const Backend& backend, Finding& finding)
   solver->set_velocities(velocity);
   const auto momenta = [&]
   {
-    // from one step: positions change along the velocity, which adds no angular momentum
+    // take velocities from one step: positions move along the velocity, which adds no angular momentum
     const Vectors from = displacements(*solver);
     const double begin = solver->time();
     solver->advance(0.5 * solver->time_step(), solver->controls());
@@ -216,7 +216,7 @@ void verify_self_contact(const Backend&, Finding& finding)
                      for (const double poisson : { 0.3, 0.49 })
                      {
                        press("along the grid", 0, 0, poisson, false, backend, finding);
-                       if (backend == "reference")  // it is slow
+                       if (backend == "reference")  // the reference backend is slow
                          continue;
                        press("shifted by 1/3", 0, 1.0 / 3, poisson, false, backend, finding);
                        press("turned by 20°", 20, 0, poisson, false, backend, finding);

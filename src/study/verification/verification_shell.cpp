@@ -15,17 +15,17 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 1e6, poisson = 0.49;  // of the shell
+constexpr double young = 1e6, poisson = 0.49;  // Young's modulus [Pa] and Poisson's ratio of the shell
 const double pi = std::acos(-1.0);
 
-// A box of tissue, cut out of a larger one so that its layer covers the top alone.
+// A box of tissue with a layer that is a shell. It is cut out of a larger box, so that the layer covers only the top.
 struct Slab
 {
   Voxel size;
-  double edge = 1e-3;       // of voxels [m]
+  double edge = 1e-3;       // edge of voxels [m]
   double base = 1e3;        // Young's modulus below the shell [Pa]
-  double thickness = 2e-4;  // of the shell [m]
-  double depth = 0;         // of the shell's upper side below the top [m]
+  double thickness = 2e-4;  // thickness of the shell [m]
+  double depth = 0;         // depth of the shell's upper side below the top [m]
 };
 
 Model baked(const Slab& slab, const BakeScene& bake)
@@ -81,17 +81,17 @@ double shell_energy(const Model& model, const Vectors& u)
   return solver->ledger()["shell"];
 }
 
-// Energy of a plate with an oblong bump over that in plate theory; the bump's ridge is at an angle to the voxels.
+// Energy of a plate bent to an oblong bump, over that in plate theory. `angle`: angle of the bump to the voxels.
 double bump_energy(const Model& model, const Slab& slab, double angle)
 {
   const double side = slab.size[0] * slab.edge, amplitude = 1e-3 * slab.edge, radius[2] = { 0.24 * side, 0.45 * side };
-  // w = a (1 - (x / r0)^2 - (y / r1)^2)^4, so that no moment is needed at its rim
+  // with w = a (1 - (x / r0)^2 - (y / r1)^2)^4 the bump needs no moment at its rim
   const auto bump = [&](double x, double y)
   {
     const double q = 1 - std::pow(x / radius[0], 2) - std::pow(y / radius[1], 2);
     return q > 0 ? amplitude * std::pow(q, 4) : 0;
   };
-  double squared = 0;  // integral of (w_xx + w_yy)^2; that of the Gaussian curvature is 0
+  double squared = 0;  // integral of (w_xx + w_yy)^2; the integral of the Gaussian curvature is 0
   const double step = 2e-3 * side;
   for (double x = -radius[0]; x < radius[0]; x += step)
     for (double y = -radius[1]; y < radius[1]; y += step)
@@ -107,7 +107,7 @@ double bump_energy(const Model& model, const Slab& slab, double angle)
   return shell_energy(model, u) / (0.5 * bending_stiffness(slab.thickness) * squared);
 }
 
-// Tip deflection of a strip under a force at its tip over that of a beam, by linear statics.
+// Tip deflection of a strip under a force at its tip, by linear statics, over the deflection of a beam.
 double strip_deflection(double depth, const BakeScene& bake)
 {
   Slab slab{ { { 33, 4, 1 } } };
@@ -128,9 +128,9 @@ double strip_deflection(double depth, const BakeScene& bake)
 // A film on a deep soft base, in plane strain.
 struct Film
 {
-  double contrast;   // Young's modulus of the film over the base's
+  double contrast;   // Young's modulus of the film over that of the base
   double thickness;  // [m]
-  double edge;       // of voxels [m]
+  double edge;       // edge of voxels [m]
 
   double wavelength() const { return thickness * expected_wrinkles(contrast).wavelength; }
   double compression() const { return 0.01 * expected_wrinkles(contrast).compression; }
@@ -147,8 +147,8 @@ std::array<double, 9> compressed(double compression)
   return { { 1 - compression, 0, 0, 0, 1, 0, 0, 0, free_stretch(1 - compression) } };
 }
 
-// A film on a base of so many wavelengths. Its ends and its bottom are held where a uniform compression puts them; ends
-// that were free to rise would fold at half the compression, as the end of a free beam does.
+// A film on a base with a length of `waves` wavelengths. Ends and bottom are displaced as by a uniform compression.
+// Ends that are free to rise would fold at half the compression, as the end of a free beam does.
 FilmModel film_model(const Film& film, double waves, const BakeScene& bake, double compression = 0)
 {
   const double edges = film.wavelength() / film.edge;
@@ -166,7 +166,7 @@ FilmModel film_model(const Film& film, double waves, const BakeScene& bake, doub
   return made;
 }
 
-// Heights of the top over the length, without their mean.
+// Positions along the length, and the height of the top there minus its mean.
 std::vector<std::pair<double, double>> profile(const Model& model, const Vectors& u)
 {
   std::map<double, double> height;
@@ -186,7 +186,7 @@ std::vector<std::pair<double, double>> profile(const Model& model, const Vectors
   return found;
 }
 
-// The wavelength around an expected one with the largest Fourier component.
+// The wavelength with the largest Fourier component, from half to twice an expected wavelength.
 double strongest_wavelength(const std::vector<std::pair<double, double>>& heights, double expected)
 {
   double best = 0, largest = -1;
@@ -259,7 +259,7 @@ void check_film(const Film& film, const BakeScene& bake, Table& table, Finding& 
               rounded(100 * found.compression) });
 }
 
-// Amplitudes of a film that is compressed past its critical compression, from the solver's own motion to rest. Theory:
+// Checks the amplitude of a film that is compressed past its critical compression and has come to rest. In theory it is
 // thickness * sqrt(compression / critical - 1) (Chen & Hutchinson 2004).
 void check_growth(const Film& film, const Backend& backend, const BakeScene& bake, Finding& finding)
 {

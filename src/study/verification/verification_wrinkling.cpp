@@ -19,11 +19,11 @@ constexpr double poisson = 0.49, base_young = 1e4;
 struct Layers
 {
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // edges of voxels [m]
-  int base = 0;                                           // planes of voxels
-  std::vector<double> film;  // per plane of voxels, lowest first: Young's modulus over the base's
+  int base = 0;                                           // number of planes of voxels
+  std::vector<double> film;  // Young's modulus of each plane of voxels, lowest first, over that of the base
 };
 
-// compression (0..1) at which a cell of half a wavelength, `half` voxels long, becomes unstable
+// compression (0..1) at which a cell of `half` voxels, half a wavelength long, becomes unstable
 double critical_compression(const Layers& layers, int half)
 {
   VoxelBox box{ { { half, 1, layers.base + static_cast<int>(layers.film.size()) } },
@@ -47,8 +47,8 @@ double critical_compression(const Layers& layers, int half)
   return zero_between(0, 0.3, unstable, 12);
 }
 
-// The wrinkles that need the least compression, with half wavelengths from `first` to `last` voxels. `curve` gets the
-// critical compression [%] over the wavelength in units of `unit` voxels.
+// Finds the wrinkles that need the least compression, with half wavelengths from `first` to `last` voxels. `curve`
+// receives the critical compression [%] over the wavelength in units of `unit` voxels.
 Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int last, int step, double unit,
                        Plot::Curve& curve)
 {
@@ -139,15 +139,15 @@ void verify_wrinkling(const Backend&, Finding& finding)
     finding.checks.relative("critical compression, " + curve.name, "%", expected.compression, found.compression, 0.1);
     plot.curves.push_back(curve);
   }
-  // 48 MPa and 0.02 mm on 0.0814 MPa, in voxels of 0.02 mm
+  // corneum of 48 MPa and 0.02 mm on dermis of 0.0814 MPa, in voxels of 0.02 mm
   constexpr double skin_contrast = 48 / 0.0814, thickness = 0.02;
   Plot::Curve skin;
   const Wrinkles of_skin = film_wrinkles(skin_contrast, 1, skin);
   finding.checks.relative("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1);
   finding.checks.relative("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1);
   finding.plots.emplace_back("wrinkling", plot);
-  // Depth of hypodermis over bone [mm]; wavelength [mm] and compression [%] by plate theory on an elastic layer bonded
-  // to bone: with ν = 0.49 and free tangential motion at the plate, and with ν = 0.5 and none.
+  // Columns: depth of hypodermis over bone [mm]; then wavelength [mm] and compression [%] by plate theory on an elastic
+  // layer bonded to bone, twice: ν = 0.49 and a plate that slides on the layer, ν = 0.5 and a plate that does not.
   constexpr double plates[][5] = { { 5, 12.46, 7.13, 12.1, 7.3 },
                                    { 3, 10.44, 9.12, 9.7, 9.7 },
                                    { 2, 9.04, 11.61, 8.1, 13 } };

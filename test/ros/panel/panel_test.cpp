@@ -26,7 +26,7 @@
 namespace
 {
 
-constexpr std::chrono::minutes limit(4);  // only ends a test that would never end
+constexpr std::chrono::minutes limit(4);  // time limit for tests that would never end
 
 /// Runs rviz until a condition holds.
 bool run_until(const std::function<bool()>& holds)
@@ -97,7 +97,7 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
 
   find<QAbstractButton>("expression/wink")->click();
   EXPECT_TRUE(reaches(0.6, 0));
-  // untouched sliders show what others command
+  // sliders that nobody touches show the activations that others command
   EXPECT_TRUE(run_until([&] { return left->value() == 600 && right->value() == 0; }));
   EXPECT_TRUE(run_until([&] { return find<QProgressBar>("speed")->value() > 0; }));
 

@@ -7,9 +7,9 @@ namespace frontalis
 namespace
 {
 
-// Half the distance between the two points, outside and inside, that give the hull's field its slope at a site.
+// Distance, to the outside and the inside of a site, of two points whose values set the slope of the hull's field.
 constexpr double slope_distance = 6e-3;  // [m]
-// Weight of smoothness: lets the hull miss a site by a few tenths of a millimetre where sites contradict each other.
+// Weight of smoothness: where sites contradict each other, the hull may miss a site by a few tenths of a millimetre.
 constexpr double smoothing = 1e-3;
 
 }  // namespace
@@ -36,7 +36,7 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double 
     const ClosestPoint closest = skin.closest(to_vector(site.at));
     const auto [a, b, c] = corners(skin.mesh(), skin.mesh().triangles[closest.triangle]);
     Vector3d inward = to_vector(site.direction);
-    // depths along a direction are those of the teeth and the chin, which tissue in front does not move
+    // sites with a direction are those of the teeth and the chin, whose depth does not follow the amount of tissue
     const bool normal = inward.norm() < 0.5;
     if (normal)
       inward = -(b - a).cross(c - a).normalized();
@@ -88,7 +88,7 @@ double HeadBones::Bone::operator()(const Vector3d& p, double hull) const
 {
   using Kind = HeadTemplate::BoneStep::Kind;
   const Vector3d left{ p[0], std::abs(p[1]), p[2] };
-  double f = 1;  // [m]: nothing is there
+  double f = 1;  // [m], far from any bone
   for (const Step& step : steps)
   {
     double shared = -1;

@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr double default_edge = 1.75e-3, skull_edge = 2e-3;  // [m]
-constexpr int default_levels = 2;                            // of the skin that depths are measured from
+constexpr int default_levels = 2;                            // subdivisions of the skin from which depths are measured
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
 int levels_for(const PolygonMesh& cage, double edge)
@@ -61,8 +61,8 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
 
 TriangleMesh Head::skin(const std::string& name, double edge) const
 {
-  // `face` is what has a dermis; `visible` also lines nostrils and lips; `skin` is closed by the mouth and the sacs
-  // behind the lids
+  // `face` is the part with a dermis; `visible` also has the linings of nostrils and lips; `skin` is the whole surface,
+  // closed by the mouth and by the sacs behind the lids
   std::vector<std::string> groups;
   if (name != "skin")
     groups = { "face", "scalp", "neck", "ear", "lid", "lid_margin", "lips" };
@@ -90,7 +90,7 @@ TriangleMesh Head::eye(bool left, double edge) const
 
 TriangleMesh Head::bone(const std::string& name, double edge) const
 {
-  // a margin of bone beyond the skin is never reached
+  // bones lie inside the skin, so that the skin's box encloses them
   Box half = bounding_box(default_skin_);
   half.min()[1] = 0;
   TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge);
@@ -152,14 +152,14 @@ Head::Below Head::below(const Vector3d& p) const
   const ClosestPoint closest = tree_->closest(p);
   Below found;
   found.skin = closest.point;
-  // a mean of the corners' normals, which varies smoothly
+  // interpolate the corners' normals, because the mean varies smoothly
   const Triangle& t = default_skin_.triangles[closest.triangle];
   const auto [a, b, c] = corners(default_skin_, t);
   found.normal = ((b - closest.point).cross(c - closest.point).norm() * normals_[t[0]] +
                   (c - closest.point).cross(a - closest.point).norm() * normals_[t[1]] +
                   (a - closest.point).cross(b - closest.point).norm() * normals_[t[2]])
                      .normalized();
-  // down to the bone, or to the mucosa that lines lids and mouth
+  // go down to the bone, or to the mucosa that lines lids and mouth
   const Vector3d start = found.skin - step * found.normal;
   found.thickness = 2 * step;
   while (found.thickness < most)
@@ -208,7 +208,7 @@ std::optional<ControlNet> Head::net(const std::string& part) const
 
 std::shared_ptr<const Head> head_of(const Shape& shape)
 {
-  // a scene has some sixty parts of one head; those of the last scene are kept
+  // a scene has about sixty parts of one head, so the head of the last call is kept
   static std::mutex mutex;
   static std::shared_ptr<const HeadTemplate> last_template;
   static std::map<std::string, double> last_dimensions;

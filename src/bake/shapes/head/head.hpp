@@ -12,12 +12,12 @@
 namespace frontalis
 {
 
-/// Moves the default head to the dimensions asked for. The displacement is the most likely one of a smooth random field
-/// (Matern 3/2 covariance; kriging with differences as data) that gives each independent dimension its value.
+/// Deforms the default head to given dimensions. Of all displacements that give each independent dimension its value,
+/// it takes the most likely one of a smooth random field (Matern 3/2 covariance; kriging with differences as data).
 class HeadWarp
 {
 public:
-  /// `landmarks` [m]: those of the left side and of the midline (y = 0), by name. Throws Error on values that
+  /// `landmarks` [m]: positions on the left side and in the midline (y = 0), by name. Throws Error on dimensions that
   /// contradict each other, naming them.
   HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3d>& landmarks,
            const std::map<std::string, double>& wanted);
@@ -26,21 +26,21 @@ public:
 
 private:
   std::vector<Vector3d> places_;   ///< landmarks of both sides
-  std::vector<Vector3d> weights_;  ///< of the covariance with each
+  std::vector<Vector3d> weights_;  ///< weights of the covariance with each place
 };
 
 /// Signed distance-like fields of the default head's bones [m], negative inside.
 class HeadBones
 {
 public:
-  /// Depths of the template are multiplied by `tissue`, but for those of the teeth and the chin.
+  /// Multiplies the depths of the template by `tissue`, except at the teeth and the chin.
   HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue = 1);
 
-  /// Outer surface of skull, teeth and mandible, as if the nose's and the eyes' openings were closed.
+  /// Signed distance from the hull: the outer surface of skull, teeth and mandible with nose and eye openings closed.
   double hull(const Vector3d& p) const;
   bool has(const std::string& name) const { return bones_.count(name) + bodies_.count(name) > 0; }
   double part(const std::string& name, const Vector3d& p) const;
-  /// The bone or eyeball closest to the skin.
+  /// Signed distance from the union of all bones and eyeballs.
   double any(const Vector3d& p) const;
 
 private:
@@ -66,8 +66,8 @@ private:
   Eigen::Vector4d linear_{ 0, 0, 0, 0 };
 };
 
-/// Triangles of the surface f = 0 of a function that is symmetric in y, between two corners with lower y = 0: made on
-/// one side by marching tetrahedra with cells of `edge` [m] and mirrored. f is negative inside; normals point outwards.
+/// Triangles of the surface f = 0 in the box `half` with lower y = 0 and in its mirror image, for an f that is
+/// symmetric in y. Uses marching tetrahedra with cells of `edge` [m]. f is negative inside; normals point outwards.
 TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& half, double edge);
 
 /// The head of a template with given dimensions. All parts are made for the default head and moved by one warp, so that
@@ -77,16 +77,16 @@ class Head
 public:
   Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string, double>& dimensions, double tissue = 1);
 
-  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2). Throws Error on an unknown part.
+  /// Triangles of a part, with edges of about `edge` [m] (0: 1.75 mm, skull 2 mm). Throws Error on an unknown part.
   TriangleMesh part(const std::string& name, double edge) const;
-  /// Control net of a muscle; nothing if the part is not one.
+  /// Control net of a part that is a muscle; empty for other parts.
   std::optional<ControlNet> net(const std::string& part) const;
   /// Value of a dimension [m] on this head's skin.
   double dimension(const std::string& name) const;
-  /// Where a place of the default head is on this one.
+  /// Position on this head of a point of the default head.
   Vector3d moved(const Vector3d& p) const { return (*warp_)(p); }
   Vector3d place(const HeadTemplate::Point& point) const;
-  /// Position of a landmark; `right`: of its image on the right side.
+  /// Position of a landmark, or with `right` of its image on the right side.
   Vector3d landmark(const std::string& name, bool right = false) const;
 
 private:
@@ -94,9 +94,9 @@ private:
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
   ControlNet left_net(const HeadTemplate::Muscle& muscle) const;
-  /// left_net(), found once per muscle: surfaces and fibres of both sides ask for it.
+  /// left_net(), computed once per muscle, because surfaces and fibres of both sides need it.
   ControlNet known_net(const HeadTemplate::Muscle& muscle) const;
-  /// Skin's closest point to p, its outward normal, and the thickness of the soft tissue there, at most 20 mm.
+  /// The point of the skin closest to p, the outward normal and the thickness of the soft tissue there, at most 20 mm.
   struct Below
   {
     Vector3d skin, normal;
@@ -108,9 +108,9 @@ private:
   PolygonMesh cage_;
   std::vector<std::int32_t> mirror_;
   TriangleMesh default_skin_;
-  std::vector<Vector3d> normals_;  ///< of the default skin's vertices
+  std::vector<Vector3d> normals_;  ///< normals at the default skin's vertices
   std::optional<TriangleTree> tree_;
-  std::map<std::string, Vector3d> landmarks_;  ///< of the default head, left or midline
+  std::map<std::string, Vector3d> landmarks_;  ///< landmarks of the default head, left or midline
   std::optional<HeadWarp> warp_;
   std::optional<HeadBones> bones_;
   mutable std::mutex nets_mutex_;
@@ -120,7 +120,7 @@ private:
 /// The head that a shape is a part of; equal shapes share one.
 std::shared_ptr<const Head> head_of(const Shape& shape);
 
-/// Triangles of a part of a head, and the control net of a muscle that is one.
+/// Triangles of a part of a head, and the control net of a part that is a muscle.
 TriangleMesh make_head(const Shape& shape);
 std::optional<ControlNet> head_muscle_net(const Shape& shape);
 

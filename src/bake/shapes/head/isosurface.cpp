@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-/// The six tetrahedra about the diagonal of a cube; corner bits are x, y, z.
+/// The six tetrahedra around the diagonal of a cube. Bits 0, 1, 2 of a corner's number are its x, y, z.
 constexpr int tetrahedra[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 },
                                    { 0, 6, 4, 7 }, { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
 
@@ -59,11 +59,11 @@ private:
     return { origin_[0] + edge_ * i[0], i[1] == 0 ? origin_[1] : origin_[1] + edge_ * i[1], origin_[2] + edge_ * i[2] };
   }
 
-  /// Where the function is at least this, the surface is farther than the points of a block and their neighbours.
+  /// Where |f| is at least this [m], the surface is farther away than the points of a block and their neighbours.
   double far() const { return 1.5 * block * edge_; }
   bool near(const Index& i) const { return std::abs(values_[number(i)]) < far(); }
 
-  /// Values at a block of grid points; one for all where it says that the surface is far, since f is about a distance.
+  /// Fills the values at a block of grid points. If the block's middle is far from the surface, all get its value.
   void sample(const std::function<double(const Vector3d&)>& f, const Index& first)
   {
     const double middle = f(at(first) + Vector3d::Constant(0.5 * (block - 1) * edge_));
@@ -74,7 +74,7 @@ private:
         {
           const bool border = i == 0 || i == size_[0] - 1 || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
           const double value = near ? f(at({ i, j, k })) : middle;
-          // the surface is closed at the border, and no corner lies on it
+          // positive values close the surface at the border; small ones are raised, so that no grid point lies on it
           values_[number({ i, j, k })] = border ? std::max(value, edge_) : std::abs(value) < 1e-9 ? 1e-9 : value;
         }
   }
@@ -114,13 +114,13 @@ private:
     }
     if (in.empty() || out.empty())
       return;
-    using Cut = std::pair<int, int>;  // corners inside and outside
+    using Cut = std::pair<int, int>;  // a corner inside and a corner outside
     const auto place = [&](const Cut& cut) -> Vector3d
     {
       const std::size_t inner = number(index[cut.first]), outer = number(index[cut.second]);
       if (values_[outer] == 0)
         return snapped_.at(outer);
-      // from the lower number on, so that neighbours find the same point
+      // interpolate from the point of the lower number, so that neighbours find the same position
       const bool ordered = inner < outer;
       const std::size_t a = ordered ? inner : outer, b = ordered ? outer : inner;
       const Vector3d from = at(index[ordered ? cut.first : cut.second]),
@@ -130,7 +130,7 @@ private:
     const Vector3d outward = at(index[out[0]]) - at(index[in[0]]);
     const auto triangle = [&](const Cut& a, const Cut& b, const Cut& c)
     {
-      // snapped corners may lie on a line, those of the grid do not
+      // decide by grid points, because snapped corners may be collinear
       const auto middle = [&](const Cut& cut) -> Vector3d { return at(index[cut.first]) + at(index[cut.second]); };
       const bool turned = (middle(b) - middle(a)).cross(middle(c) - middle(a)).dot(outward) < 0;
       const auto base = static_cast<std::int32_t>(mesh.vertices.size());
@@ -154,7 +154,7 @@ private:
   double edge_;
   Index size_{};
   std::vector<double> values_;
-  std::map<std::size_t, Vector3d> snapped_;  ///< where grid points that were moved onto the surface are
+  std::map<std::size_t, Vector3d> snapped_;  ///< positions of grid points that were moved onto the surface
 };
 
 }  // namespace
@@ -167,7 +167,7 @@ TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const B
     p[1] = p[1] == 0 ? 0 : -p[1];
   append(mesh, image, true);
   join_vertices(mesh);
-  // without vertices of triangles that snapping has made points
+  // drops vertices that no triangle uses
   return keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
 }
 

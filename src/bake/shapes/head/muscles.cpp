@@ -19,7 +19,7 @@ double length_of(const std::vector<Vector3>& points, bool closed)
   return length;
 }
 
-/// Point at a share of a polyline's length.
+/// Point of a polyline at the fraction `share` of its length.
 Vector3d along(const std::vector<Vector3>& points, double share)
 {
   double left = share * length_of(points, false);
@@ -47,14 +47,14 @@ Value interpolate(const At& at, int count, double t)
          (2 * p1 + (p2 - p0) * s + (2 * p0 - 5 * p1 + 4 * p2 - p3) * s * s + (3 * p1 - p0 - 3 * p2 + p3) * s * s * s);
 }
 
-/// Thickness at shares of a muscle's length and breadth over its mean in the middle: thin at the edges and ends.
+/// Thickness at fractions of a muscle's length and breadth, over the mean thickness in its middle. Edges are thin.
 double cross_section(double along, double across)
 {
   const double edge = std::abs(2 * across - 1), end = std::abs(2 * along - 1);
   return (1 - 0.6 * edge * edge * edge) / 0.85 * (1 - 0.4 * std::pow(end, 4));
 }
 
-/// Point of a closed loop through the points, at a share of their number.
+/// Point of a closed loop through `points`, at the fraction `share` of their number.
 Vector3d around(const std::vector<Vector3>& points, double share)
 {
   const int count = static_cast<int>(points.size());
@@ -97,7 +97,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
       const double room = place.thickness;
       const double depth = interpolate<double>(
           [&](int c) { return curves[c].below < 0 ? curves[c].depth * room : curves[c].below; }, count, t);
-      // a muscle that is to lie at a depth of its own may pass below a bone
+      // a muscle with a depth of its own (Curve::below) may pass below a bone
       const bool free = std::any_of(curves.begin() + static_cast<int>(t),
                                     curves.begin() + std::min(count, static_cast<int>(std::ceil(t)) + 1),
                                     [](const auto& curve) { return curve.below >= 0; });

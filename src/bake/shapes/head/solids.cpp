@@ -7,7 +7,7 @@ namespace
 
 using Vector2d = Eigen::Vector2d;
 
-/// Points of the Catmull-Rom spline through `points`, in their order, with `parts` pieces between two of them.
+/// Points of the Catmull-Rom spline through `points`, in their order, with `parts` pieces from each to the next.
 template <class Vector>
 std::vector<Vector> spline(const std::vector<Vector>& points, bool closed, int parts)
 {
@@ -32,7 +32,7 @@ std::vector<Vector> spline(const std::vector<Vector>& points, bool closed, int p
   return result;
 }
 
-/// Share of the way from a to b at which p projects, 0 to 1.
+/// Projection of p on the segment from a to b, as a fraction of its length, 0 to 1.
 template <class Vector>
 double share_of(const Vector& p, const Vector& a, const Vector& b)
 {
@@ -118,7 +118,7 @@ void HeadSolid::place_teeth(const std::vector<Vector3d>& arch, const std::vector
   double begin = 0;
   for (const Vector3& size : sizes)
   {
-    // the middle of the tooth, by its distance along the arch
+    // find the tooth's middle by its distance along the arch
     double left = begin + 0.5 * size[0];
     begin += size[0];
     std::size_t i = 1;
@@ -135,8 +135,8 @@ void HeadSolid::place_teeth(const std::vector<Vector3d>& arch, const std::vector
 double HeadSolid::row_of_teeth(const Vector3d& p) const
 {
   constexpr double gap = 0.15e-3, root = 3e-3;  // [m]
-  const double height = from_ - to_;            // of the crown: from the edge to the neck, signed
-  // 0 at the edge, 1 at the neck
+  const double height = from_ - to_;            // signed height of the crown, from the edge to the neck
+  // `up` is 0 at the edge and 1 at the neck
   const double up = std::min(1.0, std::max(0.0, (p[2] - to_) / height));
   double least = 1e300;
   for (const Tooth& tooth : teeth_)
@@ -160,7 +160,7 @@ double HeadSolid::outline(const Vector3d& p) const
   double f = 0;
   if (depth_ != 0)
   {
-    // a cone with its apex at `centre`; the outline stands `depth` from it
+    // a cone with its apex at `centre`; the outline lies at the distance `depth` from the apex
     const Vector2d apex(centre_[axis_ == 0 ? 1 : 0], centre_[axis_ == 2 ? 1 : 2]);
     const double scale = std::max(0.05, (p[axis_] - centre_[axis_]) / depth_);
     f = scale * distance(apex + (q - apex) / scale, polygon_);

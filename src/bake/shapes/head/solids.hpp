@@ -14,13 +14,13 @@ namespace frontalis
 double smooth_max(double a, double b, double radius);
 inline double smooth_min(double a, double b, double radius) { return -smooth_max(-a, -b, radius); }
 
-/// A solid of a template as a function that is about the distance from its surface [m], negative inside.
+/// A solid of a template as a function: approximately the distance from its surface [m], negative inside.
 class HeadSolid
 {
 public:
   explicit HeadSolid(const HeadTemplate::Solid& solid);
 
-  /// Value at p, where the hull of the bones has the value `hull`.
+  /// Value at p. `hull`: value of HeadBones::hull() at p.
   double operator()(const Vector3d& p, double hull) const;
 
 private:

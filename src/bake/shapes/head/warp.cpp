@@ -8,12 +8,12 @@ namespace frontalis
 namespace
 {
 
-// Distance over which the displacements of landmarks are alike: about half the height of a face.
+// Correlation length of the landmarks' displacements: about half the height of a face.
 constexpr double correlation_length = 60e-3;  // [m]
 constexpr int iterations = 12;
-// A value farther than this from the mean is refused: six standard deviations hold for all but one person in 10^8.
+// A dimension farther from the mean than this many standard deviations is refused: hardly one person in 10^8 has it.
 constexpr double most_deviations = 6;
-// A dimension that follows from others may be asked for if it differs from them by no more than this.
+// A dimension that others determine may be given if it differs from the resulting value by no more than this.
 constexpr double derived_tolerance = 1e-3;  // [m]
 
 double covariance(double distance)
@@ -28,7 +28,7 @@ Vector3d mirrored(Vector3d p)
   return p;
 }
 
-/// A difference between two landmarks, each with its place in the list.
+/// A difference of positions of two landmarks, given by their indices.
 struct Span
 {
   const HeadTemplate::Dimension* dimension;
@@ -67,11 +67,11 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
       throw failure("head: dimension '{}' is {:.1f} mm; must be {:.1f} to {:.1f} mm", name, 1e3 * value,
                     1e3 * (d->mean - most_deviations * d->deviation), 1e3 * (d->mean + most_deviations * d->deviation));
   }
-  // both sides of a sided dimension are asked for, so that the field is symmetric
+  // a dimension of one side is prescribed on both sides, so that the field is symmetric
   std::vector<Span> spans;
   const auto measure = [](const std::vector<Vector3d>& places, std::size_t from, std::size_t to)
   { return (places[to] - places[from]).norm(); };
-  // dimensions that are not asked for keep the value of the default head
+  // dimensions that are not given keep the value of the default head
   const auto value_of = [&](const HeadTemplate::Dimension& d)
   {
     const auto given = wanted.find(d.name);
