@@ -4,15 +4,13 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
+#include "frontalis/study/csv.hpp"
 
-#include <boost/algorithm/string.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <set>
 
@@ -20,24 +18,6 @@ namespace frontalis
 {
 namespace
 {
-
-// the fields of a line between commas, without white space around them
-std::vector<std::string> fields_of(const std::string& line)
-{
-  std::vector<std::string> fields;
-  boost::split(fields, line, [](char c) { return c == ','; });
-  for (std::string& field : fields)
-    boost::trim(field);
-  return fields;
-}
-
-// the number that the whole text represents (it may be infinite or NaN); empty if the text is not a number
-std::optional<double> number_from(const std::string& text)
-{
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional<double>(value) : std::nullopt;
-}
 
 RigidTransform pose_from(const std::array<double, 6>& values)
 {
@@ -69,7 +49,7 @@ Controls row_controls(const Model& model, const std::vector<std::string>& header
 std::map<std::string, double> parse_activation_list(const std::string& text)
 {
   std::map<std::string, double> listed;
-  for (const std::string& entry : text.empty() ? std::vector<std::string>() : fields_of(text))
+  for (const std::string& entry : text.empty() ? std::vector<std::string>() : csv_fields(text))
   {
     const std::size_t equals = entry.find('=');
     if (equals == std::string::npos || equals == 0)
@@ -99,7 +79,7 @@ void parse_bone_motions(const Model& model, const std::vector<std::string>& text
     const std::string name = text.substr(0, equals);
     std::vector<double> values;
     if (equals != std::string::npos && equals > 0)
-      for (const std::string& field : fields_of(text.substr(equals + 1)))
+      for (const std::string& field : csv_fields(text.substr(equals + 1)))
         if (const std::optional<double> value = number_from(field))
           values.push_back(*value);
     if (values.size() != 6 || std::count(text.begin(), text.end(), ',') != 5)
@@ -140,33 +120,21 @@ ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransf
 
 ControlCurve read_control_curve(const std::string& path, const Model& model)
 {
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line))
-    throw Error(path + ": cannot be read, or is empty");
-  const auto header = fields_of(line);
+  CsvReader table(path);
+  const auto& header = table.header();
   if (header[0] != "time")
     throw Error(path + ":1: the first column must be called time");
   ControlCurve curve{ { 0 }, { row_controls(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };
   bool empty = true;
-  for (int row = 2; std::getline(file, line); ++row)
+  while (table.next())
   {
-    if (line.find_first_not_of(" \t\r") == std::string::npos)
-      continue;
-    const std::string place = fmt::format("{}:{}: ", path, row);
-    const auto fields = fields_of(line);
-    if (fields.size() != header.size())
-      throw Error(fmt::format("{}found {} fields; the header has {}", place, fields.size(), header.size()));
-    std::vector<double> numbers;
-    for (const std::string& field : fields)
-    {
-      numbers.push_back(number_from(field).value_or(NAN));
-      if (!std::isfinite(numbers.back()))
-        throw Error(place + "found '" + field + "'; must be a number");
-    }
+    const std::string place = table.place();
+    std::vector<double> numbers(header.size());
+    for (std::size_t column = 0; column < header.size(); ++column)
+      numbers[column] = table.number(column);
     const double time = numbers[0];
     if (!(time >= 0) || (!empty && time <= curve.time.back()))
-      throw Error(place + "time is " + fields[0] + "; times must ascend from 0");
+      throw Error(place + "time is " + table.fields()[0] + "; times must ascend from 0");
     empty = false;
     // the first knot must be at time 0, even if the table has no row for it
     if (time > 0)

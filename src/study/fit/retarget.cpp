@@ -1,13 +1,12 @@
 #include "frontalis/study/fit.hpp"
 
+#include "frontalis/study/csv.hpp"
 #include "study/fit/landmark_fit.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 
 namespace frontalis
 {
@@ -18,26 +17,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double millimetre = 1e-3;
-
-std::vector<std::string> fields_of(const std::string& line)
-{
-  std::vector<std::string> fields(1);
-  for (const char c : line)
-    if (c == ',')
-      fields.emplace_back();
-    else if (c != ' ' && c != '\t' && c != '\r')
-      fields.back() += c;
-  return fields;
-}
-
-double number_from(const std::string& field, const std::string& place)
-{
-  double value = NAN;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
-    throw Error(place + "found '" + field + "'; must be a number");
-  return value;
-}
 
 // the landmarks of the model that the track has
 std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& track)
@@ -118,11 +97,8 @@ double mean_error(const std::vector<RetargetResult::Row>& rows)
 LandmarkTrack read_landmark_track(const std::string& path)
 {
   static const std::vector<std::string> wanted{ "time_s", "landmark", "forward_mm", "left_mm", "up_mm" };
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line))
-    throw Error(path + ": cannot be read, or is empty");
-  const auto header = fields_of(line);
+  CsvReader table(path);
+  const auto& header = table.header();
   std::vector<std::size_t> columns;
   columns.reserve(wanted.size());
   for (const std::string& name : wanted)
@@ -133,16 +109,11 @@ LandmarkTrack read_landmark_track(const std::string& path)
     columns.push_back(static_cast<std::size_t>(found - header.begin()));
   }
   LandmarkTrack track;
-  for (int row = 2; std::getline(file, line); ++row)
+  while (table.next())
   {
-    if (line.find_first_not_of(" \t\r") == std::string::npos)
-      continue;
-    const std::string place = fmt::format("{}:{}: ", path, row);
-    const auto fields = fields_of(line);
-    if (fields.size() != header.size())
-      throw Error(fmt::format("{}found {} fields; the header has {}", place, fields.size(), header.size()));
-    const double time = number_from(fields[columns[0]], place);
-    const std::string& landmark = fields[columns[1]];
+    const std::string place = table.place();
+    const double time = table.number(columns[0]);
+    const std::string& landmark = table.fields()[columns[1]];
     if (track.time.empty() || time > track.time.back())
     {
       if (!track.places.empty() && track.places.back().size() != track.landmarks.size())
@@ -151,7 +122,7 @@ LandmarkTrack read_landmark_track(const std::string& path)
       track.places.emplace_back();
     }
     if (time < track.time.back() || time < 0)
-      throw Error(place + "time is " + fields[columns[0]] + "; times must ascend from 0");
+      throw Error(place + "time is " + table.fields()[columns[0]] + "; times must ascend from 0");
     auto& places = track.places.back();
     if (track.time.size() == 1)
     {
@@ -163,7 +134,7 @@ LandmarkTrack read_landmark_track(const std::string& path)
       throw Error(place + "found landmark '" + landmark + "'; each time must have the landmarks of the first in order");
     std::array<double, 3> moved{};
     for (std::size_t axis = 0; axis < 3; ++axis)
-      moved[axis] = millimetre * number_from(fields[columns[2 + axis]], place);
+      moved[axis] = millimetre * table.number(columns[2 + axis]);
     places.push_back(moved);
   }
   if (track.time.empty() || track.places.back().size() != track.landmarks.size())

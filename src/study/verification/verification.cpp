@@ -3,6 +3,8 @@
 #include "frontalis/error.hpp"
 #include "study/verification/verification_cases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -107,6 +109,15 @@ std::map<std::string, CaseText> read_texts(const std::string& path)
   return texts;
 }
 
+// a table under its caption; browsers fold one of more than eight rows until its caption is clicked
+std::string captioned(const std::string& caption, const Table& table)
+{
+  const std::string rows = table.markdown();
+  if (std::count(rows.begin(), rows.end(), '\n') <= 10)
+    return "\n" + caption + ":\n\n" + rows;
+  return "\n<details><summary>" + caption + "</summary>\n\n" + rows + "\n</details>\n";
+}
+
 }  // namespace
 
 void write_manual(const Findings& findings, const std::string& path)
@@ -117,10 +128,12 @@ void write_manual(const Findings& findings, const std::string& path)
   const std::map<std::string, CaseText> texts = read_texts((pictures / "text.md").string());
   std::string out =
       "# Verification\n\nThe solver against closed forms, published figures and CalculiX. The table says how many "
-      "checks of each case pass; a check passes when its error is within its bound. Figures without a bound are only "
-      "*shown*. Errors and bounds in % are relative.\n\nThis document is written by `./dev cli verify --markdown "
+      "checks of each case pass, and how much of its bound the check uses that comes closest to it; a check passes "
+      "when "
+      "its error is within its bound. Figures without a bound are only *shown*. Errors and bounds in % are relative. "
+      "Long tables are folded: click on their captions.\n\nThis document is written by `./dev cli verify --markdown "
       "doc/verification.md` with the texts of verification/text.md, and all figures are from one run of it.\n";
-  Table overview({ "case", "checks", "passed" });
+  Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;
   for (const auto& [name, finding] : findings)
   {
@@ -132,9 +145,13 @@ void write_manual(const Findings& findings, const std::string& path)
     const auto& checks = finding.checks;
     const auto is_bounded = [](const Check& check) { return !std::isnan(check.bound); };
     const auto passes = [&](const Check& check) { return is_bounded(check) && check.passed(); };
+    double used = std::nan("");  // the largest error over its bound
+    for (const Check& check : checks)
+      used = check.bound > 0 ? std::fmax(used, check.error() / check.bound) : used;
     overview.add({ "[" + text.title + "](#" + name + ")",
                    static_cast<double>(std::count_if(checks.begin(), checks.end(), is_bounded)),
-                   static_cast<double>(std::count_if(checks.begin(), checks.end(), passes)) });
+                   static_cast<double>(std::count_if(checks.begin(), checks.end(), passes)),
+                   std::isnan(used) ? "" : fmt::format("{:.2g}", 100 * used) });
     sections += "\n## " + text.title + "\n\n<a id=\"" + name + "\"></a>\n" + text.before + "\n";
     if (!finding.skipped.empty())
       sections += "\nSkipped: " + finding.skipped + "\n";
@@ -143,9 +160,9 @@ void write_manual(const Findings& findings, const std::string& path)
       table.add({ check.name, check.unit, check.expected, check.found, check.error_text(check.error()),
                   check.error_text(check.bound), check.verdict() });
     if (!checks.empty())
-      sections += "\n" + table.markdown();
+      sections += captioned("Checks", table);
     for (const auto& [caption, figures] : finding.tables)
-      sections += "\n" + caption + ":\n\n" + figures.markdown();
+      sections += captioned(caption, figures);
     sections += write_plots(finding.plots, pictures.string());
     if (!text.after.empty())
       sections += "\n" + text.after + "\n";
