@@ -40,7 +40,7 @@ struct SceneConstraint
   std::optional<ScenePush> pushed;  ///< contact only; empty: the body moves with its bone
   int line = 0;
 
-  /// True unless the constraint is a contact.
+  /// False for contact of tissue with a body or with itself.
   bool restricts_nodes() const { return kind == Kind::rigid || kind == Kind::sliding; }
 };
 

@@ -141,7 +141,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   std::vector<Restriction> restrictions(nodes);
   std::vector<const PreparedSurface*> bones;  // surfaces that restrict nodes
   for (const SceneConstraint& constraint : scene.constraints)
-    if (constraint.kind != SceneConstraint::Kind::contact)
+    if (constraint.restricts_nodes())
       for (const std::string& name : constraint.surfaces)
         bones.push_back(&named_surface(surfaces, name, place_in_scene(scene, "constraint", constraint)));
   // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; with
