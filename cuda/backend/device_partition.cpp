@@ -19,11 +19,12 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
   const auto fits = [&](const VoxelPatches& cut)
   {
     return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
-                                           most_touching_points(model, cut)) <= choice.patch_bytes;
+                                           room_for_parts(model, cut).room) <= choice.patch_bytes;
   };
   PatchSettings settings = choice.patches;
+  const VoxelPatches::Beside beside = settings.turns > 0 ? voxels_beside(model) : VoxelPatches::Beside();
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
-    if (auto cut = std::make_unique<VoxelPatches>(model, settings); fits(*cut))
+    if (auto cut = std::make_unique<VoxelPatches>(model, settings, beside); fits(*cut))
       patches = std::move(cut);
   if (patches)
     return;
@@ -109,15 +110,14 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  launch_.most_points = most_touching_points(model, patches);
-  // points of contact have threads of their own as far as possible
-  if (launch_.most_points > 0)
-    most = std::max(most, patches.most_voxels + launch_.most_points);
+  const PartRoom for_parts = room_for_parts(model, patches);
+  launch_.room = for_parts.room;
+  most = std::max(most, for_parts.threads);
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads));
   launch_.most_voxels = patches.most_voxels;
   launch_.most_halo = patches.most_halo;
   launch_.most_nodes = patches.most_nodes;
-  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, launch_.most_points);
+  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, launch_.room);
 }
 
 }  // namespace cuda

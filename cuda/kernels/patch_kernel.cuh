@@ -2,7 +2,7 @@
 
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
-#include "cuda/kernels/patch_contact.cuh"
+#include "cuda/kernels/patch_shell.cuh"
 
 #include <utility>
 
@@ -225,14 +225,18 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       const Patch patch = g.patches[p];
       PatchContact contact{};
       ContactWatch watch{};
+      PatchShell shell{};
       if (has<With, Effects::contact>)
       {
-        contact = g.contact.patches[p];
+        if (!has<With, Effects::shell> || g.contact.patches != nullptr)
+          contact = g.contact.patches[p];
         watch = fetch_watch(g, contact, until[turn], step);
         round ^= 1;
         if (threadIdx.x == 0)
           memory.least[round] = 0xffffffffu;
       }
+      if (has<With, Effects::shell>)
+        shell = fetch_shell(g, p);
       VoxelFetch voxel{};
       // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
@@ -249,6 +253,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       __syncthreads();
       if (has<With, Effects::contact>)
         look_at_watched(g, contact, memory, watch);
+      if (has<With, Effects::shell>)
+        place_shell(g, shell, memory);
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -259,6 +265,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
           put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }
       end_voxels<With>(g, contact, watch, memory, step, memory.least + round, until[turn]);
+      if (has<With, Effects::shell>)
+        add_shell(g, shell, memory);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
@@ -297,6 +305,7 @@ const void* patch_kernel_of(Effects effects)
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 const void* contact_patch_kernel(Effects effects);
+const void* shell_patch_kernel(Effects effects);
 
 }  // namespace cuda
 }  // namespace frontalis

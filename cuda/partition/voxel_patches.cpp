@@ -172,21 +172,34 @@ std::vector<char> busy_nodes(const Model& model)
 
 }  // namespace
 
-VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
+VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, const Beside& beside)
 {
   const int parts = settings.blocks * settings.turns;
   const auto part_of = partition(model, parts);
   std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
   std::vector<char> on_border(model.nodes.size(), 0);
   each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
-  for (const auto& corners : model.voxel_nodes)
-    for (const auto n : corners)
-      if (part_of[n] != part_of[corners[0]])
-      {
-        for (const auto other : corners)
-          on_border[other] = 1;
-        break;
-      }
+  // model nodes, then device nodes
+  std::vector<std::vector<std::uint32_t>> halo_of(parts);
+  for (int p = 0; p < parts; ++p)
+  {
+    const auto add = [&](std::uint32_t e)
+    {
+      for (const auto n : model.voxel_nodes[e])
+        if (part_of[n] != static_cast<std::uint32_t>(p))
+        {
+          halo_of[p].push_back(static_cast<std::uint32_t>(n));
+          on_border[n] = 1;
+        }
+    };
+    for (const auto e : voxels_of[p])
+    {
+      add(e);
+      if (!beside.empty())
+        for (const auto other : beside[e])
+          add(static_cast<std::uint32_t>(other));
+    }
+  }
   const auto busy = busy_nodes(model);
   for (const char border : { 1, 0 })
     for (const char kind : { 2, 1, 0 })
@@ -202,14 +215,11 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
   }
 
   // halos are sorted by device node, so that neighbouring threads read neighbouring nodes
-  std::vector<std::vector<std::uint32_t>> halo_of(parts);
   for (int p = 0; p < parts; ++p)
   {
     auto& nodes = halo_of[p];
-    for (const auto e : voxels_of[p])
-      for (const auto n : model.voxel_nodes[e])
-        if (part_of[n] != static_cast<std::uint32_t>(p))
-          nodes.push_back(device_node[n]);
+    for (auto& n : nodes)
+      n = device_node[n];
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     patches[p].halo_begin = static_cast<std::uint32_t>(halo.size());
@@ -233,7 +243,8 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
     Patch& patch = patches[p];
     patch.voxel_begin = static_cast<std::uint32_t>(voxel.size());
     patch.voxels = static_cast<std::uint32_t>(voxels_of[p].size());
-    add_patch(model, patch, voxels_of[p], most_halo + filled[p % settings.blocks]);
+    first_place.push_back(most_halo + filled[p % settings.blocks]);
+    add_patch(model, static_cast<std::size_t>(p), voxels_of[p]);
     filled[p % settings.blocks] += patch.nodes;
     most_nodes = std::max(most_nodes, filled[p % settings.blocks]);
   }
@@ -253,11 +264,18 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   }
 }
 
-// `first_place`: index of the patch's first own node in shared memory.
-void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
-                             std::uint32_t first_place)
+std::uint32_t VoxelPatches::place_of(std::size_t index, std::uint32_t node) const
 {
-  const auto halo_first = halo.begin() + patch.halo_begin, halo_last = halo_first + patch.halo;
+  const Patch& patch = patches[index];
+  if (node >= patch.first_node && node < patch.first_node + patch.nodes)
+    return first_place[index] + node - patch.first_node;
+  const auto first = halo.begin() + patch.halo_begin;
+  return static_cast<std::uint32_t>(std::lower_bound(first, first + patch.halo, node) - first);
+}
+
+void VoxelPatches::add_patch(const Model& model, std::size_t index, const std::vector<std::uint32_t>& voxels)
+{
+  const Patch& patch = patches[index];
   for (std::size_t v = 0; v < voxels.size(); ++v)
   {
     std::array<std::uint16_t, 8> places{};
@@ -267,9 +285,7 @@ void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::
       const bool own = node >= patch.first_node && node < patch.first_node + patch.nodes;
       if (own && !(mutation::lost_corner && b == 0))
         node_voxel[node][b] = static_cast<std::uint16_t>(v);
-      places[b] = static_cast<std::uint16_t>(
-          own ? first_place + node - patch.first_node
-              : static_cast<std::uint32_t>(std::lower_bound(halo_first, halo_last, node) - halo_first));
+      places[b] = static_cast<std::uint16_t>(place_of(index, node));
     }
     corner.push_back(places);
     voxel.push_back(voxels[v]);

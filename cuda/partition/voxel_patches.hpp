@@ -17,7 +17,7 @@ struct PatchSettings
 };
 
 /// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the
-/// halo, which is the other nodes of those voxels.
+/// halo, which is the other nodes of those voxels and those that VoxelPatches::Beside asks for.
 struct Patch
 {
   std::uint32_t first_node;   ///< device node; own nodes are contiguous
@@ -35,7 +35,12 @@ struct Patch
 /// 1, then the nodes of all its patches in order.
 struct VoxelPatches
 {
-  VoxelPatches(const Model& model, const PatchSettings& settings);
+  /// For each voxel, others whose nodes a patch that has it needs as well; empty: none.
+  using Beside = std::vector<std::vector<std::int32_t>>;
+  VoxelPatches(const Model& model, const PatchSettings& settings, const Beside& beside = {});
+
+  /// Index in shared memory of a device node that the patch has.
+  std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
 
   std::vector<Patch> patches;
   std::vector<std::uint32_t> voxel;  ///< model voxel; in each patch viscous ones first, then by number of fibres
@@ -44,6 +49,7 @@ struct VoxelPatches
   /// For each device node, the voxels of its patch of which it is corner 0 .. 7; most_voxels if there is none.
   std::vector<std::array<std::uint16_t, 8>> node_voxel;
   std::vector<std::uint32_t> device_node;  ///< of each model node
+  std::vector<std::uint32_t> first_place;  ///< of each patch: index of its first own node in shared memory
 
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
@@ -51,8 +57,7 @@ struct VoxelPatches
 
 private:
   void number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of);
-  void add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
-                 std::uint32_t first_place);
+  void add_patch(const Model& model, std::size_t index, const std::vector<std::uint32_t>& voxels);
 };
 
 }  // namespace frontalis

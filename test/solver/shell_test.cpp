@@ -28,13 +28,6 @@ protected:
   }
 };
 
-std::vector<Backend> host_backends()
-{
-  std::vector<Backend> backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
 Model film_on_block(bool free = true, double young = 1e6)
 {
   BlockSettings settings;
@@ -240,7 +233,7 @@ TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
   EXPECT_TRUE(solver->settle(solver->controls(), 1e-3, 8 * period).reached);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, ShellBackend, testing::ValuesIn(host_backends()), backend_name);
+FRONTALIS_EVERY_BACKEND(ShellBackend);
 
 }  // namespace
 }  // namespace frontalis

@@ -1,0 +1,43 @@
+#include "cuda/backend/device_body_contact.hpp"
+#include "cuda/backend/device_shell.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
+                                                      const VoxelCut& cut,
+                                                      const std::vector<std::uint32_t>& device_node)
+{
+  std::vector<std::unique_ptr<DevicePart>> parts;
+  if (!model.contacts.empty())
+    parts.push_back(std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node));
+  if (!model.shells.empty())
+    parts.push_back(std::make_unique<DeviceShell>(model, cut, device_node));
+  return parts;
+}
+
+PartRoom room_for_parts(const Model& model, const VoxelPatches& patches)
+{
+  PartRoom all{ { most_touching_points(model, patches), 0 }, 0 };
+  // points of contact have threads of their own as far as possible
+  if (all.room.contact_points > 0)
+    all.threads = patches.most_voxels + all.room.contact_points;
+  if (model.shells.empty())
+    return all;
+  const ShellTables shells(model, ShellMesh(model), patches);
+  all.room.shell_words = shells.most_words;
+  all.threads = std::max(all.threads, shells.most_triangles);
+  return all;
+}
+
+std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model)
+{
+  return model.shells.empty() ? std::vector<std::vector<std::int32_t>>() : voxels_beside(model, ShellMesh(model));
+}
+
+}  // namespace cuda
+}  // namespace frontalis
