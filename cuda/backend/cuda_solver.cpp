@@ -250,10 +250,6 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  for (const Contact& contact : model->contacts)
-    if (contact.mass > 0)
-      throw BackendUnavailable(
-          fmt::format("backend cuda: body {} is pushed, which is computed on the CPU alone so far", contact.name));
   if (!model->self_contacts.empty())
     throw BackendUnavailable(
         "backend cuda: the model has contact of tissue with itself, which is computed on the CPU alone so far");

@@ -2,6 +2,7 @@
 
 #include "cuda/backend/device_model.hpp"
 #include "cuda/kernels/contact_kernels.hpp"
+#include "frontalis/solver/backend.hpp"
 
 #include "solver/contact/body_motion.hpp"
 
@@ -36,6 +37,10 @@ DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& d
                                      const std::vector<std::uint32_t>& device_node)
     : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0), far_corner_(far_corner(model))
 {
+  for (const Contact& contact : model.contacts)
+    if (contact.mass > 0)
+      throw BackendUnavailable("backend cuda: body " + contact.name +
+                               " is pushed, which is computed on the CPU alone so far");
   for (const auto& point : host_.points())
     ++first_point_[point.voxel + 1];
   std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());

@@ -50,7 +50,7 @@ public:
                             Vectors& forces, EnergyLedger& ledger) = 0;
 };
 
-/// The parts of a model, for those effects that it has.
+/// The parts of a model, for those effects that it has. `device_node`: of each model node; that of the cut is empty.
 std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
                                                       const VoxelCut& cut,
                                                       const std::vector<std::uint32_t>& device_node);
@@ -61,7 +61,7 @@ struct PartRoom
   PatchRoom room;
   std::uint32_t threads;  ///< that have work besides that of a patch's voxels and nodes; 0: none
 };
-PartRoom room_for_parts(const Model& model, const VoxelPatches& patches);
+PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node);
 
 /// VoxelPatches::Beside of a model.
 std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model);

@@ -19,7 +19,7 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
   const auto fits = [&](const VoxelPatches& cut)
   {
     return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
-                                           room_for_parts(model, cut).room) <= choice.patch_bytes;
+                                           room_for_parts(model, cut, cut.device_node).room) <= choice.patch_bytes;
   };
   PatchSettings settings = choice.patches;
   const VoxelPatches::Beside beside = settings.turns > 0 ? voxels_beside(model) : VoxelPatches::Beside();
@@ -110,7 +110,7 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  const PartRoom for_parts = room_for_parts(model, patches);
+  const PartRoom for_parts = room_for_parts(model, patches, device_node_);
   launch_.room = for_parts.room;
   most = std::max(most, for_parts.threads);
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads));

@@ -20,7 +20,7 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
   return parts;
 }
 
-PartRoom room_for_parts(const Model& model, const VoxelPatches& patches)
+PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node)
 {
   PartRoom all{ { most_touching_points(model, patches), 0 }, 0 };
   // points of contact have threads of their own as far as possible
@@ -28,7 +28,7 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches)
     all.threads = patches.most_voxels + all.room.contact_points;
   if (model.shells.empty())
     return all;
-  const ShellTables shells(model, ShellMesh(model), patches);
+  const ShellTables shells(model, ShellMesh(model), &patches, device_node);
   all.room.shell_words = shells.most_words;
   all.threads = std::max(all.threads, shells.most_triangles);
   return all;

@@ -48,24 +48,23 @@ std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const S
   return beside;
 }
 
-ShellTables::ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut)
+ShellTables::ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches* cut,
+                         const std::vector<std::uint32_t>& device_node)
 {
   const Around around = triangles_at(model, mesh);
-  for (std::size_t p = 0; p < cut.patches.size(); ++p)
+  if (cut == nullptr)
   {
-    const Patch& patch = cut.patches[p];
-    const auto voxel = cut.voxel.begin() + patch.voxel_begin;
-    add(model, mesh, around, Voxels(voxel, voxel + patch.voxels),
-        [&](std::int32_t node) { return cut.place_of(p, cut.device_node[node]); });
+    Voxels all(model.voxels.size());
+    std::iota(all.begin(), all.end(), 0u);
+    add(model, mesh, around, all, [&](std::int32_t node) { return device_node[node]; });
   }
-  pack(mesh);
-}
-
-ShellTables::ShellTables(const Model& model, const ShellMesh& mesh, const std::vector<std::uint32_t>& device_node)
-{
-  Voxels all(model.voxels.size());
-  std::iota(all.begin(), all.end(), 0u);
-  add(model, mesh, triangles_at(model, mesh), all, [&](std::int32_t node) { return device_node[node]; });
+  for (std::size_t p = 0; cut != nullptr && p < cut->patches.size(); ++p)
+  {
+    const Patch& patch = cut->patches[p];
+    const auto voxel = cut->voxel.begin() + patch.voxel_begin;
+    add(model, mesh, around, Voxels(voxel, voxel + patch.voxels),
+        [&](std::int32_t node) { return cut->place_of(p, device_node[node]); });
+  }
   pack(mesh);
 }
 
@@ -166,8 +165,7 @@ void ShellTables::pack(const ShellMesh& mesh)
 DeviceShell::DeviceShell(const Model& model, const VoxelCut& cut, const std::vector<std::uint32_t>& device_node)
     : model_(model), mesh_(model)
 {
-  const ShellTables tables =
-      cut.patches ? ShellTables(model, mesh_, *cut.patches) : ShellTables(model, mesh_, device_node);
+  const ShellTables tables(model, mesh_, cut.patches.get(), device_node);
   patches_ = DeviceArray<PatchShell>(tables.patches);
   corners_ = DeviceArray<uint4>(tables.corners);
   coordinates_ = DeviceArray<float4>(tables.coordinates);

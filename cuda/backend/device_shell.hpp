@@ -17,9 +17,10 @@ std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const S
 /// The arrays of ShellArguments on the host.
 struct ShellTables
 {
-  ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut);
-  /// For strips: one patch of everything, whose corners are device nodes.
-  ShellTables(const Model& model, const ShellMesh& mesh, const std::vector<std::uint32_t>& device_node);
+  /// `cut` null: for strips, one patch of everything, whose corners are device nodes. `device_node`: of each model
+  /// node.
+  ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches* cut,
+              const std::vector<std::uint32_t>& device_node);
 
   std::vector<PatchShell> patches;
   std::vector<uint4> corners;

@@ -28,7 +28,7 @@ __device__ __forceinline__ physics::Vec3<float> bound_displacement(const float4&
   float weight[8];
   physics::trilinear_weights(coordinates.x, coordinates.y, coordinates.z, weight);
   physics::Vec3<float> moved{ 0, 0, 0 };
-#pragma unroll
+  FRONTALIS_UNROLL
   for (int b = 0; b < 8; ++b)
     add_part(moved, weight[b], u[corner[b]]);
   return moved;

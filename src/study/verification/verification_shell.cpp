@@ -308,7 +308,7 @@ bool runs(const BakeScene& bake, Finding& finding)
 
 }  // namespace
 
-void verify_shell(const Backend& backend, const BakeScene& bake, Finding& finding)
+void verify_shell(const Backend& /*backend*/, const BakeScene& bake, Finding& finding)
 {
   if (!runs(bake, finding))
     return;
