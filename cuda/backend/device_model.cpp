@@ -97,7 +97,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   }
   parts_ = device_parts(model, discretisation, cut, device_node_);
   if (cut.patches)
-    add_patches(model, *cut.patches, tasks, palette_of_voxel_);
+    add_patches(model, *cut.patches, cut.part_room, tasks, palette_of_voxel_);
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
   most_effects_ = most_effects_ | node_part(tasks);

@@ -36,6 +36,7 @@ struct VoxelCut
   VoxelCut(const Model& model, const CutChoice& choice);
 
   std::unique_ptr<VoxelPatches> patches;
+  PartRoom part_room;                   ///< in patches
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
@@ -84,8 +85,8 @@ private:
   void add_fibres(const Model& model, const Discretisation& discretisation);
   std::vector<NodeTask> add_tasks(const Model& model);
   void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
-  void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
-                   const std::vector<std::uint32_t>& palette_entry);
+  void add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
+                   const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;

@@ -58,8 +58,10 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
 /// Room and threads for them in a block of patches.
 struct PartRoom
 {
-  PatchRoom room;
-  std::uint32_t threads;  ///< that have work besides that of a patch's voxels and nodes; 0: none
+  PatchRoom room{};
+  std::uint32_t threads = 0;         ///< that have work besides that of a patch's voxels and nodes; 0: none
+  std::uint32_t triangle_words = 0;  ///< to be added to PatchRoom::table_words if triangles are kept
+  bool fits_indices = true;          ///< whether indices of 16 bits suffice
 };
 PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node);
 

@@ -18,8 +18,16 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
                                          model.nodes.size(), model.fibre_muscle.size()));
   const auto fits = [&](const VoxelPatches& cut)
   {
-    return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
-                                           room_for_parts(model, cut, cut.device_node).room) <= choice.patch_bytes;
+    part_room = room_for_parts(model, cut, cut.device_node);
+    PatchRoom& room = part_room.room;
+    const auto fit = [&](const PatchRoom& wanted)
+    { return patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes, wanted) <= choice.patch_bytes; };
+    PatchRoom with = room;
+    with.table_words += part_room.triangle_words;
+    with.keeps_triangles = part_room.triangle_words > 0;
+    if (fit(with))
+      room = with;
+    return cut.fits_indices && part_room.fits_indices && fit(room);
   };
   PatchSettings settings = choice.patches;
   const VoxelPatches::Beside beside = settings.turns > 0 ? voxels_beside(model) : VoxelPatches::Beside();
@@ -79,8 +87,8 @@ void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
   launch_.threads = step_block;
 }
 
-void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
-                              const std::vector<std::uint32_t>& palette_entry)
+void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
+                              const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry)
 {
   std::vector<uint2> properties;
   for (const auto voxel : patches.voxel)
@@ -110,7 +118,6 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  const PartRoom for_parts = room_for_parts(model, patches, device_node_);
   launch_.room = for_parts.room;
   most = std::max(most, for_parts.threads);
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads));

@@ -22,15 +22,13 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
 
 PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node)
 {
-  PartRoom all{ { most_touching_points(model, patches), 0 }, 0 };
+  PartRoom all;
+  all.room.contact_points = most_touching_points(model, patches);
   // points of contact have threads of their own as far as possible
   if (all.room.contact_points > 0)
     all.threads = patches.most_voxels + all.room.contact_points;
-  if (model.shells.empty())
-    return all;
-  const ShellTables shells(model, ShellMesh(model), &patches, device_node);
-  all.room.shell_words = shells.most_words;
-  all.threads = std::max(all.threads, shells.most_triangles);
+  if (!model.shells.empty())
+    ShellTables(model, ShellMesh(model), patches, device_node).add_room(all);
   return all;
 }
 

@@ -16,7 +16,14 @@ namespace cuda
 namespace
 {
 
-// Lists of the triangles around the vertices of each voxel, ascending.
+template <class T>
+void sort_and_unite(std::vector<T>& list)
+{
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+// Triangles around the vertices of each voxel, ascending.
 std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const ShellMesh& mesh)
 {
   std::vector<std::vector<std::uint32_t>> at(model.voxels.size());
@@ -27,11 +34,55 @@ std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const S
   return at;
 }
 
-template <class T>
-void sort_and_unite(std::vector<T>& list)
+// Some triangles in the order of ShellTriangles. number: of each vertex of the mesh among those that are placed.
+std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
+                             const std::vector<std::int32_t>& number)
 {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  std::vector<float4> words(shell_words * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    const ShellMesh::Triangle& triangle = mesh.triangles[triangles[t]];
+    const auto& rest = triangle.rest;
+    std::vector<double> exact;
+    for (const auto& x : rest.from_corner)
+      exact.insert(exact.end(), { x.x, x.y, x.z });
+    exact.insert(exact.end(), std::begin(rest.metric), std::end(rest.metric));
+    exact.insert(exact.end(), { rest.inverse_area, rest.shear, rest.dilatation });
+    exact.insert(exact.end(), std::begin(rest.height), std::end(rest.height));
+    exact.insert(exact.end(), std::begin(rest.bending), std::end(rest.bending));
+    exact.push_back(triangle.bending);
+    float numbers[4 * shell_words] = {};
+    std::transform(exact.begin(), exact.end(), numbers, [](double x) { return static_cast<float>(x); });
+    std::int32_t vertex[6];
+    std::transform(triangle.vertex.begin(), triangle.vertex.end(), vertex, [&](auto v) { return number[v]; });
+    std::memcpy(numbers + 32, vertex, sizeof vertex);
+    for (std::size_t w = 0; w < shell_words; ++w)
+      std::memcpy(&words[w * triangles.size() + t], numbers + 4 * w, sizeof(float4));
+  }
+  return words;
+}
+
+// For each vertex that is placed, where the x components of the triangles' forces on it are.
+std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
+                                                 const std::vector<std::int32_t>& number, std::size_t vertices)
+{
+  std::vector<std::vector<std::uint32_t>> terms(vertices);
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  for (std::uint32_t t = 0; t < count; ++t)
+    for (std::uint32_t i = 0; i < 6; ++i)
+      if (const auto& triangle = mesh.triangles[triangles[t]]; i < 3 || triangle.has_beyond(i - 3))
+        terms[number[triangle.vertex[i]]].push_back(3 * i * count + t);
+  return terms;
+}
+
+// Adds values to a table, filled up to a whole number of words.
+template <class T>
+void append(std::vector<uint4>& table, const std::vector<T>& values)
+{
+  const std::size_t bytes = values.size() * sizeof(T), at = table.size();
+  table.resize(at + (bytes + sizeof(uint4) - 1) / sizeof(uint4), uint4{ 0, 0, 0, 0 });
+  if (bytes > 0)
+    std::memcpy(&table[at], values.data(), bytes);
 }
 
 }  // namespace
@@ -48,34 +99,21 @@ std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const S
   return beside;
 }
 
-ShellTables::ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches* cut,
+ShellTables::ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut,
                          const std::vector<std::uint32_t>& device_node)
+    : blocks_(cut.blocks)
 {
   const Around around = triangles_at(model, mesh);
-  if (cut == nullptr)
-  {
-    Voxels all(model.voxels.size());
-    std::iota(all.begin(), all.end(), 0u);
-    add(model, mesh, around, all, [&](std::int32_t node) { return device_node[node]; });
-  }
-  for (std::size_t p = 0; cut != nullptr && p < cut->patches.size(); ++p)
-  {
-    const Patch& patch = cut->patches[p];
-    const auto voxel = cut->voxel.begin() + patch.voxel_begin;
-    add(model, mesh, around, Voxels(voxel, voxel + patch.voxels),
-        [&](std::int32_t node) { return cut->place_of(p, device_node[node]); });
-  }
-  pack(mesh);
+  for (std::size_t p = 0; p < cut.patches.size(); ++p)
+    add(model, mesh, around, cut, p, device_node);
 }
 
-void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& around, const Voxels& of_patch,
-                      const std::function<std::uint32_t(std::int32_t node)>& place)
+void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& around, const VoxelPatches& cut,
+                      std::size_t index, const std::vector<std::uint32_t>& device_node)
 {
+  const Patch& of = cut.patches[index];
   const auto& binding = mesh.binding;
-  PatchShell patch{ static_cast<std::uint32_t>(corners.size() / 2), 0, static_cast<std::uint32_t>(triangles.size()), 0,
-                    static_cast<std::uint32_t>(voxels.size()),      0 };
-  std::vector<std::int32_t> number(binding.voxel.size(), -1);  // of each vertex in the patch
-  std::vector<std::int32_t> vertices;
+  std::vector<std::int32_t> number(binding.voxel.size(), -1), vertices;
   const auto add_vertex = [&](std::int32_t v)
   {
     if (number[v] >= 0)
@@ -83,133 +121,130 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
     number[v] = static_cast<std::int32_t>(vertices.size());
     vertices.push_back(v);
   };
-  std::vector<std::uint32_t> needed;
-  for (std::uint32_t column = 0; column < of_patch.size(); ++column)
+  std::vector<uint2> voxels;
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t column = 0; column < of.voxels; ++column)
   {
-    const auto e = static_cast<std::int32_t>(of_patch[column]);
+    const auto e = static_cast<std::int32_t>(cut.voxel[of.voxel_begin + column]);
     const auto [begin, end] = std::equal_range(binding.voxel.begin(), binding.voxel.end(), e);
     if (begin == end)
       continue;
-    const auto first = static_cast<std::uint32_t>(vertices.size());
+    voxels.push_back(
+        { column, static_cast<std::uint32_t>(vertices.size()) | static_cast<std::uint32_t>(end - begin) << 16 });
     for (auto v = begin; v != end; ++v)
       add_vertex(static_cast<std::int32_t>(v - binding.voxel.begin()));
-    voxels.push_back({ column, first, static_cast<std::uint32_t>(vertices.size()) });
-    needed.insert(needed.end(), around[e].begin(), around[e].end());
+    triangles.insert(triangles.end(), around[e].begin(), around[e].end());
   }
   const std::size_t own = vertices.size();
-  sort_and_unite(needed);
-  for (const auto t : needed)
+  sort_and_unite(triangles);
+  for (const auto t : triangles)
     for (const auto v : mesh.triangles[t].vertex)
       add_vertex(v);
-  for (const auto t : needed)
-    add_triangle(mesh, t, number);
-  patch.vertices = static_cast<std::uint32_t>(vertices.size());
-  patch.triangles = static_cast<std::uint32_t>(needed.size());
-  patch.voxels = static_cast<std::uint32_t>(voxels.size()) - patch.voxel_begin;
 
-  std::vector<std::vector<std::uint32_t>> terms_of(vertices.size());
-  for (std::uint32_t t = 0; t < needed.size(); ++t)
-    for (std::uint32_t i = 0; i < 6; ++i)
-      if (const auto& triangle = mesh.triangles[needed[t]]; i < 3 || triangle.has_beyond(i - 3))
-        terms_of[number[triangle.vertex[i]]].push_back(3 * i * patch.triangles + t);
+  const auto terms = terms_of(mesh, triangles, number, vertices.size());
+  std::vector<float4> coordinates;
+  std::vector<std::array<std::uint16_t, 8>> corners;
+  std::vector<std::uint16_t> all_terms;
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
+    // the other vertices lack triangles
+    const std::size_t count = v < own ? terms[v].size() : 0;
+    const auto sum = static_cast<std::uint32_t>(all_terms.size() | count << 20);
     const auto& at = binding.coordinates[vertices[v]];
     coordinates.push_back({ at[0], at[1], at[2], 0 });
+    std::memcpy(&coordinates.back().w, &sum, sizeof sum);
+    corners.emplace_back();
     const auto& nodes = model.voxel_nodes[binding.voxel[vertices[v]]];
-    for (const std::size_t half : { 0, 4 })
-      corners.push_back({ place(nodes[half]), place(nodes[half + 1]), place(nodes[half + 2]), place(nodes[half + 3]) });
-    // the others lack triangles
-    if (v >= own)
-      terms_of[v].clear();
-    sums.push_back({ static_cast<std::uint32_t>(terms.size()), static_cast<std::uint32_t>(terms_of[v].size()) });
-    terms.insert(terms.end(), terms_of[v].begin(), terms_of[v].end());
+    std::transform(nodes.begin(), nodes.end(), corners.back().begin(),
+                   [&](auto n) { return static_cast<std::uint16_t>(cut.place_of(index, device_node[n])); });
+    for (std::size_t k = 0; k < count; ++k)
+      all_terms.push_back(static_cast<std::uint16_t>(terms[v][k]));
   }
-  patches.push_back(patch);
-  most_words = std::max(most_words, patch.vertices + (18 * patch.triangles + 3) / 4);
-  most_triangles = std::max(most_triangles, patch.triangles);
+  const auto begin = static_cast<std::uint32_t>(tables.size());
+  append(tables, coordinates);
+  append(tables, corners);
+  append(tables, voxels);
+  append(tables, all_terms);
+  patches.push_back({ begin, static_cast<std::uint32_t>(tables.size()) - begin,
+                      static_cast<std::uint32_t>(vertices.size()), static_cast<std::uint32_t>(voxels.size()),
+                      static_cast<std::uint32_t>(triangles.size()), 0 });
+  append(tables, words_of(mesh, triangles, number));
+  fits_indices_ = fits_indices_ && vertices.size() < 1u << 16 && 18 * triangles.size() < 1u << 16;
 }
 
-void ShellTables::add_triangle(const ShellMesh& mesh, std::uint32_t triangle, const std::vector<std::int32_t>& number)
+void ShellTables::add_room(PartRoom& all) const
 {
-  triangles.push_back(triangle);
-  vertices_.emplace_back();
-  for (std::size_t i = 0; i < 6; ++i)
-    vertices_.back()[i] = static_cast<std::uint32_t>(number[mesh.triangles[triangle].vertex[i]]);
-}
-
-void ShellTables::pack(const ShellMesh& mesh)
-{
-  words.resize(shell_words * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  std::vector<std::uint32_t> table(blocks_, 0), triangles(blocks_, 0);
+  for (std::size_t p = 0; p < patches.size(); ++p)
   {
-    const ShellMesh::Triangle& triangle = mesh.triangles[triangles[t]];
-    const auto& rest = triangle.rest;
-    std::vector<float> numbers;
-    for (const auto& x : rest.from_corner)
-      for (const double component : { x.x, x.y, x.z })
-        numbers.push_back(static_cast<float>(component));
-    for (const double x : { rest.metric[0], rest.metric[1], rest.metric[2], rest.inverse_area, rest.shear,
-                            rest.dilatation, rest.height[0], rest.height[1], rest.height[2] })
-      numbers.push_back(static_cast<float>(x));
-    for (const double x : rest.bending)
-      numbers.push_back(static_cast<float>(x));
-    numbers.push_back(static_cast<float>(triangle.bending));
-    numbers.resize(4 * shell_words, 0);
-    std::memcpy(&numbers[32], vertices_[t].data(), sizeof vertices_[t]);
-    for (std::size_t w = 0; w < shell_words; ++w)
-      std::memcpy(&words[w * triangles.size() + t], &numbers[4 * w], sizeof(float4));
+    const PatchShell& patch = patches[p];
+    table[p % blocks_] += patch.table_words;
+    triangles[p % blocks_] += shell_words * patch.triangles;
+    all.room.shell_words = std::max(all.room.shell_words, patch.vertices + (18 * patch.triangles + 3) / 4);
+    all.threads = std::max(all.threads, patch.triangles);
   }
+  all.room.table_words = *std::max_element(table.begin(), table.end());
+  all.triangle_words = *std::max_element(triangles.begin(), triangles.end());
+  all.fits_indices = all.fits_indices && fits_indices_;
 }
 
 DeviceShell::DeviceShell(const Model& model, const VoxelCut& cut, const std::vector<std::uint32_t>& device_node)
     : model_(model), mesh_(model)
 {
-  const ShellTables tables(model, mesh_, cut.patches.get(), device_node);
-  patches_ = DeviceArray<PatchShell>(tables.patches);
-  corners_ = DeviceArray<uint4>(tables.corners);
-  coordinates_ = DeviceArray<float4>(tables.coordinates);
-  words_ = DeviceArray<float4>(tables.words);
-  sums_ = DeviceArray<uint2>(tables.sums);
-  terms_ = DeviceArray<std::uint32_t>(tables.terms);
-  voxels_ = DeviceArray<BoundVoxel>(tables.voxels);
-  if (cut.patches)
+  if (!cut.patches)
+  {
+    add_to_strips(device_node);
     return;
-  all_ = tables.patches[0];
-  points_ = DeviceBoundPoints(model, { mesh_.binding.voxel.begin(), mesh_.binding.voxel.end() }, tables.coordinates,
-                              device_node);
-  moved_ = DeviceArray<float4>(all_.vertices);
-  forces_ = DeviceArray<float>(std::size_t{ 18 } * all_.triangles);
+  }
+  const ShellTables tables(model, mesh_, *cut.patches, device_node);
+  patches_ = DeviceArray<PatchShell>(tables.patches);
+  tables_ = DeviceArray<uint4>(tables.tables);
 }
 
-void DeviceShell::describe(StepArguments& g) const
+void DeviceShell::add_to_strips(const std::vector<std::uint32_t>& device_node)
 {
-  g.shell = { patches_.data(),
-              corners_.data(),
-              coordinates_.data(),
-              sums_.data(),
-              terms_.data(),
-              words_.data(),
-              static_cast<std::uint32_t>(words_.size() / shell_words),
-              voxels_.data(),
-              false };
+  std::vector<std::uint32_t> triangles(mesh_.triangles.size());
+  std::iota(triangles.begin(), triangles.end(), 0u);
+  std::vector<std::int32_t> number(mesh_.binding.voxel.size());
+  std::iota(number.begin(), number.end(), 0);
+  std::vector<float4> coordinates;
+  for (const auto& at : mesh_.binding.coordinates)
+    coordinates.push_back({ at[0], at[1], at[2], 0 });
+  std::vector<uint2> sums;
+  std::vector<std::uint32_t> terms;
+  for (const auto& of_vertex : terms_of(mesh_, triangles, number, number.size()))
+  {
+    sums.push_back({ static_cast<std::uint32_t>(terms.size()), static_cast<std::uint32_t>(of_vertex.size()) });
+    terms.insert(terms.end(), of_vertex.begin(), of_vertex.end());
+  }
+  points_ =
+      DeviceBoundPoints(model_, { mesh_.binding.voxel.begin(), mesh_.binding.voxel.end() }, coordinates, device_node);
+  words_ = DeviceArray<float4>(words_of(mesh_, triangles, number));
+  sums_ = DeviceArray<uint2>(sums);
+  terms_ = DeviceArray<std::uint32_t>(terms);
+  moved_ = DeviceArray<float4>(number.size());
+  forces_ = DeviceArray<float>(18 * triangles.size());
 }
+
+void DeviceShell::describe(StepArguments& g) const { g.shell = { patches_.data(), tables_.data(), false }; }
 
 void DeviceShell::list_arrays(ArrayList& list)
 {
   const Effect effect = Effect::shell;
   list.add(effect, "triangles", mesh_.triangles);
-  list.add(effect, "triangles", words_.bytes());
+  list.add(effect, "triangles", words_.bytes() + tables_.bytes());
   list.add(effect, "vertices", mesh_.binding.voxel);
   list.add(effect, "vertices", mesh_.binding.coordinates);
-  list.add(effect, "vertices", patches_.bytes() + corners_.bytes() + coordinates_.bytes() + voxels_.bytes());
+  list.add(effect, "vertices", patches_.bytes() + points_.bytes());
   list.add(effect, "sums", sums_.bytes() + terms_.bytes());
-  list.add(effect, "forces", points_.bytes() + moved_.bytes() + forces_.bytes());
+  list.add(effect, "forces", moved_.bytes() + forces_.bytes());
 }
 
 void DeviceShell::find_pushes(const StepArguments& g, int /*step*/, cudaStream_t stream) const
 {
-  require(launch_shell_forces(g.shell, all_, points(), g.u[g.first], moved_.data(), forces_.data(), stream),
+  const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+  require(launch_shell_forces({ words_.data(), count, g.shell.spring }, { sums_.data(), terms_.data() }, points(),
+                              g.u[g.first], moved_.data(), forces_.data(), stream),
           "finding forces of shells");
 }
 

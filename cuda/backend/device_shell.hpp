@@ -4,8 +4,6 @@
 #include "cuda/backend/device_part.hpp"
 #include "frontalis/solver/shell_mesh.hpp"
 
-#include <functional>
-
 namespace frontalis
 {
 namespace cuda
@@ -14,34 +12,27 @@ namespace cuda
 /// For each voxel of the model, those that carry vertices of the triangles around its own vertices.
 std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const ShellMesh& mesh);
 
-/// The arrays of ShellArguments on the host.
-struct ShellTables
+/// The shells of each patch, on the host.
+class ShellTables
 {
-  /// `cut` null: for strips, one patch of everything, whose corners are device nodes. `device_node`: of each model
-  /// node.
-  ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches* cut,
+public:
+  /// `device_node`: of each model node.
+  ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut,
               const std::vector<std::uint32_t>& device_node);
 
+  /// Adds what they need of a block.
+  void add_room(PartRoom& all) const;
+
   std::vector<PatchShell> patches;
-  std::vector<uint4> corners;
-  std::vector<float4> coordinates;
-  std::vector<uint2> sums;
-  std::vector<std::uint32_t> terms;
-  std::vector<std::uint32_t> triangles;  ///< of the mesh
-  std::vector<float4> words;             ///< ShellArguments::triangles
-  std::vector<BoundVoxel> voxels;
-  std::uint32_t most_words = 0, most_triangles = 0;  ///< per patch: see PatchRoom
+  std::vector<uint4> tables;
 
 private:
-  using Voxels = std::vector<std::uint32_t>;
   using Around = std::vector<std::vector<std::uint32_t>>;
-  /// `around`: triangles around the vertices of each voxel. `of_patch`: its voxels. `place`: of a node in the patch.
-  void add(const Model& model, const ShellMesh& mesh, const Around& around, const Voxels& of_patch,
-           const std::function<std::uint32_t(std::int32_t node)>& place);
-  void add_triangle(const ShellMesh& mesh, std::uint32_t triangle, const std::vector<std::int32_t>& number);
-  void pack(const ShellMesh& mesh);
+  void add(const Model& model, const ShellMesh& mesh, const Around& around, const VoxelPatches& cut, std::size_t index,
+           const std::vector<std::uint32_t>& device_node);
 
-  std::vector<std::array<std::uint32_t, 6>> vertices_;  // of each triangle, in its patch
+  std::uint32_t blocks_;
+  bool fits_indices_ = true;
 };
 
 /// Layers that are shells, in device memory.
@@ -62,19 +53,18 @@ public:
                     Vectors& forces, EnergyLedger& ledger) override;
 
 private:
+  void add_to_strips(const std::vector<std::uint32_t>& device_node);
+
   const Model& model_;
   ShellMesh mesh_;
   bool runs_ = true;
   DeviceArray<PatchShell> patches_;
-  DeviceArray<uint4> corners_;
-  DeviceArray<float4> coordinates_, words_;
+  DeviceArray<uint4> tables_;
+  // in strips
+  DeviceBoundPoints points_;
+  DeviceArray<float4> words_, moved_;
   DeviceArray<uint2> sums_;
   DeviceArray<std::uint32_t> terms_;
-  DeviceArray<BoundVoxel> voxels_;
-  // in strips
-  PatchShell all_{};
-  DeviceBoundPoints points_;
-  DeviceArray<float4> moved_;
   DeviceArray<float> forces_;
 };
 

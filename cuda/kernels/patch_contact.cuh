@@ -17,7 +17,8 @@ struct PatchMemory
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
   std::uint32_t width;  // length of a row of `force`
   float4* push;         // of each point of contact: force on it and its coordinates
-  float4* shell;        // see ShellArguments
+  float4* shell;        // displacements of vertices of shells, and forces of triangles
+  uint4* tables;        // see PatchShell
   std::uint32_t*
       least;  // two entries: see put_pushes(). While a slow thread reads that of a patch, the next uses another.
 };
@@ -28,7 +29,8 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
   extern __shared__ float4 all[];
   float4* const push = all + launch.most_halo + launch.most_nodes;
   float4* const shell = push + (has<With, Effects::contact> ? 2 * launch.room.contact_points : 0);
-  float4* const least = shell + (has<With, Effects::shell> ? launch.room.shell_words : 0);
+  float4* const tables = shell + (has<With, Effects::shell> ? launch.room.shell_words : 0);
+  float4* const least = tables + (has<With, Effects::shell> ? launch.room.table_words : 0);
   float* const v = reinterpret_cast<float*>(least + (has<With, Effects::contact> ? 1 : 0));
   return { all,
            { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
@@ -36,6 +38,7 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
            launch.most_voxels + 1,
            push,
            shell,
+           reinterpret_cast<uint4*>(tables),
            reinterpret_cast<std::uint32_t*>(least) };
 }
 

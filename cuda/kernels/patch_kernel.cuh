@@ -194,7 +194,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     load_activations(g, activations);
   float until[most_turns];  // with contact: see ContactWatch
   std::uint32_t round = 0;
-  std::uint32_t filled = 0;
+  std::uint32_t filled = 0, kept = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
     const Patch patch = g.patches[p];
@@ -207,6 +207,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         memory.v[i][filled + n] = g.v[i][node];
     }
     filled += patch.nodes;
+    if (has<With, Effects::shell>)
+      kept += keep_shell(g, launch, memory, p, kept);
   }
   if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
@@ -216,7 +218,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     const float4* const u = g.u[present];
     const bool with_bound = g.frequency_bound != nullptr && (g.bound_every_step || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
-    filled = 0;
+    filled = kept = 0;
     const Activations activation = activations_at(g, step, activations);
     const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
     int turn = 0;
@@ -225,7 +227,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       const Patch patch = g.patches[p];
       PatchContact contact{};
       ContactWatch watch{};
-      PatchShell shell{};
+      ShellStep shell{};
       if (has<With, Effects::contact>)
       {
         if (!has<With, Effects::shell> || g.contact.patches != nullptr)
@@ -236,7 +238,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
           memory.least[round] = 0xffffffffu;
       }
       if (has<With, Effects::shell>)
-        shell = fetch_shell(g, p);
+        shell = fetch_shell(g, launch, memory, p, kept);
       VoxelFetch voxel{};
       // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
@@ -254,7 +256,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       if (has<With, Effects::contact>)
         look_at_watched(g, contact, memory, watch);
       if (has<With, Effects::shell>)
-        place_shell(g, shell, memory);
+        place_shell(shell, memory);
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -277,6 +279,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
             frequency_bits = max(frequency_bits, bound_of_node(g, memory, patch.first_node + n,
                                                                memory.place[launch.most_halo + filled + n].w));
       filled += patch.nodes;
+      kept += shell.words;
     }
     if (with_bound)
     {

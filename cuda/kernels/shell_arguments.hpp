@@ -6,32 +6,36 @@ namespace frontalis
 {
 
 /// The part of the shells that a patch computes: vertices in its voxels, whose forces it needs, all triangles around
-/// them, and the other vertices of these. In strips there is one such part, of everything.
+/// them, and the other vertices of these. Its table has words of 16 bytes:
+/// - for each vertex, its coordinates in its voxel; last number: first term of the force on it, from bit 20 on how
+/// many;
+/// - for each vertex, the places of the corners of its voxel in shared memory, in 16 bits each;
+/// - for each voxel with vertices, in half a word: its number in the patch, first vertex, from bit 16 on how many;
+/// - for each term, in 16 bits, where the x component of a triangle's force on the vertex is;
+/// - the triangles: see ShellTriangles.
+/// Vertices in its voxels come first, sorted by voxel.
 struct alignas(8) PatchShell
 {
-  std::uint32_t vertex_begin, vertices;     ///< those in its voxels come first, sorted by voxel
-  std::uint32_t triangle_begin, triangles;  ///< into ShellArguments::triangles
-  std::uint32_t voxel_begin, voxels;        ///< those with vertices: into ShellArguments::voxels
+  std::uint32_t table_begin, table_words;  ///< into ShellArguments::tables; number of words without the triangles
+  std::uint32_t vertices, voxels, triangles, unused;
 };
 
-/// Words of 16 bytes per triangle: physics::ShellTriangle, the bound of the bending stiffness [N/m], an unused number,
-/// the six vertices in its patch, two unused numbers.
+/// Words per triangle: physics::ShellTriangle, the bound of the bending stiffness [N/m], an unused number, the six
+/// vertices, two unused numbers. They are stored as [word][triangle]; forces, as [vertex][component][triangle].
 constexpr int shell_words = 10;
+struct ShellTriangles
+{
+  const float4* words;
+  std::uint32_t count;
+  bool spring;  ///< forces are those of ShellStiffness::add_forces()
+};
 
-/// Layers that are shells, in device memory. A patch keeps displacements of its vertices, and forces as
-/// [vertex of the triangle][component][triangle].
+/// Layers that are shells, in patches.
 struct ShellArguments
 {
-  const PatchShell* patches;   ///< null: shells are not computed
-  const uint4* corners;        ///< two per vertex: corners of its voxel in the block's shared memory, or device nodes
-  const float4* coordinates;   ///< of each vertex in its voxel
-  const uint2* sums;           ///< of each vertex, terms of the force on it: first and number
-  const std::uint32_t* terms;  ///< where a patch keeps the x components of these forces
-  const float4* triangles;     ///< [word][triangle]
-  std::uint32_t triangle_count;
-  const BoundVoxel* voxels;
-  /// Forces are those of ShellStiffness::add_forces().
-  bool spring;
+  const PatchShell* patches;  ///< null: shells are not computed
+  const uint4* tables;
+  bool spring;  ///< see ShellTriangles
 };
 
 }  // namespace frontalis

@@ -21,22 +21,24 @@ __global__ void __launch_bounds__(block) place_vertices(const BoundPoints points
   moved[v] = make_float4(at.x, at.y, at.z, 0);
 }
 
-__global__ void __launch_bounds__(block)
-    find_forces(const ShellArguments s, const PatchShell all, const float4* moved, float* forces)
+__global__ void __launch_bounds__(block) find_forces(const ShellTriangles triangles, const float4* moved, float* forces)
 {
   const std::uint32_t t = blockIdx.x * block + threadIdx.x;
-  if (t < all.triangles)
-    put_shell_forces(s, all, t, moved, forces);
+  if (t < triangles.count)
+    put_shell_forces(triangles, t, moved, forces);
 }
 
 __global__ void __launch_bounds__(block)
-    sum_forces(const ShellArguments s, const PatchShell all, const float* forces, float4* pushes)
+    sum_forces(const ShellSums of, const BoundPoints points, std::uint32_t triangles, const float* forces)
 {
   const std::uint32_t v = blockIdx.x * block + threadIdx.x;
-  if (v >= all.vertices)
+  if (v >= points.point_count)
     return;
-  const physics::Vec3<float> force = sum_shell_forces(s, all, v, 0, 1, forces);
-  pushes[v] = make_float4(force.x, force.y, force.z, 0);
+  const uint2 sum = of.sums[v];
+  physics::Vec3<float> force{ 0, 0, 0 };
+  for (std::uint32_t k = sum.x; k < sum.x + sum.y; ++k)
+    force = force + shell_force(forces + of.terms[k], triangles);
+  points.pushes[v] = make_float4(force.x, force.y, force.z, 0);
 }
 
 namespace
@@ -47,12 +49,13 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 }  // namespace
 }  // namespace cuda
 
-cudaError_t launch_shell_forces(const ShellArguments& shell, const PatchShell& all, const BoundPoints& points,
+cudaError_t launch_shell_forces(const ShellTriangles& triangles, const ShellSums& sums, const BoundPoints& points,
                                 const float4* u, float4* moved, float* forces, cudaStream_t stream)
 {
-  cuda::place_vertices<<<cuda::blocks(points.point_count), cuda::block, 0, stream>>>(points, u, moved);
-  cuda::find_forces<<<cuda::blocks(all.triangles), cuda::block, 0, stream>>>(shell, all, moved, forces);
-  cuda::sum_forces<<<cuda::blocks(all.vertices), cuda::block, 0, stream>>>(shell, all, forces, points.pushes);
+  const int vertices = cuda::blocks(points.point_count);
+  cuda::place_vertices<<<vertices, cuda::block, 0, stream>>>(points, u, moved);
+  cuda::find_forces<<<cuda::blocks(triangles.count), cuda::block, 0, stream>>>(triangles, moved, forces);
+  cuda::sum_forces<<<vertices, cuda::block, 0, stream>>>(sums, points, triangles.count, forces);
   return cudaGetLastError();
 }
 

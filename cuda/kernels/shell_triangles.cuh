@@ -26,15 +26,15 @@ __device__ __forceinline__ void shell_spring_forces(const physics::ShellTriangle
   force[2] = force[2] - on_b;
 }
 
-/// Finds the forces of a triangle of a patch. `moved`: displacements of the patch's vertices. `forces`: the patch's.
-__device__ __forceinline__ void put_shell_forces(const ShellArguments& s, const PatchShell& patch, std::uint32_t t,
-                                                 const float4* moved, float* forces)
+/// Finds the forces of a triangle. `moved`: displacements of vertices.
+__device__ __forceinline__ void put_shell_forces(const ShellTriangles& all, std::uint32_t t, const float4* moved,
+                                                 float* forces)
 {
   float word[4 * shell_words];
 #pragma unroll
-  for (int i = 0; i < shell_words; ++i)
+  for (std::uint32_t i = 0; i < shell_words; ++i)
   {
-    const float4 four = __ldg(s.triangles + i * std::size_t(s.triangle_count) + patch.triangle_begin + t);
+    const float4 four = all.words[i * std::size_t(all.count) + t];
     word[4 * i] = four.x;
     word[4 * i + 1] = four.y;
     word[4 * i + 2] = four.z;
@@ -51,33 +51,24 @@ __device__ __forceinline__ void put_shell_forces(const ShellArguments& s, const 
     u[i] = { at.x, at.y, at.z };
   }
   physics::ShellReaction<float> reaction;
-  if (s.spring)
+  if (all.spring)
     shell_spring_forces(rest, word[30], u, reaction.force);
   else
     reaction = physics::shell_forces(rest, u);
 #pragma unroll
-  for (int i = 0; i < 6; ++i)
+  for (std::uint32_t i = 0; i < 6; ++i)
   {
-    float* const to = forces + 3 * i * patch.triangles + t;
+    float* const to = forces + 3 * i * std::size_t(all.count) + t;
     to[0] = reaction.force[i].x;
-    to[patch.triangles] = reaction.force[i].y;
-    to[2 * patch.triangles] = reaction.force[i].z;
+    to[all.count] = reaction.force[i].y;
+    to[2 * std::size_t(all.count)] = reaction.force[i].z;
   }
 }
 
-/// Adds every `step`th term of the force on a vertex, from number `first` on, in order.
-__device__ __forceinline__ physics::Vec3<float> sum_shell_forces(const ShellArguments& s, const PatchShell& patch,
-                                                                 std::uint32_t vertex, std::uint32_t first,
-                                                                 std::uint32_t step, const float* forces)
+/// The force of `count` triangles, of which the x component is at `from`.
+__device__ __forceinline__ physics::Vec3<float> shell_force(const float* from, std::uint32_t count)
 {
-  const uint2 sum = __ldg(s.sums + patch.vertex_begin + vertex);
-  physics::Vec3<float> force{ 0, 0, 0 };
-  for (std::uint32_t k = first; k < sum.y; k += step)
-  {
-    const float* const from = forces + __ldg(s.terms + sum.x + k);
-    force = force + physics::Vec3<float>{ from[0], from[patch.triangles], from[2 * patch.triangles] };
-  }
-  return force;
+  return { from[0], from[count], from[2 * std::size_t(count)] };
 }
 
 }  // namespace cuda

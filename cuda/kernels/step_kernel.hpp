@@ -241,7 +241,10 @@ constexpr Effects voxel_part(Effects set)
 struct PatchRoom
 {
   std::uint32_t contact_points;
-  std::uint32_t shell_words;  ///< of 16 bytes: displacements of vertices, and forces of triangles
+  // words of 16 bytes
+  std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
+  std::uint32_t table_words;  ///< tables of shells of all patches of a block
+  bool keeps_triangles;       ///< whether these have the triangles too
 };
 
 /// How the step kernel is launched for a model.
@@ -270,7 +273,8 @@ constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo
                                   const PatchRoom& room = {})
 {
   const bool any = room.contact_points > 0 || room.shell_words > 0;
-  return sizeof(float4) * (most_halo + most_nodes + (any ? 2 * room.contact_points + room.shell_words + 1 : 0)) +
+  return sizeof(float4) *
+             (most_halo + most_nodes + (any ? 2 * room.contact_points + room.shell_words + room.table_words + 1 : 0)) +
          3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 

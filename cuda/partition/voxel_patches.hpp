@@ -51,6 +51,7 @@ struct VoxelPatches
   std::vector<std::uint32_t> device_node;  ///< of each model node
   std::vector<std::uint32_t> first_place;  ///< of each patch: index of its first own node in shared memory
 
+  std::uint32_t blocks;
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
   bool fits_indices = true;                      ///< whether indices of 16 bits suffice
