@@ -65,8 +65,7 @@ struct PartRoom
 };
 PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node);
 
-/// VoxelPatches::Beside of a model.
-std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model);
+BoundWork bound_work(const Model& model);
 
 }  // namespace cuda
 }  // namespace frontalis

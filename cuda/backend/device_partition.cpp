@@ -30,9 +30,9 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
     return cut.fits_indices && part_room.fits_indices && fit(room);
   };
   PatchSettings settings = choice.patches;
-  const VoxelPatches::Beside beside = settings.turns > 0 ? voxels_beside(model) : VoxelPatches::Beside();
+  const BoundWork bound = settings.turns > 0 ? bound_work(model) : BoundWork();
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
-    if (auto cut = std::make_unique<VoxelPatches>(model, settings, beside); fits(*cut))
+    if (auto cut = std::make_unique<VoxelPatches>(model, settings, bound); fits(*cut))
       patches = std::move(cut);
   if (patches)
     return;

@@ -32,9 +32,19 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
   return all;
 }
 
-std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model)
+BoundWork bound_work(const Model& model)
 {
-  return model.shells.empty() ? std::vector<std::vector<std::int32_t>>() : voxels_beside(model, ShellMesh(model));
+  // with it the steps of the generated head are shortest
+  constexpr float touch_cost = 2;
+  BoundWork work;
+  if (!model.contacts.empty())
+    work.cost.assign(model.voxels.size(), 0);
+  for (const Contact& contact : model.contacts)
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+      work.cost[contact.binding.voxel[p]] += contact.area[p] > 0 ? touch_cost : 0;
+  if (!model.shells.empty())
+    work.beside = voxels_beside(model, ShellMesh(model));
+  return work;
 }
 
 }  // namespace cuda

@@ -13,21 +13,18 @@ namespace frontalis
 namespace
 {
 
-// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect; those of
-// points of contact and of nodes that slide on moving bones, on the generated head, whose steps are the shortest so.
-constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, touch_cost = 2, glide_cost = 3;
+// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect; that of
+// nodes that slide on moving bones, on the generated head, whose steps are shortest so.
+constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
 
-// Costs of voxels, with their points of contact.
-std::vector<float> voxel_costs(const Model& model)
+std::vector<float> voxel_costs(const Model& model, const BoundWork& bound)
 {
-  std::vector<float> cost(model.voxels.size());
+  std::vector<float> cost = bound.cost;
+  cost.resize(model.voxels.size(), 0);
   for (std::size_t e = 0; e < cost.size(); ++e)
-    cost[e] = 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
-  for (const Contact& contact : model.contacts)
-    for (std::size_t p = 0; p < contact.points.size(); ++p)
-      cost[contact.binding.voxel[p]] += contact.area[p] > 0 ? touch_cost : 0;
+    cost[e] += 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
   return cost;
 }
 
@@ -142,9 +139,9 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
 }
 
 // Divides the model into parts of about equal cost. Iterates, because shared voxels, and the cost, depend on the cut.
-std::vector<std::uint32_t> partition(const Model& model, int parts)
+std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound, int parts)
 {
-  const std::vector<float> of_voxel = voxel_costs(model), of_node = node_costs(model);
+  const std::vector<float> of_voxel = voxel_costs(model, bound), of_node = node_costs(model);
   std::vector<float> weight = of_node;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (const auto n : model.voxel_nodes[e])
@@ -188,11 +185,11 @@ std::vector<char> busy_nodes(const Model& model)
 
 }  // namespace
 
-VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, const Beside& beside)
+VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, const BoundWork& bound)
     : blocks(static_cast<std::uint32_t>(settings.blocks))
 {
   const int parts = settings.blocks * settings.turns;
-  const auto part_of = partition(model, parts);
+  const auto part_of = partition(model, bound, parts);
   std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
   std::vector<char> on_border(model.nodes.size(), 0);
   each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
@@ -212,8 +209,8 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
     for (const auto e : voxels_of[p])
     {
       add(e);
-      if (!beside.empty())
-        for (const auto other : beside[e])
+      if (!bound.beside.empty())
+        for (const auto other : bound.beside[e])
           add(static_cast<std::uint32_t>(other));
     }
   }

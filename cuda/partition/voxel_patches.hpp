@@ -16,8 +16,15 @@ struct PatchSettings
   int turns = 1;
 };
 
+/// What points that are bound to voxels ask of patches, for each voxel of the model; empty: nothing.
+struct BoundWork
+{
+  std::vector<float> cost;                        ///< of its points, relative to a voxel without effects
+  std::vector<std::vector<std::int32_t>> beside;  ///< other voxels whose nodes a patch that has it needs as well
+};
+
 /// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the
-/// halo, which is the other nodes of those voxels and those that VoxelPatches::Beside asks for.
+/// halo, which is the other nodes of those voxels and those that BoundWork asks for.
 struct Patch
 {
   std::uint32_t first_node;   ///< device node; own nodes are contiguous
@@ -35,9 +42,7 @@ struct Patch
 /// 1, then the nodes of all its patches in order.
 struct VoxelPatches
 {
-  /// For each voxel, others whose nodes a patch that has it needs as well; empty: none.
-  using Beside = std::vector<std::vector<std::int32_t>>;
-  VoxelPatches(const Model& model, const PatchSettings& settings, const Beside& beside = {});
+  VoxelPatches(const Model& model, const PatchSettings& settings, const BoundWork& bound = {});
 
   /// Index in shared memory of a device node that the patch has.
   std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
