@@ -65,6 +65,7 @@ struct PartRoom
 };
 PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node);
 
+/// What the parts of a model ask of its patches.
 BoundWork bound_work(const Model& model);
 
 }  // namespace cuda

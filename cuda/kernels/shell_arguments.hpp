@@ -5,15 +5,16 @@
 namespace frontalis
 {
 
-/// The part of the shells that a patch computes: vertices in its voxels, whose forces it needs, all triangles around
-/// them, and the other vertices of these. Its table has words of 16 bytes:
-/// - for each vertex, its coordinates in its voxel; last number: first term of the force on it, from bit 20 on how
-/// many;
-/// - for each vertex, the places of the corners of its voxel in shared memory, in 16 bits each;
-/// - for each voxel with vertices, in half a word: its number in the patch, first vertex, from bit 16 on how many;
+/// The part of the shells that a patch computes: vertices in its voxels, on which it needs the forces, all triangles
+/// around them, and the other vertices of these triangles. Vertices in its voxels come first, sorted by voxel. The
+/// table of a patch has words of 16 bytes, in this order:
+/// - for each vertex, its coordinates in its voxel; the bits of the fourth number are the first term of the force on
+///   it, and from bit 20 on the number of terms;
+/// - for each vertex, where shared memory has the corners of its voxel, in 16 bits each;
+/// - for each voxel with vertices, in half a word: its number in the patch; its first vertex, and from bit 16 on their
+///   number;
 /// - for each term, in 16 bits, where the x component of a triangle's force on the vertex is;
 /// - the triangles: see ShellTriangles.
-/// Vertices in its voxels come first, sorted by voxel.
 struct alignas(8) PatchShell
 {
   std::uint32_t table_begin, table_words;  ///< into ShellArguments::tables; number of words without the triangles
