@@ -51,14 +51,15 @@ public:
 private:
   static constexpr int plan_slots = 3;
 
-  StepArguments arguments(double dt) const;
+  StepArguments arguments(double dt, bool idle_parts = false) const;
   void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
-  bool pushes_before_steps() const;
+  /// Adds `factor` times the forces on the points of `part` to `v`: launch_push_nodes.
+  void push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const;
   void rest();
-  /// `springs`: with those of points of contact.
+  /// `springs`: with the largest stiffness of contact and shells, also where they are switched off.
   void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.

@@ -19,9 +19,9 @@ void CudaSolver::kick(StepArguments& g, double seconds) const
     std::fill_n(g.impulse, 3, 0.0f);
 }
 
-StepArguments CudaSolver::arguments(double dt) const
+StepArguments CudaSolver::arguments(double dt, bool idle_parts) const
 {
-  StepArguments g = device_.arguments();
+  StepArguments g = device_.arguments(idle_parts);
   for (int buffer = 0; buffer < 2; ++buffer)
     g.u[buffer] = u_[buffer].data();
   for (int axis = 0; axis < 3; ++axis)
@@ -43,12 +43,14 @@ StepArguments CudaSolver::arguments(double dt) const
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
   const std::size_t muscles = model_->muscles.size(), bones = model_->bones.size();
-  const DevicePart* const touching = device_.touching();
-  const bool touches = touching != nullptr && !touching->idle();
+  const auto running = device_.running_parts();
   std::vector<std::vector<RigidTransform>> poses;
-  for (int step = 0; (bones > 0 || touches) && step <= plan.steps; ++step)
+  for (int step = 0; (bones > 0 || !running.empty()) && step <= plan.steps; ++step)
     poses.push_back(step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone);
-  const std::vector<float> bodies = touches ? touching->motion(poses) : std::vector<float>();
+  std::vector<float> bodies;
+  for (const DevicePart* const part : running)
+    if (bodies.empty())
+      bodies = part->motion(poses);
   // a multiple of the size of float4
   constexpr std::size_t bodies_at = 16;
   const std::size_t activation_at = bodies_at + sizeof(double) * ((bodies.size() + 1) / 2);
@@ -82,7 +84,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
   char* const controls = slot.controls.data();
   g.frequency_bound = reinterpret_cast<std::uint32_t*>(controls);
-  if (touches)
+  if (!bodies.empty())
   {
     g.contact.poses = reinterpret_cast<const float4*>(controls + bodies_at);
     g.contact.ways = reinterpret_cast<const float*>(controls + bodies_at) + (bodies.size() - poses.size());
@@ -104,36 +106,41 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-bool CudaSolver::pushes_before_steps() const
+void CudaSolver::push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const
 {
-  const DevicePart* const contact = device_.touching();
-  return contact != nullptr && !contact->idle() && !contact->in_patches();
+  require(launch_push_nodes(g, part.points(), factor, v, stream_), "pushing nodes");
 }
 
-// Launches all steps at once if the host has nothing to do between them, else one launch per step.
+// Launches all steps at once if the host has nothing to do between them, else one launch per step. In strips the forces
+// on points become changes of velocities before the step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
     return step(g, begin, end);
-  DevicePart* const contact = device_.touching();
+  const auto running = device_.running_parts();
+  const auto pushing = launch_.patches ? std::vector<DevicePart*>() : running;
   for (int s = begin; s < end; ++s)
   {
     device_.loads().update(u_[present_].data(), stream_);
     g.first = present_;
     if (account_)
       account_->before_step(g, s, stream_);
-    if (pushes_before_steps())
-      contact->push(g, s, stream_);
+    for (const DevicePart* const part : pushing)
+    {
+      part->find_pushes(g, s, stream_);
+      push(g, *part, g.gain / g.keep, g.v);
+    }
     step(g, s, s + 1);
     if (!account_)
       continue;
-    if (pushes_before_steps())
-      contact->take_back(g, g.velocity_before, stream_);
+    for (const DevicePart* const part : pushing)
+      push(g, *part, -g.gain / g.keep, g.velocity_before);
     account_->after_step(g, conditions_.damping, s, stream_);
-    if (contact == nullptr || contact->idle())
+    if (running.empty())
       continue;
     synchronise();
-    contact->follow(plan.constraint_step(s));
+    for (DevicePart* const part : running)
+      part->follow(plan.constraint_step(s));
   }
 }
 
@@ -204,22 +211,28 @@ double CudaSolver::run(const StepPlan& plan)
 // Computes the internal forces at any displacements. `out` must hold zeros for nodes without voxels.
 void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, bool springs)
 {
-  StepArguments g = arguments(0);
+  StepArguments g = arguments(0, springs);
   g.activation_begin = g.activation_end = activation;
   g.steps = 1;
   g.forces_only = true;
   const int present = present_;
   g.u[present] = at;
   g.u[1 - present] = out;
-  g.contact.spring = springs;
+  g.contact.spring = g.shell.spring = springs;
   const StepLaunch launch = launch_;
-  if (springs && device_.touching() != nullptr)
-    launch_.effects = device_.launch_with_contact().effects;
+  if (springs)
+    launch_.effects = device_.launch_with_parts().effects;
   step(g, 0, 1);
   launch_ = launch;
   present_ = present;
-  if (springs && device_.touching() != nullptr && !launch_.patches)
-    device_.touching()->add_springs(g, stream_);
+  if (!springs || launch_.patches)
+    return;
+  float* const none[3] = { nullptr, nullptr, nullptr };
+  for (const auto& part : device_.parts())
+  {
+    part->find_pushes(g, 0, stream_);
+    push(g, *part, 0, none);
+  }
 }
 
 void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
@@ -264,29 +277,41 @@ Work CudaSolver::work(bool open)
 
 void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger)
 {
-  if (device_.touching() == nullptr || device_.touching()->idle())
+  const auto running = device_.running_parts();
+  if (running.empty())
     return;
   NodalVectors u;
   get(NodalField::displacements, u);
-  device_.touching()->add_energies(u, conditions_.bone, open, forces, ledger);
+  std::vector<double> components[3];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const auto& moved : u)
+      components[axis].push_back(moved[axis]);
+  for (DevicePart* const part : running)
+    part->add_energies(components, conditions_.bone, open, forces, ledger);
 }
 
 // With a ledger the host has already followed every step (DevicePart::follow).
 std::vector<Reaction> CudaSolver::reactions() const
 {
-  DevicePart* const contact = device_.touching();
-  if (contact == nullptr)
-    return {};
   synchronise();
-  if (!account_ && !contact->idle())
-    contact->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
-  return contact->reactions();
+  std::vector<Reaction> all;
+  for (const auto& part : device_.parts())
+  {
+    if (!account_ && !part->idle())
+      part->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
+    for (const Reaction& reaction : part->reactions())
+      all.push_back(reaction);
+  }
+  return all;
 }
 
 std::int64_t CudaSolver::lost_points() const
 {
   synchronise();
-  return device_.touching() == nullptr ? 0 : device_.touching()->lost_points();
+  std::int64_t lost = 0;
+  for (const auto& part : device_.parts())
+    lost += part->lost_points();
+  return lost;
 }
 
 Monitor CudaSolver::monitor()

@@ -2,6 +2,7 @@
 
 #include "cuda/backend/device_model.hpp"
 #include "cuda/kernels/contact_kernels.hpp"
+#include "frontalis/solver/backend.hpp"
 
 #include "solver/contact/body_motion.hpp"
 
@@ -32,18 +33,14 @@ std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patch
   return most;
 }
 
-std::unique_ptr<DevicePart> touching_part(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
-                                          const std::vector<std::uint32_t>& device_node)
-{
-  if (model.contacts.empty())
-    return nullptr;
-  return std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node);
-}
-
 DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
                                      const std::vector<std::uint32_t>& device_node)
     : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0), far_corner_(far_corner(model))
 {
+  for (const Contact& contact : model.contacts)
+    if (contact.mass > 0)
+      throw BackendUnavailable("backend cuda: body " + contact.name +
+                               " is pushed, which is computed on the CPU alone so far");
   for (const auto& point : host_.points())
     ++first_point_[point.voxel + 1];
   std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
@@ -63,7 +60,7 @@ DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& d
 void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
 {
   std::vector<PatchContact> of_patch;
-  std::vector<ContactVoxel> voxels;
+  std::vector<BoundVoxel> voxels;
   std::vector<uint4> corners;
   std::vector<float4> watched;
   for (const Patch& patch : patches.patches)
@@ -99,7 +96,7 @@ void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
     of_patch.push_back(contact);
   }
   patches_ = DeviceArray<PatchContact>(of_patch);
-  voxels_ = DeviceArray<ContactVoxel>(voxels);
+  voxels_ = DeviceArray<BoundVoxel>(voxels);
   corners_ = DeviceArray<uint4>(corners);
   watched_ = DeviceArray<float4>(watched);
 }
@@ -108,41 +105,14 @@ void DeviceBodyContact::add_to_strips(const Model& model, const std::vector<std:
 {
   point_.resize(host_.points().size());
   std::iota(point_.begin(), point_.end(), 0u);
-  std::vector<uint4> nodes;
-  std::vector<ContactVoxel> voxels;
-  std::vector<std::pair<std::uint32_t, std::pair<int, std::int32_t>>> uses;  // node, corner, voxel with points
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  std::vector<std::uint32_t> voxel;
+  std::vector<float4> coordinates;
+  for (const auto& point : host_.points())
   {
-    if (first_point_[e] == first_point_[e + 1])
-      continue;
-    std::uint32_t node[8];
-    for (int b = 0; b < 8; ++b)
-    {
-      node[b] = device_node[model.voxel_nodes[e][b]];
-      uses.push_back({ node[b], { b, static_cast<std::int32_t>(voxels.size()) } });
-    }
-    for (auto p = first_point_[e]; p < first_point_[e + 1]; ++p)
-      for (const int half : { 0, 4 })
-        nodes.push_back({ node[half], node[half + 1], node[half + 2], node[half + 3] });
-    voxels.push_back({ 0, first_point_[e], first_point_[e + 1] });
+    voxel.push_back(static_cast<std::uint32_t>(point.voxel));
+    coordinates.push_back({ point.coordinates[0], point.coordinates[1], point.coordinates[2], 0 });
   }
-  std::sort(uses.begin(), uses.end());
-  std::vector<std::uint32_t> bound;
-  std::vector<std::int32_t> node_voxels;
-  for (const auto& [node, use] : uses)
-  {
-    if (bound.empty() || bound.back() != node)
-    {
-      bound.push_back(node);
-      node_voxels.resize(node_voxels.size() + 8, -1);
-    }
-    node_voxels[node_voxels.size() - 8 + use.first] = use.second;
-  }
-  nodes_ = DeviceArray<uint4>(nodes);
-  voxels_ = DeviceArray<ContactVoxel>(voxels);
-  bound_ = DeviceArray<std::uint32_t>(bound);
-  node_voxels_ = DeviceArray<std::int32_t>(node_voxels);
-  pushes_ = DeviceArray<float4>(point_.size());
+  bound_ = DeviceBoundPoints(model, voxel, coordinates, device_node);
 }
 
 void DeviceBodyContact::add_points(const Model& model)
@@ -174,12 +144,8 @@ void DeviceBodyContact::describe(StepArguments& g) const
                 corners_.data(),
                 watched_.data(),
                 static_cast<float>(1 / host_.spread()),
-                nodes_.data(),
-                bound_.data(),
-                node_voxels_.data(),
-                pushes_.data(),
+                bound_.view(),
                 static_cast<std::uint32_t>(point_.size()),
-                static_cast<std::uint32_t>(bound_.size()),
                 static_cast<std::uint32_t>(host_bodies_.size()),
                 nullptr,
                 nullptr,
@@ -216,10 +182,9 @@ void DeviceBodyContact::list_arrays(ArrayList& list)
 {
   const Effect effect = Effect::contact;
   fields_.list_arrays(effect, list);
-  list.add(effect, "points", bodies_.bytes() + points_.bytes() + corners_.bytes() + nodes_.bytes());
-  list.add(effect, "their voxels", voxels_.bytes() + patches_.bytes() + bound_.bytes() + node_voxels_.bytes());
+  list.add(effect, "points", bodies_.bytes() + points_.bytes() + corners_.bytes() + bound_.bytes());
+  list.add(effect, "their voxels", voxels_.bytes() + patches_.bytes());
   list.add(effect, "points", watched_.bytes() + samples_.bytes() + clearances_.bytes());
-  list.add(effect, "forces", pushes_.bytes());
   for (auto* const state : { &grips_, &forces_, &arms_ })
     list_state(list, effect, "forces", *state);
   list_state(list, effect, "forces", holds_);
@@ -241,22 +206,9 @@ void DeviceBodyContact::reset()
   host_.reset();
 }
 
-void DeviceBodyContact::push(const StepArguments& g, int step, cudaStream_t stream) const
+void DeviceBodyContact::find_pushes(const StepArguments& g, int step, cudaStream_t stream) const
 {
   require(launch_find_pushes(g, step, stream), "finding forces of contact");
-  require(launch_push_nodes(g, g.gain / g.keep, g.v, stream), "pushing nodes");
-}
-
-void DeviceBodyContact::take_back(const StepArguments& g, float* const (&v)[3], cudaStream_t stream) const
-{
-  require(launch_push_nodes(g, -g.gain / g.keep, v, stream), "velocities before contact");
-}
-
-void DeviceBodyContact::add_springs(const StepArguments& g, cudaStream_t stream) const
-{
-  float* const none[3] = { nullptr, nullptr, nullptr };
-  require(launch_find_pushes(g, 0, stream), "finding forces of contact");
-  require(launch_push_nodes(g, 0, none, stream), "adding forces of contact");
 }
 
 void DeviceBodyContact::follow(const ConstraintStep& step)
@@ -286,14 +238,10 @@ std::int64_t DeviceBodyContact::lost_points() const
                        [&](std::uint32_t copy) { return holds[copy].touching == int(physics::Touching::lost); });
 }
 
-void DeviceBodyContact::add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open,
-                                     Vectors& forces, EnergyLedger& ledger)
+void DeviceBodyContact::add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones,
+                                     bool open, Vectors& forces, EnergyLedger& ledger)
 {
-  std::vector<double> components[3];
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const auto& moved : u)
-      components[axis].push_back(moved[axis]);
-  const double* const pointers[3] = { components[0].data(), components[1].data(), components[2].data() };
+  const double* const pointers[3] = { u[0].data(), u[1].data(), u[2].data() };
   host_.add_energies(pointers, bones, open, forces, ledger);
 }
 

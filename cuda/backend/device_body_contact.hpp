@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/backend/contact_point.hpp"
+#include "cuda/backend/device_bound_points.hpp"
 #include "cuda/backend/device_fields.hpp"
 #include "cuda/backend/device_part.hpp"
 
@@ -8,6 +9,9 @@ namespace frontalis
 {
 namespace cuda
 {
+
+/// Most points of contact in a patch.
+std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patches);
 
 /// Contact with rigid bodies in device memory. Patches find its forces in their steps, strips in kernels before each
 /// step. BodyContact adds up reactions and energies on the host, from what the device has found.
@@ -18,20 +22,19 @@ public:
                     const std::vector<std::uint32_t>& device_node);
 
   bool idle() const override { return host_.idle(); }
-  bool in_patches() const override { return patches_.size() > 0; }
+  Effects effects() const override { return of_nodes | Effects::contact; }
   void describe(StepArguments& g) const override;
   void list_arrays(ArrayList& list) override;
   void run(EffectSet running) override;
   void reset() override;
-  void push(const StepArguments& g, int step, cudaStream_t stream) const override;
-  void take_back(const StepArguments& g, float* const (&v)[3], cudaStream_t stream) const override;
-  void add_springs(const StepArguments& g, cudaStream_t stream) const override;
+  void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
+  BoundPoints points() const override { return bound_.view(); }
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
   std::int64_t lost_points() const override;
   std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& bones) const override;
-  void add_energies(const Vectors& u, const std::vector<RigidTransform>& bones, bool open, Vectors& forces,
-                    EnergyLedger& ledger) override;
+  void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
+                    Vectors& forces, EnergyLedger& ledger) override;
 
 private:
   void add_points(const Model& model);
@@ -47,12 +50,11 @@ private:
   std::vector<ContactBody> host_bodies_;
   DeviceArray<ContactBody> bodies_;
   DeviceArray<ContactPoint> points_;
-  DeviceArray<ContactVoxel> voxels_;
+  DeviceArray<BoundVoxel> voxels_;
   DeviceArray<PatchContact> patches_;
-  DeviceArray<uint4> corners_, nodes_;
-  DeviceArray<std::uint32_t> bound_;
-  DeviceArray<std::int32_t> node_voxels_;
-  DeviceArray<float4> watched_, pushes_, samples_, clearances_;
+  DeviceArray<uint4> corners_;
+  DeviceBoundPoints bound_;  // in strips
+  DeviceArray<float4> watched_, samples_, clearances_;
   DeviceArray<float4> grips_, forces_, arms_;
   DeviceArray<ContactHold> holds_;
 };

@@ -31,7 +31,7 @@ void DeviceModel::run(const Model& model, const Discretisation& discretisation, 
     tasks_.download(whole_.tasks);
     patch_tasks_.download(whole_.patch_tasks);
   }
-  for (EffectPart* const part : parts())
+  for (EffectPart* const part : all_parts())
     part->run(running);
   viscosity_.describe(constants_);
   contacts_.describe(constants_);
@@ -121,26 +121,37 @@ void DeviceModel::choose_effects(EffectSet running)
   choose_kernel();
 }
 
-StepLaunch DeviceModel::launch_with_contact() const
+StepLaunch DeviceModel::launch_with_parts() const
 {
   StepLaunch launch = launch_;
-  if (touching_ && launch.patches)
-    launch.effects = effects_ | of_nodes | Effects::contact;
+  for (const auto& part : parts_)
+    if (launch.patches)
+      launch.effects = launch.effects | part->effects();
   return launch;
 }
 
 void DeviceModel::choose_kernel()
 {
   launch_.effects = effects_;
-  if (touching_ && !touching_->idle())
-    launch_ = launch_with_contact();
+  for (const DevicePart* const part : running_parts())
+    if (launch_.patches)
+      launch_.effects = launch_.effects | part->effects();
 }
 
-std::vector<EffectPart*> DeviceModel::parts()
+std::vector<DevicePart*> DeviceModel::running_parts() const
+{
+  std::vector<DevicePart*> running;
+  for (const auto& part : parts_)
+    if (!part->idle())
+      running.push_back(part.get());
+  return running;
+}
+
+std::vector<EffectPart*> DeviceModel::all_parts()
 {
   std::vector<EffectPart*> all{ &loads_, &viscosity_, &contacts_ };
-  if (touching_)
-    all.push_back(touching_.get());
+  for (const auto& part : parts_)
+    all.push_back(part.get());
   return all;
 }
 
@@ -156,13 +167,13 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   add(Effect::elasticity, "what nodes do", tasks_, patch_tasks_);
-  for (EffectPart* const part : parts())
+  for (EffectPart* const part : all_parts())
     part->list_arrays(list);
 }
 
 void DeviceModel::reset()
 {
-  for (EffectPart* const part : parts())
+  for (EffectPart* const part : all_parts())
     part->reset();
 }
 

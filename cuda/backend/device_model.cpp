@@ -95,9 +95,9 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
       of_device[device_node_[n]] = of_node[n];
     mobility_ = DeviceArray<float>(of_device);
   }
-  touching_ = touching_part(model, discretisation, cut, device_node_);
+  parts_ = device_parts(model, discretisation, cut, device_node_);
   if (cut.patches)
-    add_patches(model, *cut.patches, tasks, palette_of_voxel_);
+    add_patches(model, *cut.patches, cut.part_room, tasks, palette_of_voxel_);
   else
     add_strips(*cut.strips, tasks, palette_of_voxel_);
   most_effects_ = most_effects_ | node_part(tasks);
@@ -135,8 +135,6 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   contacts_.describe(g);
-  if (touching_)
-    touching_->describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
@@ -150,7 +148,14 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   }
 }
 
-StepArguments DeviceModel::arguments() const { return constants_; }
+StepArguments DeviceModel::arguments(bool idle_parts) const
+{
+  StepArguments g = constants_;
+  for (const auto& part : parts_)
+    if (idle_parts || !part->idle())
+      part->describe(g);
+  return g;
+}
 
 // Gives voxels of equal properties a common palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)

@@ -36,6 +36,7 @@ struct VoxelCut
   VoxelCut(const Model& model, const CutChoice& choice);
 
   std::unique_ptr<VoxelPatches> patches;
+  PartRoom part_room;                   ///< in patches
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
@@ -50,8 +51,8 @@ public:
   /// Throws Error with the required and the free bytes before anything is allocated, if the memory is too small.
   DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
 
-  /// Returns step arguments with all constant data filled in.
-  StepArguments arguments() const;
+  /// Returns step arguments with all constant data filled in. `idle_parts`: also those of parts that do not run.
+  StepArguments arguments(bool idle_parts = false) const;
   /// Computes only these effects from now on. No array changes its address or size.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_arrays(Effect of_fibres, ArrayList& list);
@@ -61,8 +62,8 @@ public:
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
-  /// launch() with the points of contact, even while contact is switched off.
-  StepLaunch launch_with_contact() const;
+  /// launch() with all parts(), also those that are switched off.
+  StepLaunch launch_with_parts() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
   double filled() const { return filled_; }                      ///< VoxelStrips::filled()
@@ -71,7 +72,9 @@ public:
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
   const DeviceContacts& contacts() const { return contacts_; }
-  DevicePart* touching() const { return touching_.get(); }  ///< contact; null if the model has none
+  /// Contact and shells, if the model has them.
+  const std::vector<std::unique_ptr<DevicePart>>& parts() const { return parts_; }
+  std::vector<DevicePart*> running_parts() const;
   DeviceLoads& loads() { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
@@ -82,15 +85,15 @@ private:
   void add_fibres(const Model& model, const Discretisation& discretisation);
   std::vector<NodeTask> add_tasks(const Model& model);
   void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
-  void add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
-                   const std::vector<std::uint32_t>& palette_entry);
+  void add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
+                   const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
   void run_tasks(EffectSet running);
   Effects node_part(const std::vector<NodeTask>& tasks) const;
   void choose_effects(EffectSet running);
   void choose_kernel();
 
-  std::vector<EffectPart*> parts();
+  std::vector<EffectPart*> all_parts();
 
   /// Copies of the arrays with all effects switched on, made at the first switch.
   struct Whole
@@ -129,7 +132,7 @@ private:
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;
-  std::unique_ptr<DevicePart> touching_;
+  std::vector<std::unique_ptr<DevicePart>> parts_;
 };
 
 }  // namespace cuda

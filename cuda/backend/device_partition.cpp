@@ -18,12 +18,21 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
                                          model.nodes.size(), model.fibre_muscle.size()));
   const auto fits = [&](const VoxelPatches& cut)
   {
-    return cut.fits_indices && patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes,
-                                           most_touching_points(model, cut)) <= choice.patch_bytes;
+    part_room = room_for_parts(model, cut, cut.device_node);
+    PatchRoom& room = part_room.room;
+    const auto fit = [&](const PatchRoom& wanted)
+    { return patch_bytes(cut.most_voxels, cut.most_halo, cut.most_nodes, wanted) <= choice.patch_bytes; };
+    PatchRoom with = room;
+    with.table_words += part_room.triangle_words;
+    with.keeps_triangles = part_room.triangle_words > 0;
+    if (fit(with))
+      room = with;
+    return cut.fits_indices && part_room.fits_indices && fit(room);
   };
   PatchSettings settings = choice.patches;
+  const BoundWork bound = settings.turns > 0 ? bound_work(model) : BoundWork();
   for (; settings.turns > 0 && settings.turns <= most_turns && !patches; ++settings.turns)
-    if (auto cut = std::make_unique<VoxelPatches>(model, settings); fits(*cut))
+    if (auto cut = std::make_unique<VoxelPatches>(model, settings, bound); fits(*cut))
       patches = std::move(cut);
   if (patches)
     return;
@@ -78,8 +87,8 @@ void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
   launch_.threads = step_block;
 }
 
-void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const std::vector<NodeTask>& tasks,
-                              const std::vector<std::uint32_t>& palette_entry)
+void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
+                              const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry)
 {
   std::vector<uint2> properties;
   for (const auto voxel : patches.voxel)
@@ -109,15 +118,13 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (const Patch& patch : patches.patches)
     most = std::max({ most, patch.nodes, patch.halo });
   launch_.patches = true;
-  launch_.most_points = most_touching_points(model, patches);
-  // points of contact have threads of their own as far as possible
-  if (launch_.most_points > 0)
-    most = std::max(most, patches.most_voxels + launch_.most_points);
+  launch_.room = for_parts.room;
+  most = std::max(most, for_parts.threads);
   launch_.threads = static_cast<int>(std::min((most + 31) / 32 * 32, most_patch_threads));
   launch_.most_voxels = patches.most_voxels;
   launch_.most_halo = patches.most_halo;
   launch_.most_nodes = patches.most_nodes;
-  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, launch_.most_points);
+  launch_.shared_bytes = patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, launch_.room);
 }
 
 }  // namespace cuda

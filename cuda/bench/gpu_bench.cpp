@@ -126,8 +126,7 @@ void bench(const Scene& scene, DenseRates& dense)
   const auto solver = make_solver(model, { "cuda", 0, 0 });
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
   const double built = wall_seconds() - start;
-  Controls controls;
-  controls.activation.assign(model->muscles.size(), 0);
+  Controls controls = solver->controls();
   // at rest no node enters another cell of its field: the motion's additional time is the cost of entering cells
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);

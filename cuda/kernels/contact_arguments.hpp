@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/kernels/bound_points.hpp"
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/distance_field.hpp"
 
@@ -39,13 +40,6 @@ struct alignas(8) ContactHold
   std::int32_t touching;
 };
 
-/// Points [first, end) of a voxel. In a patch they count from the patch's first.
-struct alignas(16) ContactVoxel
-{
-  std::uint32_t column;  ///< the voxel's number in its patch
-  std::uint32_t first, end;
-};
-
 /// What a patch has of contact.
 struct alignas(16) PatchContact
 {
@@ -60,17 +54,13 @@ struct ContactArguments
 {
   const ContactBody* bodies;
   const ContactPoint* points;
-  const ContactVoxel* voxels;
-  const PatchContact* patches;  ///< per patch
+  const BoundVoxel* voxels;     ///< in patches, those with points
+  const PatchContact* patches;  ///< per patch; null: contact is not computed
   const uint4* corners;         ///< of the voxel of each point in a patch, as StepArguments::patch_corners
   float4* watched;              ///< nodes of these voxels: displacement when the points were looked at [m], place
   float inverse_spread;         ///< a point moves at most by the largest way of its voxel's nodes over this
-  // in strips
-  const uint4* nodes;               ///< two per point: device nodes of its voxel
-  const std::uint32_t* bound;       ///< device nodes of voxels with points
-  const std::int32_t* node_voxels;  ///< per bound node, the voxels of which it is corner 0 .. 7; negative: none
-  float4* pushes;                   ///< force on each point in this step [N]
-  std::uint32_t point_count, bound_count, body_count;
+  BoundPoints bound;            ///< in strips
+  std::uint32_t point_count, body_count;
 
   // motion of the bodies in the steps of a plan
   const float4* poses;  ///< [step][body][3], at its start: rows of the inverse rotation minus 1, and of the shift [m]

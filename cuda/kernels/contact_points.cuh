@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cuda/kernels/bone_pose.cuh"
+#include "cuda/kernels/bound_points.cuh"
 #include "cuda/kernels/kept_samples.cuh"
-#include "frontalis/physics/trilinear.hpp"
 
 namespace frontalis
 {
@@ -11,18 +11,6 @@ namespace cuda
 
 // Points of the tissue that may touch bodies. What a point does in a step is that of BodyContact::voxel_readings(), in
 // single precision. Places are relative to rest, so that they are exact to nanometres.
-
-/// Adds part of a voxel's displacement: corner b of weight w.
-__device__ __forceinline__ void add_part(physics::Vec3<float>& sum, float w, const float4& u)
-{
-  sum = sum + w * physics::Vec3<float>{ u.x, u.y, u.z };
-}
-
-/// Weight of corner b of a voxel at coordinates (x, y, z).
-__device__ __forceinline__ float corner_weight(std::uint32_t b, float x, float y, float z)
-{
-  return (b & 1 ? x : 1 - x) * (b & 2 ? y : 1 - y) * (b & 4 ? z : 1 - z);
-}
 
 /// Pose of a body at the start of a step: its inverse rotation is 1 + `less`. In the body's frame a point at
 /// middle + arm + moved has gone from its rest position by moved + shift + less * (arm + moved).

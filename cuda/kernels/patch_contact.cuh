@@ -17,6 +17,8 @@ struct PatchMemory
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
   std::uint32_t width;  // length of a row of `force`
   float4* push;         // of each point of contact: force on it and its coordinates
+  float4* shell;        // displacements of vertices of shells, and forces of triangles
+  uint4* tables;        // see PatchShell
   std::uint32_t*
       least;  // two entries: see put_pushes(). While a slow thread reads that of a patch, the next uses another.
 };
@@ -26,13 +28,17 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
 {
   extern __shared__ float4 all[];
   float4* const push = all + launch.most_halo + launch.most_nodes;
-  float4* const least = push + (has<With, Effects::contact> ? 2 * launch.most_points : 0);
+  float4* const shell = push + (has<With, Effects::contact> ? 2 * launch.room.contact_points : 0);
+  float4* const tables = shell + (has<With, Effects::shell> ? launch.room.shell_words : 0);
+  float4* const least = tables + (has<With, Effects::shell> ? launch.room.table_words : 0);
   float* const v = reinterpret_cast<float*>(least + (has<With, Effects::contact> ? 1 : 0));
   return { all,
            { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
            v + 3 * launch.most_nodes,
            launch.most_voxels + 1,
            push,
+           shell,
+           reinterpret_cast<uint4*>(tables),
            reinterpret_cast<std::uint32_t*>(least) };
 }
 
@@ -131,7 +137,7 @@ __device__ __forceinline__ void add_pushes(const StepArguments& g, const PatchCo
 {
   for (std::uint32_t i = threadIdx.x; i < 8 * contact.voxels; i += blockDim.x)
   {
-    const ContactVoxel voxel = g.contact.voxels[contact.voxel_begin + i / 8];
+    const BoundVoxel voxel = g.contact.voxels[contact.voxel_begin + i / 8];
     const std::uint32_t b = i % 8;
     physics::Vec3<float> sum{ 0, 0, 0 };
     for (std::uint32_t p = voxel.first; p < voxel.end; ++p)

@@ -9,6 +9,8 @@ namespace
 
 const void* kernel(Effects effects)
 {
+  if ((effects & Effects::shell) == Effects::shell)
+    return shell_patch_kernel(effects);
   if ((effects & Effects::contact) == Effects::contact)
     return contact_patch_kernel(effects);
   if ((effects & Effects::friction) == Effects::friction)

@@ -2,7 +2,7 @@
 
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
-#include "cuda/kernels/patch_contact.cuh"
+#include "cuda/kernels/patch_shell.cuh"
 
 #include <utility>
 
@@ -194,7 +194,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     load_activations(g, activations);
   float until[most_turns];  // with contact: see ContactWatch
   std::uint32_t round = 0;
-  std::uint32_t filled = 0;
+  std::uint32_t filled = 0, kept = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
     const Patch patch = g.patches[p];
@@ -207,6 +207,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         memory.v[i][filled + n] = g.v[i][node];
     }
     filled += patch.nodes;
+    if (has<With, Effects::shell>)
+      kept += keep_shell(g, launch, memory, p, kept);
   }
   if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
@@ -216,7 +218,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     const float4* const u = g.u[present];
     const bool with_bound = g.frequency_bound != nullptr && (g.bound_every_step || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
-    filled = 0;
+    filled = kept = 0;
     const Activations activation = activations_at(g, step, activations);
     const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
     int turn = 0;
@@ -225,14 +227,18 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       const Patch patch = g.patches[p];
       PatchContact contact{};
       ContactWatch watch{};
+      ShellStep shell{};
       if (has<With, Effects::contact>)
       {
-        contact = g.contact.patches[p];
+        if (!has<With, Effects::shell> || g.contact.patches != nullptr)
+          contact = g.contact.patches[p];
         watch = fetch_watch(g, contact, until[turn], step);
         round ^= 1;
         if (threadIdx.x == 0)
           memory.least[round] = 0xffffffffu;
       }
+      if (has<With, Effects::shell>)
+        shell = fetch_shell(g, launch, memory, p, kept);
       VoxelFetch voxel{};
       // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
@@ -249,6 +255,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       __syncthreads();
       if (has<With, Effects::contact>)
         look_at_watched(g, contact, memory, watch);
+      if (has<With, Effects::shell>)
+        place_shell(shell, memory);
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -259,6 +267,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
           put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }
       end_voxels<With>(g, contact, watch, memory, step, memory.least + round, until[turn]);
+      if (has<With, Effects::shell>)
+        add_shell(g, shell, memory);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
@@ -269,6 +279,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
             frequency_bits = max(frequency_bits, bound_of_node(g, memory, patch.first_node + n,
                                                                memory.place[launch.most_halo + filled + n].w));
       filled += patch.nodes;
+      kept += shell.words;
     }
     if (with_bound)
     {
@@ -297,6 +308,7 @@ const void* patch_kernel_of(Effects effects)
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 const void* contact_patch_kernel(Effects effects);
+const void* shell_patch_kernel(Effects effects);
 
 }  // namespace cuda
 }  // namespace frontalis

@@ -3,6 +3,7 @@
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
 #include "cuda/kernels/contact_arguments.hpp"
+#include "cuda/kernels/shell_arguments.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
 
@@ -178,6 +179,7 @@ struct StepArguments : physics::Kick<float>
   double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
   std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
   ContactArguments contact;                  ///< contact with bodies
+  ShellArguments shell;
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -214,7 +216,8 @@ enum class Effects : std::uint8_t
   sliding = 8,          ///< nodes that slide on surfaces
   tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
   friction = 32,        ///< of sliding nodes
-  contact = 64          ///< with bodies, in patches; always set with all effects of nodes
+  contact = 64,         ///< with bodies, in patches; always set with all effects of nodes
+  shell = 128           ///< layers that are shells, in patches; always set with contact
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -227,12 +230,22 @@ inline constexpr Effects part = Set& Of;
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
 /// The effects of a set that a voxel without fibres and viscosity may have, with the set's effects of nodes.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact);
+inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact | Effects::shell);
 /// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
 }
+
+/// What a patch needs in shared memory for effects with points that are bound to voxels.
+struct PatchRoom
+{
+  std::uint32_t contact_points;
+  // words of 16 bytes
+  std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
+  std::uint32_t table_words;  ///< tables of shells of all patches of a block
+  bool keeps_triangles;       ///< whether these have the triangles too
+};
 
 /// How the step kernel is launched for a model.
 struct StepLaunch
@@ -242,7 +255,7 @@ struct StepLaunch
   int blocks, threads;
   std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
   std::size_t shared_bytes;                          ///< per block
-  std::uint32_t most_points;                         ///< points of contact per patch
+  PatchRoom room;                                    ///< of a patch, for points of contact and shells
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
@@ -255,11 +268,13 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
-/// corners of voxels and their stiffness bounds, points of contact.
+/// corners of voxels and their stiffness bounds, points of contact, shells.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
-                                  std::size_t most_points = 0)
+                                  const PatchRoom& room = {})
 {
-  return sizeof(float4) * (most_halo + most_nodes + (most_points > 0 ? 2 * most_points + 1 : 0)) +
+  const bool any = room.contact_points > 0 || room.shell_words > 0;
+  return sizeof(float4) *
+             (most_halo + most_nodes + (any ? 2 * room.contact_points + room.shell_words + room.table_words + 1 : 0)) +
          3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 

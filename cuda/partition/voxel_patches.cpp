@@ -13,14 +13,27 @@ namespace frontalis
 namespace
 {
 
-// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect.
-constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f;
+// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect; that of
+// nodes that slide on moving bones, on the generated head, whose steps are shortest so.
+constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
 
-float voxel_cost(const Model& model, std::size_t e)
+std::vector<float> voxel_costs(const Model& model, const BoundWork& bound)
 {
-  return 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
+  std::vector<float> cost = bound.cost;
+  cost.resize(model.voxels.size(), 0);
+  for (std::size_t e = 0; e < cost.size(); ++e)
+    cost[e] += 1 + fibre_cost * static_cast<float>(fibres_of(model, e)) + (is_viscous(model, e) ? viscous_cost : 0);
+  return cost;
+}
+
+std::vector<float> node_costs(const Model& model)
+{
+  std::vector<float> cost(model.nodes.size(), node_cost);
+  for (const SlidingNode& node : model.sliding)
+    cost[node.node] += model.constraint_surfaces[node.surface].bone >= 0 ? glide_cost : 0;
+  return cost;
 }
 
 // Recursive bisection of nodes by weight. Each cut is along the plane with the fewest nodes.
@@ -126,12 +139,13 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
 }
 
 // Divides the model into parts of about equal cost. Iterates, because shared voxels, and the cost, depend on the cut.
-std::vector<std::uint32_t> partition(const Model& model, int parts)
+std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound, int parts)
 {
-  std::vector<float> weight(model.nodes.size(), node_cost);
+  const std::vector<float> of_voxel = voxel_costs(model, bound), of_node = node_costs(model);
+  std::vector<float> weight = of_node;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (const auto n : model.voxel_nodes[e])
-      weight[n] += 0.125f * voxel_cost(model, e);
+      weight[n] += 0.125f * of_voxel[e];
   std::vector<std::uint32_t> best;
   double least = 0;
   for (int round = 0; round < 6; ++round)
@@ -139,10 +153,9 @@ std::vector<std::uint32_t> partition(const Model& model, int parts)
     Bisection bisection(model, weight);
     bisection.cut(parts);
     std::vector<double> cost(parts, 0);
-    for (const auto part : bisection.part_of)
-      cost[part] += node_cost;
-    each_part(model, bisection.part_of,
-              [&](std::uint32_t part, std::uint32_t e) { cost[part] += voxel_cost(model, e); });
+    for (std::size_t n = 0; n < of_node.size(); ++n)
+      cost[bisection.part_of[n]] += of_node[n];
+    each_part(model, bisection.part_of, [&](std::uint32_t part, std::uint32_t e) { cost[part] += of_voxel[e]; });
     const double mean = std::accumulate(cost.begin(), cost.end(), 0.0) / parts;
     for (std::size_t n = 0; n < weight.size(); ++n)
       weight[n] *= static_cast<float>(cost[bisection.part_of[n]] / mean);
@@ -172,21 +185,35 @@ std::vector<char> busy_nodes(const Model& model)
 
 }  // namespace
 
-VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
+VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, const BoundWork& bound)
+    : blocks(static_cast<std::uint32_t>(settings.blocks))
 {
   const int parts = settings.blocks * settings.turns;
-  const auto part_of = partition(model, parts);
+  const auto part_of = partition(model, bound, parts);
   std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
   std::vector<char> on_border(model.nodes.size(), 0);
   each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
-  for (const auto& corners : model.voxel_nodes)
-    for (const auto n : corners)
-      if (part_of[n] != part_of[corners[0]])
-      {
-        for (const auto other : corners)
-          on_border[other] = 1;
-        break;
-      }
+  // model nodes, then device nodes
+  std::vector<std::vector<std::uint32_t>> halo_of(parts);
+  for (int p = 0; p < parts; ++p)
+  {
+    const auto add = [&](std::uint32_t e)
+    {
+      for (const auto n : model.voxel_nodes[e])
+        if (part_of[n] != static_cast<std::uint32_t>(p))
+        {
+          halo_of[p].push_back(static_cast<std::uint32_t>(n));
+          on_border[n] = 1;
+        }
+    };
+    for (const auto e : voxels_of[p])
+    {
+      add(e);
+      if (!bound.beside.empty())
+        for (const auto other : bound.beside[e])
+          add(static_cast<std::uint32_t>(other));
+    }
+  }
   const auto busy = busy_nodes(model);
   for (const char border : { 1, 0 })
     for (const char kind : { 2, 1, 0 })
@@ -202,14 +229,11 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
   }
 
   // halos are sorted by device node, so that neighbouring threads read neighbouring nodes
-  std::vector<std::vector<std::uint32_t>> halo_of(parts);
   for (int p = 0; p < parts; ++p)
   {
     auto& nodes = halo_of[p];
-    for (const auto e : voxels_of[p])
-      for (const auto n : model.voxel_nodes[e])
-        if (part_of[n] != static_cast<std::uint32_t>(p))
-          nodes.push_back(device_node[n]);
+    for (auto& n : nodes)
+      n = device_node[n];
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     patches[p].halo_begin = static_cast<std::uint32_t>(halo.size());
@@ -233,7 +257,8 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings)
     Patch& patch = patches[p];
     patch.voxel_begin = static_cast<std::uint32_t>(voxel.size());
     patch.voxels = static_cast<std::uint32_t>(voxels_of[p].size());
-    add_patch(model, patch, voxels_of[p], most_halo + filled[p % settings.blocks]);
+    first_place.push_back(most_halo + filled[p % settings.blocks]);
+    add_patch(model, static_cast<std::size_t>(p), voxels_of[p]);
     filled[p % settings.blocks] += patch.nodes;
     most_nodes = std::max(most_nodes, filled[p % settings.blocks]);
   }
@@ -253,11 +278,18 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   }
 }
 
-// `first_place`: index of the patch's first own node in shared memory.
-void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
-                             std::uint32_t first_place)
+std::uint32_t VoxelPatches::place_of(std::size_t index, std::uint32_t node) const
 {
-  const auto halo_first = halo.begin() + patch.halo_begin, halo_last = halo_first + patch.halo;
+  const Patch& patch = patches[index];
+  if (node >= patch.first_node && node < patch.first_node + patch.nodes)
+    return first_place[index] + node - patch.first_node;
+  const auto first = halo.begin() + patch.halo_begin;
+  return static_cast<std::uint32_t>(std::lower_bound(first, first + patch.halo, node) - first);
+}
+
+void VoxelPatches::add_patch(const Model& model, std::size_t index, const std::vector<std::uint32_t>& voxels)
+{
+  const Patch& patch = patches[index];
   for (std::size_t v = 0; v < voxels.size(); ++v)
   {
     std::array<std::uint16_t, 8> places{};
@@ -267,9 +299,7 @@ void VoxelPatches::add_patch(const Model& model, const Patch& patch, const std::
       const bool own = node >= patch.first_node && node < patch.first_node + patch.nodes;
       if (own && !(mutation::lost_corner && b == 0))
         node_voxel[node][b] = static_cast<std::uint16_t>(v);
-      places[b] = static_cast<std::uint16_t>(
-          own ? first_place + node - patch.first_node
-              : static_cast<std::uint32_t>(std::lower_bound(halo_first, halo_last, node) - halo_first));
+      places[b] = static_cast<std::uint16_t>(place_of(index, node));
     }
     corner.push_back(places);
     voxel.push_back(voxels[v]);

@@ -16,8 +16,15 @@ struct PatchSettings
   int turns = 1;
 };
 
+/// What points that are bound to voxels ask of patches, for each voxel of the model; empty: nothing.
+struct BoundWork
+{
+  std::vector<float> cost;                        ///< of its points, relative to a voxel without effects
+  std::vector<std::vector<std::int32_t>> beside;  ///< other voxels whose nodes a patch that has it needs as well
+};
+
 /// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the
-/// halo, which is the other nodes of those voxels.
+/// halo, which is the other nodes of those voxels and those that BoundWork asks for.
 struct Patch
 {
   std::uint32_t first_node;   ///< device node; own nodes are contiguous
@@ -35,7 +42,10 @@ struct Patch
 /// 1, then the nodes of all its patches in order.
 struct VoxelPatches
 {
-  VoxelPatches(const Model& model, const PatchSettings& settings);
+  VoxelPatches(const Model& model, const PatchSettings& settings, const BoundWork& bound = {});
+
+  /// Index in shared memory of a device node that the patch has.
+  std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
 
   std::vector<Patch> patches;
   std::vector<std::uint32_t> voxel;  ///< model voxel; in each patch viscous ones first, then by number of fibres
@@ -44,15 +54,16 @@ struct VoxelPatches
   /// For each device node, the voxels of its patch of which it is corner 0 .. 7; most_voxels if there is none.
   std::vector<std::array<std::uint16_t, 8>> node_voxel;
   std::vector<std::uint32_t> device_node;  ///< number of each model node on the device
+  std::vector<std::uint32_t> first_place;  ///< index of the first own node of each patch in shared memory
 
+  std::uint32_t blocks;
   std::uint32_t most_voxels = 0, most_halo = 0;  ///< per patch
   std::uint32_t most_nodes = 0;                  ///< per block, over all its patches
   bool fits_indices = true;                      ///< whether indices of 16 bits suffice
 
 private:
   void number_nodes(std::size_t count, const std::vector<std::vector<std::uint32_t>>& nodes_of);
-  void add_patch(const Model& model, const Patch& patch, const std::vector<std::uint32_t>& voxels,
-                 std::uint32_t first_place);
+  void add_patch(const Model& model, std::size_t index, const std::vector<std::uint32_t>& voxels);
 };
 
 }  // namespace frontalis

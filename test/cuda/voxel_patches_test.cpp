@@ -15,9 +15,9 @@ namespace
 {
 
 // Traces everything that the kernel reads from the patches back to the model's voxels and nodes.
-void check_patches(const Model& model, const PatchSettings& settings)
+void check_patches(const Model& model, const PatchSettings& settings, const BoundWork& bound = {})
 {
-  const VoxelPatches patches(model, settings);
+  const VoxelPatches patches(model, settings, bound);
   ASSERT_EQ(patches.patches.size(), static_cast<std::size_t>(settings.blocks) * settings.turns);
   std::vector<std::uint32_t> node_of(model.nodes.size() + 1, 0);
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
@@ -50,6 +50,11 @@ void check_patches(const Model& model, const PatchSettings& settings)
       for (int b = 0; b < 8; ++b)
         ASSERT_EQ(node_of[device_node_at(patches.corner[patch.voxel_begin + v][b])],
                   static_cast<std::uint32_t>(model.voxel_nodes[patches.voxel[patch.voxel_begin + v]][b]));
+    for (std::uint32_t v = 0; v < patch.voxels && !bound.beside.empty(); ++v)
+      for (const auto other : bound.beside[patches.voxel[patch.voxel_begin + v]])
+        for (const auto n : model.voxel_nodes[other])
+          ASSERT_EQ(node_of[device_node_at(patches.place_of(p, patches.device_node[n]))],
+                    static_cast<std::uint32_t>(n));
     for (std::uint32_t v = 0; v < patch.voxels; ++v)
     {
       const std::uint32_t e = patches.voxel[patch.voxel_begin + v];
@@ -91,6 +96,21 @@ TEST(VoxelPatches, TakeVoxelsThatCostMoreFirst)
   for (const unsigned effects : { test::viscosity, test::contraction, test::everything })
     for (const int blocks : { 1, 3 })
       check_patches(test::scene_of(effects), { blocks, 2 });
+}
+
+TEST(VoxelPatches, HaveTheNodesOfVoxelsBesideTheirOwn)
+{
+  test::BlockSettings s;
+  s.voxels = { { 9, 5, 4 } };
+  const Model block = test::block_model(s);
+  BoundWork bound;
+  bound.beside.resize(block.voxels.size());
+  // some of them far away
+  for (std::size_t e = 0; e < bound.beside.size(); e += 3)
+    bound.beside[e] = { static_cast<std::int32_t>((e + 20) % bound.beside.size()), static_cast<std::int32_t>(e / 2) };
+  for (const int turns : { 1, 3 })
+    for (const int blocks : { 1, 7, 12 })
+      check_patches(block, { blocks, turns }, bound);
 }
 
 TEST(VoxelPatches, MayBeMoreThanNodes)

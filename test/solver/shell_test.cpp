@@ -1,6 +1,7 @@
 // Layers that are shells: energy, momentum, threads, switches, the time step.
 
 #include "backends.hpp"
+#include "contact_model.hpp"
 #include "shell_model.hpp"
 
 #include "frontalis/model/effects.hpp"
@@ -27,13 +28,6 @@ protected:
     return make_solver(std::make_shared<const Model>(model), settings);
   }
 };
-
-std::vector<Backend> host_backends()
-{
-  std::vector<Backend> backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
 
 Model film_on_block(bool free = true, double young = 1e6)
 {
@@ -144,17 +138,46 @@ TEST_P(ShellBackend, threads_do_not_change_a_bit)
 
 TEST_P(ShellBackend, moves_as_the_reference_does)
 {
-  const Model model = film_on_block(false);
-  const auto solver = make(model), reference = make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 });
-  for (Solver* const one : { solver.get(), reference.get() })
+  const Model film = film_on_block(false);
+  Model pressed = film;
+  pressed.contacts.push_back(touching_side(film, true, plate(4e-3, 1)));
+  for (const Model& model : { film, pressed })
   {
-    one->set_velocities(disturbance(model, 0.2));
-    one->advance(4e-3, one->controls());
+    const auto solver = make(model),
+               reference = make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 });
+    for (Solver* const one : { solver.get(), reference.get() })
+    {
+      one->set_velocities(disturbance(model, 0.2));
+      one->advance(4e-3, one->controls());
+    }
+    const Vectors u = displacements(*solver), right = displacements(*reference);
+    const double allowed = model.contacts.empty() ? 2e-7 : 1e-6;
+    for (std::size_t n = 0; n < u.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(u[n][axis], right[n][axis], allowed);
   }
-  const Vectors u = displacements(*solver), right = displacements(*reference);
-  for (std::size_t n = 0; n < u.size(); ++n)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(u[n][axis], right[n][axis], 2e-7);
+}
+
+// A plate above the block stops the nodes that the film pushes as well.
+TEST_P(ShellBackend, a_plate_touches_the_block_beside_it)
+{
+  Model model = film_on_block(false), film = model;
+  model.contacts.push_back(touching_side(model, true, plate(4e-3, 1)));
+  const auto pressed = make(model), free = make(film);
+  double highest[2] = {};
+  for (const bool plate : { false, true })
+  {
+    Solver& solver = plate ? *pressed : *free;
+    solver.set_velocities(Vectors(model.nodes.size(), { { 0, 0, 0.2 } }));
+    for (int k = 0; k < 20; ++k)
+    {
+      solver.advance(0.2e-3, solver.controls());
+      for (const auto& u : displacements(solver))
+        highest[plate ? 1 : 0] = std::max(highest[plate ? 1 : 0], u[2]);
+    }
+  }
+  EXPECT_LT(highest[1], 0.5 * highest[0]);
+  EXPECT_GT(pressed->ledger()["shell"], 0);
 }
 
 TEST_P(ShellBackend, none_costs_nothing)
@@ -240,7 +263,7 @@ TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
   EXPECT_TRUE(solver->settle(solver->controls(), 1e-3, 8 * period).reached);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, ShellBackend, testing::ValuesIn(host_backends()), backend_name);
+FRONTALIS_EVERY_BACKEND(ShellBackend);
 
 }  // namespace
 }  // namespace frontalis

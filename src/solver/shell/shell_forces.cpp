@@ -1,8 +1,7 @@
 #include "solver/shell/shell_forces.hpp"
 
 #include "frontalis/physics/trilinear.hpp"
-#include "solver/contact/body_motion.hpp"
-#include "solver/skin/bound_points.hpp"
+#include "solver/shell/shell_energy.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -11,8 +10,6 @@ namespace frontalis
 {
 namespace
 {
-
-using Vector = physics::Vec3<double>;
 
 // Writes a triangle's numbers to a lane; a triangle of an empty lane has no stiffness.
 template <class Real>
@@ -165,22 +162,7 @@ template <class Real>
 void ShellForces<Real>::add_energies(const Real* const u[3], const std::vector<RigidTransform>& /*bones*/,
                                      bool /*open*/, std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger)
 {
-  std::vector<Vector> moved, on_vertex(mesh_.binding.voxel.size());
-  moved.reserve(on_vertex.size());
-  for (std::size_t v = 0; v < on_vertex.size(); ++v)
-    moved.push_back(vector(bound_displacement(model_, mesh_.binding, v, u)));
-  for (const ShellMesh::Triangle& triangle : mesh_.triangles)
-  {
-    Vector of_triangle[6];
-    for (std::size_t i = 0; i < 6; ++i)
-      of_triangle[i] = moved[triangle.vertex[i]];
-    const auto now = physics::shell_forces(triangle.rest, of_triangle);
-    ledger["shell"] += now.membrane + now.bending;
-    for (std::size_t i = 0; i < 6; ++i)
-      on_vertex[triangle.vertex[i]] = on_vertex[triangle.vertex[i]] + now.force[i];
-  }
-  if (!forces.empty())
-    spread_forces(model_, mesh_.binding, on_vertex, forces);
+  add_shell_energies(model_, mesh_, u, forces, ledger);
 }
 
 template class ShellForces<float>;

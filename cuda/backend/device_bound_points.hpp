@@ -1,0 +1,33 @@
+#pragma once
+
+#include "cuda/backend/device_memory.hpp"
+#include "cuda/kernels/bound_points.hpp"
+#include "frontalis/model/model.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// Points that are bound to voxels, in device memory, for kernels beside the steps.
+class DeviceBoundPoints
+{
+public:
+  DeviceBoundPoints() = default;
+  /// `voxel`: of each point, ascending. `device_node`: of each model node.
+  DeviceBoundPoints(const Model& model, const std::vector<std::uint32_t>& voxel, const std::vector<float4>& coordinates,
+                    const std::vector<std::uint32_t>& device_node);
+
+  BoundPoints view() const;
+  std::size_t bytes() const;
+
+private:
+  DeviceArray<float4> coordinates_, pushes_;
+  DeviceArray<uint4> nodes_;
+  DeviceArray<BoundVoxel> voxels_;
+  DeviceArray<std::uint32_t> bound_;
+  DeviceArray<std::int32_t> node_voxels_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis

@@ -1,0 +1,51 @@
+#include "cuda/backend/device_body_contact.hpp"
+#include "cuda/backend/device_shell.hpp"
+
+#include <algorithm>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
+                                                      const VoxelCut& cut,
+                                                      const std::vector<std::uint32_t>& device_node)
+{
+  std::vector<std::unique_ptr<DevicePart>> parts;
+  if (!model.contacts.empty())
+    parts.push_back(std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node));
+  if (!model.shells.empty())
+    parts.push_back(std::make_unique<DeviceShell>(model, cut, device_node));
+  return parts;
+}
+
+PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node)
+{
+  PartRoom all;
+  all.room.contact_points = most_touching_points(model, patches);
+  // points of contact have threads of their own as far as possible
+  if (all.room.contact_points > 0)
+    all.threads = patches.most_voxels + all.room.contact_points;
+  if (!model.shells.empty())
+    ShellTables(model, ShellMesh(model), patches, device_node).add_room(all);
+  return all;
+}
+
+BoundWork bound_work(const Model& model)
+{
+  // with it the steps of the generated head are shortest
+  constexpr float touch_cost = 2;
+  BoundWork work;
+  if (!model.contacts.empty())
+    work.cost.assign(model.voxels.size(), 0);
+  for (const Contact& contact : model.contacts)
+    for (std::size_t p = 0; p < contact.points.size(); ++p)
+      work.cost[contact.binding.voxel[p]] += contact.area[p] > 0 ? touch_cost : 0;
+  if (!model.shells.empty())
+    work.beside = voxels_beside(model, ShellMesh(model));
+  return work;
+}
+
+}  // namespace cuda
+}  // namespace frontalis

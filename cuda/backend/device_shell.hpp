@@ -1,0 +1,72 @@
+#pragma once
+
+#include "cuda/backend/device_bound_points.hpp"
+#include "cuda/backend/device_part.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// For each voxel of the model, those that carry vertices of the triangles around its own vertices.
+std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const ShellMesh& mesh);
+
+/// The shells of each patch, on the host.
+class ShellTables
+{
+public:
+  /// `device_node`: of each model node.
+  ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut,
+              const std::vector<std::uint32_t>& device_node);
+
+  /// Adds what they need of a block.
+  void add_room(PartRoom& all) const;
+
+  std::vector<PatchShell> patches;
+  std::vector<uint4> tables;
+
+private:
+  using Around = std::vector<std::vector<std::uint32_t>>;
+  void add(const Model& model, const ShellMesh& mesh, const Around& around, const VoxelPatches& cut, std::size_t index,
+           const std::vector<std::uint32_t>& device_node);
+
+  std::uint32_t blocks_;
+  bool fits_indices_ = true;
+};
+
+/// Layers that are shells, in device memory.
+class DeviceShell : public DevicePart
+{
+public:
+  DeviceShell(const Model& model, const VoxelCut& cut, const std::vector<std::uint32_t>& device_node);
+
+  bool idle() const override { return !runs_; }
+  Effects effects() const override { return of_nodes | Effects::contact | Effects::shell; }
+  void describe(StepArguments& g) const override;
+  void list_arrays(ArrayList& list) override;
+  void run(EffectSet running) override { runs_ = running.has(Effect::shell); }
+  void reset() override {}
+  void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
+  BoundPoints points() const override { return points_.view(); }
+  void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
+                    Vectors& forces, EnergyLedger& ledger) override;
+
+private:
+  void add_to_strips(const std::vector<std::uint32_t>& device_node);
+
+  const Model& model_;
+  ShellMesh mesh_;
+  bool runs_ = true;
+  DeviceArray<PatchShell> patches_;
+  DeviceArray<uint4> tables_;
+  // in strips
+  DeviceBoundPoints points_;
+  DeviceArray<float4> words_, moved_;
+  DeviceArray<uint2> sums_;
+  DeviceArray<std::uint32_t> terms_;
+  DeviceArray<float> forces_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis
