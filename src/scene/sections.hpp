@@ -40,7 +40,7 @@ void read_constraints(const Node& node, Scene& scene, SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), because friction is an effect.
 void read_effects(const Node& node, Scene& scene);
-void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
+void read_skin(const Node& node, Scene& scene, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene, const SceneNames& names);
 /// Reads how bones turn; joints of heads are added to those of the scene.
 void read_joints(const Node& node, Scene& scene, const SceneNames& names);

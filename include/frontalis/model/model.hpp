@@ -5,6 +5,7 @@
 #include "frontalis/model/restriction.hpp"
 #include "frontalis/model/self_contact.hpp"
 #include "frontalis/model/shell.hpp"
+#include "frontalis/model/skin_film.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
 
@@ -112,6 +113,8 @@ struct Model : ModelPresets
   std::vector<std::string> switched_off;
 
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
+
+  SkinFilm film;  ///< of the skin, for its fine lines
 };
 
 /// Where a voxel or a node of the grid rests, in voxel edges from the origin: its own place, unless it is in a flap.
