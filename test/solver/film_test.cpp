@@ -1,4 +1,5 @@
-// fine lines of a skin's film against the theory of a film on a half-space (Cao & Hutchinson 2012), and how frames get them
+// fine lines of a skin's film against the theory of a film on a half-space (Cao & Hutchinson 2012), and how frames get
+// them
 
 #include "frontalis/solver/fine_lines.hpp"
 #include "solver/skin/film_equilibrium.hpp"
@@ -19,8 +20,8 @@ using Vertices = std::vector<std::array<float, 3>>;
 constexpr double pi = 3.14159265358979323846;
 constexpr double thickness = 0.1e-3;
 
-// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength, and a film of this stiffness
-// over its base.
+// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength, and a film of this
+// stiffness over its base.
 Model film_model(double stiffness_ratio)
 {
   Model model;
@@ -71,7 +72,8 @@ Vertices compressed(const Model& model, double strain, double angle = 0,
 }
 
 // the heights after some frames of the same skin
-std::vector<float> heights(FilmEquilibrium& film, const Vertices& vertices, int frames = 6, std::vector<float> from = {})
+std::vector<float> heights(FilmEquilibrium& film, const Vertices& vertices, int frames = 6,
+                           std::vector<float> from = {})
 {
   for (int i = 0; i < frames; ++i)
     film.solve(vertices, from);
@@ -174,7 +176,8 @@ TEST(Film, LinesAreWhereTheSkinIsCompressed)
   for (std::size_t v = 0; v < height.size(); ++v)
   {
     const double x = model.skin.vertices[v][0] / width(model), h = std::abs(static_cast<double>(height[v]));
-    (x < 0.5 ? highest_left : highest_right) = std::max(x < 0.5 ? highest_left : highest_right, x > 0.5 && x < 0.6 ? 0 : h);
+    (x < 0.5 ? highest_left : highest_right) =
+        std::max(x < 0.5 ? highest_left : highest_right, x > 0.5 && x < 0.6 ? 0 : h);
   }
   EXPECT_GT(highest_left, thickness);
   EXPECT_EQ(highest_right, 0);

@@ -21,11 +21,11 @@ public:
   FineLines& operator=(const FineLines&) = delete;
 
   /// Takes the skin of a solver, in the local frame. Places the vertices that the film has added on a smooth surface
-  /// through the carried ones, moves them along its normals by the height of the lines, finds the normals anew, and sets
-  /// SkinState::line_height.
+  /// through the carried ones, moves them along its normals by the height of the lines, finds the normals anew, and
+  /// sets SkinState::line_height.
   void add_to(SkinState& skin);
 
-  /// Wall time that the latest heights took [s].
+  /// Processor time that the latest heights took [s].
   double seconds() const;
 
 private:

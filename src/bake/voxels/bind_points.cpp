@@ -173,25 +173,27 @@ void add_film(const Scene& scene, const SceneFilm& film, TriangleMesh& surface, 
   double base_poisson = 0;
   out.thickness = film.thickness;
   out.stretch = film.stretch;
-  out.modulus = plane_strain_modulus(
-      model.materials[index_of(scene.materials, film.material, place, "material")], &out.poisson);
+  out.modulus =
+      plane_strain_modulus(model.materials[index_of(scene.materials, film.material, place, "material")], &out.poisson);
   out.base_modulus =
       plane_strain_modulus(model.materials[index_of(scene.materials, film.base, place, "material")], &base_poisson);
   const double wavelength = film_wavelength(out), edge = wavelength / edges_per_line;
   if (out.modulus < 10 * out.base_modulus)
-    throw failure("{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff",
-                  place, film.material, out.modulus / out.base_modulus, film.base);
+    throw failure(
+        "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
+        film.material, out.modulus / out.base_modulus, film.base);
   const double vertices = vertices_per_edge_area * surface_area(cut_mesh(surface, film.crop)) / (edge * edge);
   if (vertices > most_vertices)
-    throw failure("{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
-                  "allowed: crop the film, or make it thicker",
-                  place, length_text(wavelength, scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
+    throw failure(
+        "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
+        "allowed: crop the film, or make it thicker",
+        place, length_text(wavelength, scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
   out.carried = surface.triangles;
   const Box crop = to_box(film.crop);
   out.parents = halve_edges(surface, [&](const Vector3d& at) { return edge + coarsening * crop.exteriorDistance(at); });
   monitor.found("skin: fine lines {} apart from a compression of {:.3g} %, {} vertices",
-                length_text(wavelength, scene.unit), 100 * (film_critical_strain(out) + out.stretch),
-                surface.vertices.size());
+                length_text(wavelength, scene.unit),
+                100 * (film_critical_strain(out) + (1 + out.poisson) * out.stretch), surface.vertices.size());
 }
 
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace frontalis
 {
@@ -23,7 +22,6 @@ constexpr double near_critical = 0.5;
 constexpr int most_iterations = 40;
 // the solution is found if an iteration lowers the energy by less than this part of it
 constexpr double tolerance = 3e-4;
-constexpr int seed_iterations = 150;
 constexpr double seed_height = 0.05;  // root mean square, over the film's thickness
 
 template <class Number>
@@ -76,61 +74,24 @@ double first_minimum(double slope, double curvature, double third, double fourth
 
 }  // namespace
 
-FilmEquilibrium::FilmEquilibrium(const Model& model) : model_(model), critical_(film_critical_strain(model.film))
+FilmEquilibrium::FilmEquilibrium(const Model& model)
+    : model_(model),
+      critical_(film_critical_strain(model.film)),
+      k_(2 * pi / film_wavelength(model.film)),
+      cells_(model.skin.vertices, std::max(2 * pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
+      order_(cells_.order()),
+      strain_(order_.size())
 {
-  const double wavelength = film_wavelength(model.film);
-  make_cells(std::max(wavelength, *std::max_element(model.spacing.begin(), model.spacing.end())));
-  make_operators(wavelength);
-  strain_.resize(order_.size());
+  make_operators();
   for (Field* field : { &seed_, &mixed_, &local_ })
     field->resize(order_.size());
   make_seed();
 }
 
-// Vertices are numbered by cell, so that neighbours are near each other in memory. Cells are at least a wavelength long,
-// so that a mean of a squared wave has no ripple, and a voxel, so that strains that jump between voxels leave no trace.
-void FilmEquilibrium::make_cells(double edge)
-{
-  const auto& at = model_.skin.vertices;
-  const auto place_of = [&](std::size_t v)
-  {
-    std::array<std::int32_t, 3> place{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      place[axis] = static_cast<std::int32_t>(std::floor(at[v][axis] / edge));
-    return place;
-  };
-  order_.resize(at.size());
-  std::iota(order_.begin(), order_.end(), 0);
-  std::stable_sort(order_.begin(), order_.end(),
-                   [&](std::int32_t a, std::int32_t b) { return place_of(a) < place_of(b); });
-  std::map<std::array<std::int32_t, 3>, std::int32_t> number;
-  for (const std::int32_t v : order_)
-  {
-    Cell cell{};
-    for (std::size_t c = 0; c < 8; ++c)
-    {
-      std::array<std::int32_t, 3> place = place_of(v);
-      double weight = 1;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        const double share = at[v][axis] / edge - place[axis];
-        const bool upper = (c >> axis & 1U) != 0;
-        place[axis] += upper ? 1 : 0;
-        weight *= upper ? share : 1 - share;
-      }
-      cell.corner[c] = number.emplace(place, static_cast<std::int32_t>(number.size())).first->second;
-      cell.weight[c] = static_cast<float>(weight);
-    }
-    cell_.push_back(cell);
-  }
-  corner_strain_.resize(number.size());
-}
-
 // Linear finite elements: the edge opposite to corner c of a triangle has the weight -A grad_a . N . grad_b, where a, b
 // are its ends. The area of a vertex is a third of that of its triangles.
-void FilmEquilibrium::make_operators(double wavelength)
+void FilmEquilibrium::make_operators()
 {
-  const double k = 2 * pi / wavelength;
   const std::size_t count = order_.size();
   std::vector<std::int32_t> rank(count);
   for (std::size_t v = 0; v < count; ++v)
@@ -154,8 +115,8 @@ void FilmEquilibrium::make_operators(double wavelength)
       const Vector edge = at[b] - at[a];
       const double size = std::sqrt(dot(edge, edge));
       // gradients times 2 A are edges turned by a right angle
-      const Tensor weight = product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]),
-                                    twice > 0 ? -0.5 / twice : 0);
+      const Tensor weight = product((1 / twice) * cross(normal, at[c] - at[b]),
+                                    (1 / twice) * cross(normal, at[a] - at[c]), twice > 0 ? -0.5 / twice : 0);
       for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
       {
         auto& [sum, triangles] = edges[from][to];
@@ -179,66 +140,46 @@ void FilmEquilibrium::make_operators(double wavelength)
       inside = inside && edge.second == 2;
     }
     begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
-    area_.push_back(static_cast<float>(area[v] * k * k));
-    resolved_.push_back(inside && length[v] < longest_edge * wavelength);
+    area_.push_back(static_cast<float>(area[v] * k_ * k_));
+    resolved_.push_back(inside && length[v] * k_ < 2 * pi * longest_edge);
   }
   membrane_.resize(laplace_.size());
-  cell_area_.assign(corner_strain_.size(), 0);
-  for (std::size_t v = 0; v < count; ++v)
-    for (std::size_t c = 0; c < 8; ++c)
-      cell_area_[cell_[v].corner[c]] += cell_[v].weight[c] * area_[v];
+  cells_.set_areas(area_);
 }
 
-// Green-Lagrange strain of the carried triangles, as means at vertices, halved along edges, then smoothed over cells.
+// Green-Lagrange strain, as means over cells. The gradient of positions is linear in triangles, so that the integral of
+// F^T F is the sum over edges of their squared lengths times the same tensors.
 void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& vertices)
 {
-  const auto& rest = model_.skin.vertices;
-  std::vector<Tensor> strain(rest.size(), Tensor{});
-  Field sum(rest.size(), 0);
-  for (const auto& t : model_.film.carried)
+  const auto squared = [](const auto& a, const auto& b)
   {
-    const Vector a = vector_of(rest[t[1]]) - vector_of(rest[t[0]]), b = vector_of(rest[t[2]]) - vector_of(rest[t[0]]);
-    const Vector c = vector_of(vertices[t[1]]) - vector_of(vertices[t[0]]);
-    const Vector d = vector_of(vertices[t[2]]) - vector_of(vertices[t[0]]);
-    const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), determinant = aa * bb - ab * ab;
-    if (!(determinant > 0))
-      continue;
-    const Vector dual_a = (1 / determinant) * (bb * a - ab * b), dual_b = (1 / determinant) * (aa * b - ab * a);
-    const double area = 0.5 * std::sqrt(determinant);
-    const Tensor of_a = product(dual_a, dual_a, 0.5 * area * (dot(c, c) - aa));
-    const Tensor of_b = product(dual_b, dual_b, 0.5 * area * (dot(d, d) - bb));
-    const Tensor of_both = product(dual_a, dual_b, area * (dot(c, d) - ab));
-    for (const std::int32_t v : t)
+    const Vector edge = vector_of(b) - vector_of(a);
+    return dot(edge, edge);
+  };
+  std::array<Field, 6> means;
+  means.fill(Field(cells_.areas().size(), 0));
+  for (std::size_t v = 0; v < order_.size(); ++v)
+  {
+    const std::int32_t from = order_[v];
+    Tensor sum{};
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
     {
+      const std::int32_t to = order_[neighbour_[s]];
+      // half of the edge belongs to each of its ends
+      const auto change = static_cast<float>(
+          0.25 * k_ * k_ *
+          (squared(vertices[from], vertices[to]) - squared(model_.skin.vertices[from], model_.skin.vertices[to])));
       for (std::size_t i = 0; i < 6; ++i)
-        strain[v][i] += of_a[i] + of_b[i] + of_both[i];
-      sum[v] += static_cast<float>(area);
+        sum[i] += change * edge_[s][i];
     }
-  }
-  const std::size_t carried = rest.size() - model_.film.parents.size();
-  for (std::size_t v = 0; v < carried; ++v)
-    for (float& x : strain[v])
-      x = sum[v] > 0 ? x / sum[v] : 0;
-  for (std::size_t v = carried; v < rest.size(); ++v)
-  {
-    const auto& [a, b] = model_.film.parents[v - carried];
     for (std::size_t i = 0; i < 6; ++i)
-      strain[v][i] = 0.5F * (strain[a][i] + strain[b][i]);
+      cells_.add(means[i], v, sum[i]);
   }
-  std::fill(corner_strain_.begin(), corner_strain_.end(), Tensor{});
-  for (std::size_t v = 0; v < rest.size(); ++v)
-    for (std::size_t c = 0; c < 8; ++c)
-      for (std::size_t i = 0; i < 6; ++i)
-        corner_strain_[cell_[v].corner[c]][i] += cell_[v].weight[c] * area_[v] * strain[order_[v]][i];
-  for (std::size_t c = 0; c < corner_strain_.size(); ++c)
-    for (float& x : corner_strain_[c])
-      x /= std::max(cell_area_[c], 1e-20F);
-  for (std::size_t v = 0; v < rest.size(); ++v)
+  for (std::size_t i = 0; i < 6; ++i)
   {
-    strain_[v] = Tensor{};
-    for (std::size_t c = 0; c < 8; ++c)
-      for (std::size_t i = 0; i < 6; ++i)
-        strain_[v][i] += cell_[v].weight[c] * corner_strain_[cell_[v].corner[c]][i];
+    cells_.divide_by_area(means[i]);
+    for (std::size_t v = 0; v < order_.size(); ++v)
+      strain_[v][i] = cells_.at(means[i], v);
   }
 }
 
@@ -275,9 +216,8 @@ void FilmEquilibrium::find_active(Field& w)
     }
 }
 
-
-// Sums over neighbours: out = laplace of w times area, with the sign that makes it positive, and if `forced` the same for
-// the film's force.
+// Sums over neighbours: out = laplace of w times area, with the sign that makes it positive, and if `forced` the same
+// for the film's force.
 void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
 {
   for (const std::int32_t v : active_)
@@ -298,15 +238,10 @@ void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
 // Means at the corners of cells of grad u . grad v, as those of (u laplace v + v laplace u) / 2.
 void FilmEquilibrium::mean_products(const Wave& u, const Wave& v, Field& out) const
 {
-  out.assign(cell_area_.size(), 0);
+  out.assign(cells_.areas().size(), 0);
   for (const std::int32_t a : active_)
-  {
-    const float product = 0.5F * (u.height[a] * v.laplace[a] + v.height[a] * u.laplace[a]);
-    for (std::size_t c = 0; c < 8; ++c)
-      out[cell_[a].corner[c]] += cell_[a].weight[c] * product;
-  }
-  for (std::size_t c = 0; c < out.size(); ++c)
-    out[c] /= std::max(cell_area_[c], 1e-20F);
+    cells_.add(out, a, 0.5F * (u.height[a] * v.laplace[a] + v.height[a] * u.laplace[a]));
+  cells_.divide_by_area(out);
 }
 
 // Twice the energy of bending, base and compression.
@@ -326,9 +261,7 @@ void FilmEquilibrium::gradient(const Wave& u, const Field& stretch, Field& out)
 {
   for (const std::int32_t v : active_)
   {
-    float mean = 0;
-    for (std::size_t c = 0; c < 8; ++c)
-      mean += cell_[v].weight[c] * stretch[cell_[v].corner[c]];
+    const float mean = cells_.at(stretch, v);
     const float bent = 0.75F * (u.laplace[v] / area_[v] + u.height[v]);
     mixed_[v] = bent + 3 * mean * u.height[v];
     local_[v] = area_[v] * bent + 3 * mean * u.laplace[v] + u.force[v];
@@ -338,33 +271,23 @@ void FilmEquilibrium::gradient(const Wave& u, const Field& stretch, Field& out)
     out[v] += local_[v];
 }
 
-// Noise in which waves near the film's wavelength prevail, of all directions: what a steepest descent leaves of white
-// noise in a film that is at its critical compression in all directions. The same in every run.
+// The sum of plane waves of the film's wavelength in many directions of space, from which lines grow: on a surface most
+// of them are nearly that long. It depends on the place alone, so that lines come back where they were.
 void FilmEquilibrium::make_seed()
 {
-  std::uint32_t state = 1;
-  for (std::size_t v = 0; v < area_.size(); ++v)
+  constexpr int waves = 64;
+  for (std::size_t v = 0; v < order_.size(); ++v)
   {
-    state = state * 1664525U + 1013904223U;
-    seed_[v] = resolved_[v] ? static_cast<float>(state >> 8U) / 8388608.0F - 1 : 0;
-    if (resolved_[v])
-      active_.push_back(static_cast<std::int32_t>(v));
+    const Vector at = vector_of(model_.skin.vertices[order_[v]]);
+    double sum = 0;
+    for (int i = 0; i < waves; ++i)
+    {
+      // points spread over a sphere
+      const double z = 1 - (2 * i + 1.0) / waves, turn = pi * (3 - std::sqrt(5.0)) * i, r = std::sqrt(1 - z * z);
+      sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
+    }
+    seed_[v] = static_cast<float>(seed_height * sum / std::sqrt(0.5 * waves));
   }
-  Wave wave{ seed_, seed_, seed_ };
-  const Field flat(cell_area_.size(), 0);
-  Field slope(seed_.size(), 0), inverse(seed_.size(), 0);
-  std::transform(laplace_.begin(), laplace_.end(), membrane_.begin(), [](float x) { return -3 * x; });
-  precondition(inverse);
-  for (int i = 0; i < seed_iterations; ++i)
-  {
-    apply(wave.height, wave.laplace, &wave.force);
-    gradient(wave, flat, slope);
-    for (const std::int32_t v : active_)
-      wave.height[v] -= 0.7F * inverse[v] * slope[v];
-  }
-  const double mean = std::sqrt(inner(active_, wave.height, wave.height) / static_cast<double>(active_.size() + 1));
-  for (std::size_t v = 0; v < seed_.size(); ++v)
-    seed_[v] = mean > 0 ? static_cast<float>(seed_height * wave.height[v] / mean) : 0;
 }
 
 // Inverse of the diagonal of the quadratic energy's matrix.
@@ -404,7 +327,7 @@ int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, st
   {
     double sum = 0.5 * quadratic(now);
     for (std::size_t c = 0; c < stretch.size(); ++c)
-      sum += 1.5 * static_cast<double>(cell_area_[c] * stretch[c] * stretch[c]);
+      sum += 1.5 * static_cast<double>(cells_.areas()[c] * stretch[c] * stretch[c]);
     return sum;
   };
   double before = energy(), slope_before = 0;
@@ -434,7 +357,7 @@ int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, st
     double second = quadratic(step), third = 0, fourth = 0;
     for (std::size_t c = 0; c < stretch.size(); ++c)
     {
-      const double area = cell_area_[c], a = stretch[c], b = mixed[c], d = squared[c];
+      const double area = cells_.areas()[c], a = stretch[c], b = mixed[c], d = squared[c];
       second += 6 * area * (2 * b * b + a * d);
       third += 18 * area * b * d;
       fourth += 6 * area * d * d;

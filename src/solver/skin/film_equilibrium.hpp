@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "solver/skin/cell_means.hpp"
 
 #include <array>
 #include <cstdint>
@@ -29,19 +30,13 @@ public:
   explicit FilmEquilibrium(const Model& model);
 
   /// Finds the heights [m] that are nearest to `height` (one per vertex of the skin, or empty: flat) for the skin's
-  /// vertices [m], of which the carried ones are read. Returns the number of iterations.
+  /// vertices [m] without lines. Returns the number of iterations.
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
 private:
   // symmetric tensor: xx, yy, zz, xy, xz, yz
   using Tensor = std::array<float, 6>;
-  // corners of a cell of a lattice over which means are taken, and trilinear weights
-  struct Cell
-  {
-    std::array<std::int32_t, 8> corner;
-    std::array<float, 8> weight;
-  };
-  using Field = std::vector<float>;
+  using Field = CellMeans::Field;
 
   // heights, their Laplacian times area and the film's force, per vertex
   struct Wave
@@ -49,8 +44,7 @@ private:
     Field height, laplace, force;
   };
 
-  void make_cells(double edge);
-  void make_operators(double wavelength);
+  void make_operators();
   void make_seed();
   void find_strain(const std::vector<std::array<float, 3>>& vertices);
   void find_active(Field& w);
@@ -61,17 +55,18 @@ private:
   void gradient(const Wave& u, const Field& stretch, Field& out);
 
   const Model& model_;
-  double critical_;
-  std::vector<std::int32_t> order_;              // vertex of the skin for each vertex here
-  std::vector<Cell> cell_;                       // per vertex
+  double critical_, k_;
+  // Cells of means are at least a wavelength long, so that a mean of a squared wave has no ripple, and a voxel, so that
+  // strains that jump between voxels leave no trace.
+  CellMeans cells_;
+  const std::vector<std::int32_t>& order_;       // vertex of the skin for each vertex here
   std::vector<std::int32_t> begin_, neighbour_;  // neighbours of vertex v: from begin_[v] to begin_[v + 1]
   std::vector<Tensor> edge_;                     // per neighbour: weight of its edge in the operator div N grad, over N
   Field laplace_, membrane_;                     // per neighbour: that weight for N = 1 and for the present N
   Field area_, seed_;                            // per vertex
   std::vector<bool> resolved_;                   // vertices within the mesh, at edges that are short enough
   std::vector<std::int32_t> active_;             // vertices that may have a height
-  Field cell_area_;                              // per corner of a cell
-  std::vector<Tensor> strain_, corner_strain_;
+  std::vector<Tensor> strain_;                   // per vertex
   Field mixed_, local_;
 };
 

@@ -3,14 +3,23 @@
 #include "solver/skin/bound_points.hpp"
 #include "solver/skin/film_equilibrium.hpp"
 
+#include <time.h>
+
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 
 namespace frontalis
 {
+
+// processor time of the calling thread [s]
+static double thread_seconds()
+{
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 struct FineLines::Implementation
 {
@@ -36,9 +45,9 @@ struct FineLines::Implementation
 
   void find(const Vertices& vertices)
   {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = thread_seconds();
     film.solve(vertices, found);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds = thread_seconds() - begin;
   }
 
   void run()
@@ -103,6 +112,7 @@ FineLines::~FineLines()
 
 void FineLines::add_to(SkinState& skin)
 {
+  self_->place(skin);
   if (self_->thread.joinable())
   {
     const std::lock_guard<std::mutex> lock(self_->mutex);
@@ -115,7 +125,6 @@ void FineLines::add_to(SkinState& skin)
     self_->find(skin.vertices);
     skin.line_height = self_->found;
   }
-  self_->place(skin);
   for (std::size_t v = 0; v < skin.vertices.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
       skin.vertices[v][axis] += skin.line_height[v] * skin.normals[v][axis];
