@@ -7,7 +7,7 @@ import sys
 
 import vtk
 
-SIZE = (560, 400)
+SIZE = (480, 350)
 
 
 def skin(path):

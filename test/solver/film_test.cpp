@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <thread>
 
 namespace frontalis
@@ -118,26 +119,34 @@ double wavelength(const Model& model, const std::vector<float>& height, double a
 
 TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
 {
+  std::printf(
+      "found over theory\nstiffness ratio, direction [degrees], wavelength at 1.1, 1.4, 2.6 times the critical "
+      "strain, amplitude, exponent of the excess, critical strain\n");
   for (const double ratio : { 30.0, 100.0, 1000.0 })
     for (const double angle : { 0.0, pi / 6 })
     {
       const Model model = film_model(ratio);
       FilmEquilibrium film(model);
-      const double critical = film_critical_strain(model.film);
+      constexpr double excess[] = { 0.1, 0.4, 1.6 };
+      double found[3], length[3];
       std::vector<float> height;
-      double before = 0;
-      for (const double excess : { 0.1, 0.4, 1.6 })
+      for (int i = 0; i < 3; ++i)
       {
-        height = heights(film, compressed(model, (1 + excess) * critical, angle), 6, height);
-        EXPECT_NEAR(wavelength(model, height, angle) / film_wavelength(model.film), 1, 0.1) << ratio << " " << excess;
-        const double found = amplitude(model, height);
-        EXPECT_NEAR(found / (thickness * std::sqrt(excess)), 1, 0.15) << ratio << " " << excess;
-        if (before > 0)
-        {
-          EXPECT_NEAR(std::log(found / before) / std::log(4.0), 0.5, 0.05) << ratio << " " << excess;
-        }
-        before = found;
+        height = heights(film, compressed(model, (1 + excess[i]) * film_critical_strain(model.film), angle), 6, height);
+        length[i] = wavelength(model, height, angle) / film_wavelength(model.film);
+        found[i] = amplitude(model, height) / thickness;
+        EXPECT_NEAR(length[i], 1, 0.1) << ratio << " " << angle << " " << excess[i];
+        EXPECT_NEAR(found[i] / std::sqrt(excess[i]), 1, 0.15) << ratio << " " << angle << " " << excess[i];
       }
+      const double exponent = std::log(found[2] / found[1]) / std::log(4.0);
+      EXPECT_NEAR(exponent, 0.5, 0.05);
+      // where the line through the squares of the first two amplitudes is 0
+      const double first = found[0] * found[0], second = found[1] * found[1];
+      const double critical = (1.1 * second - 1.4 * first) / (second - first);
+      EXPECT_NEAR(critical, 1, 0.15);
+      std::printf("%4.0f %2.0f  %.3f %.3f %.3f  %.3f %.3f %.3f  %.3f  %.3f\n", ratio, 180 / pi * angle, length[0],
+                  length[1], length[2], found[0] / std::sqrt(0.1), found[1] / std::sqrt(0.4), found[2] / std::sqrt(1.6),
+                  exponent, critical);
     }
 }
 
