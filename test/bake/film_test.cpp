@@ -17,12 +17,13 @@ namespace
 
 constexpr double radius = 12e-3;
 
-// a ball whose film has lines 1.9 mm apart on one half of the skin
+// a ball whose film has lines 2 mm apart on one half of the skin
 Scene ball_with_film()
 {
   Scene scene = plain_scene(1.5e-3);
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, radius, 3e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.skin.surface = "skin";
   scene.materials.push_back(material("film"));
   scene.materials.back().parameters["young"] = 100 * scene.materials.front().parameters["young"];
   scene.film = SceneFilm{ "film", 0.1e-3, scene.materials.front().name, 0.02, Region() };
