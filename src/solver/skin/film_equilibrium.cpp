@@ -83,7 +83,7 @@ FilmEquilibrium::FilmEquilibrium(const Model& model)
       strain_(order_.size())
 {
   make_operators();
-  for (Field* field : { &seed_, &mixed_, &local_ })
+  for (Field* field : { &seed_, &curvature_, &local_ })
     field->resize(order_.size());
   make_seed();
 }
@@ -109,14 +109,16 @@ void FilmEquilibrium::make_operators()
     }
     const Vector normal = cross(at[1] - at[0], at[2] - at[0]);
     const double twice = std::sqrt(dot(normal, normal));
+    if (!(twice > 0))
+      continue;
     for (int c = 0; c < 3; ++c)
     {
       const int a = (c + 1) % 3, b = (c + 2) % 3;
       const Vector edge = at[b] - at[a];
       const double size = std::sqrt(dot(edge, edge));
       // gradients times 2 A are edges turned by a right angle
-      const Tensor weight = product((1 / twice) * cross(normal, at[c] - at[b]),
-                                    (1 / twice) * cross(normal, at[a] - at[c]), twice > 0 ? -0.5 / twice : 0);
+      const Tensor weight =
+          product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]), -0.5 / twice);
       for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
       {
         auto& [sum, triangles] = edges[from][to];
@@ -183,7 +185,8 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
   }
 }
 
-// Turns strains into forces of the film over those of strain 1, finds the vertices to be computed, and sets lines off.
+// Finds the vertices whose heights are to be found, and the forces of the film on their edges, and sets lines off where
+// there are none. In units of the film, a compression by the critical strain is a force of 3 per length.
 void FilmEquilibrium::find_active(Field& w)
 {
   const auto poisson = static_cast<float>(model_.film.poisson), stretch = static_cast<float>(model_.film.stretch);
@@ -216,8 +219,8 @@ void FilmEquilibrium::find_active(Field& w)
     }
 }
 
-// Sums over neighbours: out = laplace of w times area, with the sign that makes it positive, and if `forced` the same
-// for the film's force.
+// Sums over neighbours: `out` is minus the Laplacian of w times the area of each vertex, and `forced`, if it is not
+// null, minus the divergence of the film's force times grad w, times area.
 void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
 {
   for (const std::int32_t v : active_)
@@ -235,7 +238,8 @@ void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
   }
 }
 
-// Means at the corners of cells of grad u . grad v, as those of (u laplace v + v laplace u) / 2.
+// Means of grad u . grad v at the corners of cells. By parts they are those of -(u laplace v + v laplace u) / 2, since
+// weights of cells change slowly.
 void FilmEquilibrium::mean_products(const Wave& u, const Wave& v, Field& out) const
 {
   out.assign(cells_.areas().size(), 0);
@@ -256,17 +260,17 @@ double FilmEquilibrium::quadratic(const Wave& u) const
   return sum;
 }
 
-// The derivative of the energy.
-void FilmEquilibrium::gradient(const Wave& u, const Field& stretch, Field& out)
+// The derivative of the energy by the heights. `relief` is the mean of |grad w|^2.
+void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
 {
   for (const std::int32_t v : active_)
   {
-    const float mean = cells_.at(stretch, v);
+    const float mean = cells_.at(relief, v);
     const float bent = 0.75F * (u.laplace[v] / area_[v] + u.height[v]);
-    mixed_[v] = bent + 3 * mean * u.height[v];
+    curvature_[v] = bent + 3 * mean * u.height[v];
     local_[v] = area_[v] * bent + 3 * mean * u.laplace[v] + u.force[v];
   }
-  apply(mixed_, out, nullptr);
+  apply(curvature_, out, nullptr);
   for (const std::int32_t v : active_)
     out[v] += local_[v];
 }
@@ -318,59 +322,59 @@ int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, st
     now.height[v] = height[order_[v]] / thickness;
   find_strain(vertices);
   find_active(now.height);
-  Field slope = zero, fresh = zero, inverse = zero, stretch, mixed, squared;
-  mixed_ = zero;
+  Field gradient_before = zero, gradient_now = zero, inverse = zero, relief, mixed, squared;
+  curvature_ = zero;
   precondition(inverse);
   apply(now.height, now.laplace, &now.force);
-  mean_products(now, now, stretch);
+  mean_products(now, now, relief);
   const auto energy = [&]
   {
     double sum = 0.5 * quadratic(now);
-    for (std::size_t c = 0; c < stretch.size(); ++c)
-      sum += 1.5 * static_cast<double>(cells_.areas()[c] * stretch[c] * stretch[c]);
+    for (std::size_t c = 0; c < relief.size(); ++c)
+      sum += 1.5 * static_cast<double>(cells_.areas()[c] * relief[c] * relief[c]);
     return sum;
   };
-  double before = energy(), slope_before = 0;
+  double before = energy(), norm_before = 0;
   int iteration = 0;
   for (; iteration < most_iterations && !active_.empty(); ++iteration)
   {
-    gradient(now, stretch, fresh);
-    double own = 0, common = 0;
+    gradient(now, relief, gradient_now);
+    double norm = 0, common = 0;
     for (const std::int32_t v : active_)
     {
-      own += static_cast<double>(fresh[v] * inverse[v] * fresh[v]);
-      common += static_cast<double>(fresh[v] * inverse[v] * slope[v]);
+      norm += static_cast<double>(gradient_now[v] * inverse[v] * gradient_now[v]);
+      common += static_cast<double>(gradient_now[v] * inverse[v] * gradient_before[v]);
     }
-    auto keep = static_cast<float>(slope_before > 0 ? std::max(0.0, (own - common) / slope_before) : 0);
-    slope_before = own;
-    if (keep * inner(active_, step.height, fresh) >= own)
-      keep = 0;
+    auto conjugacy = static_cast<float>(norm_before > 0 ? std::max(0.0, (norm - common) / norm_before) : 0);
+    norm_before = norm;
+    if (conjugacy * inner(active_, step.height, gradient_now) >= norm)
+      conjugacy = 0;
     for (const std::int32_t v : active_)
-      step.height[v] = keep * step.height[v] - inverse[v] * fresh[v];
-    slope.swap(fresh);
-    const double down = inner(active_, step.height, slope);
+      step.height[v] = conjugacy * step.height[v] - inverse[v] * gradient_now[v];
+    gradient_before.swap(gradient_now);
+    const double down = inner(active_, step.height, gradient_before);
     if (!(down < 0))
       break;
     apply(step.height, step.laplace, &step.force);
     mean_products(now, step, mixed);
     mean_products(step, step, squared);
     double second = quadratic(step), third = 0, fourth = 0;
-    for (std::size_t c = 0; c < stretch.size(); ++c)
+    for (std::size_t c = 0; c < relief.size(); ++c)
     {
-      const double area = cells_.areas()[c], a = stretch[c], b = mixed[c], d = squared[c];
+      const double area = cells_.areas()[c], a = relief[c], b = mixed[c], d = squared[c];
       second += 6 * area * (2 * b * b + a * d);
       third += 18 * area * b * d;
       fourth += 6 * area * d * d;
     }
-    const auto far = static_cast<float>(first_minimum(down, second, third, fourth));
+    const auto length = static_cast<float>(first_minimum(down, second, third, fourth));
     for (const std::int32_t v : active_)
     {
-      now.height[v] += far * step.height[v];
-      now.laplace[v] += far * step.laplace[v];
-      now.force[v] += far * step.force[v];
+      now.height[v] += length * step.height[v];
+      now.laplace[v] += length * step.laplace[v];
+      now.force[v] += length * step.force[v];
     }
-    for (std::size_t c = 0; c < stretch.size(); ++c)
-      stretch[c] += far * (2 * mixed[c] + far * squared[c]);
+    for (std::size_t c = 0; c < relief.size(); ++c)
+      relief[c] += length * (2 * mixed[c] + length * squared[c]);
     const double after = energy();
     if (before - after <= tolerance * std::abs(after))
       break;

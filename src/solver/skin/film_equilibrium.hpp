@@ -22,15 +22,16 @@ namespace frontalis
 /// - Relief: folding lengthens the film. < > is a mean over about a wavelength, because the film may shift in its
 ///   surface: then the amplitude is t (e / e_critical - 1)^(1/2), as in theory, and the wave stays a sine.
 ///
-/// All differential operators are those of the skin at rest. In them lengths are in 1/k and heights in t.
+/// All differential operators are those of the skin at rest. In them lengths are in 1/k, heights in t
+/// and energies in D (k t)^2.
 class FilmEquilibrium
 {
 public:
   /// The model must have a film; it must outlive this.
   explicit FilmEquilibrium(const Model& model);
 
-  /// Finds the heights [m] that are nearest to `height` (one per vertex of the skin, or empty: flat) for the skin's
-  /// vertices [m] without lines. Returns the number of iterations.
+  /// Improves `height` ([m], one per vertex of the skin; empty: flat) until the film is in equilibrium, or for a
+  /// limited number of iterations, which it returns. `vertices`: those of the skin without lines [m].
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
 private:
@@ -38,7 +39,7 @@ private:
   using Tensor = std::array<float, 6>;
   using Field = CellMeans::Field;
 
-  // heights, their Laplacian times area and the film's force, per vertex
+  // heights and what apply() makes of them, per vertex
   struct Wave
   {
     Field height, laplace, force;
@@ -52,7 +53,7 @@ private:
   void apply(const Field& w, Field& out, Field* forced) const;
   void mean_products(const Wave& u, const Wave& v, Field& out) const;
   double quadratic(const Wave& u) const;
-  void gradient(const Wave& u, const Field& stretch, Field& out);
+  void gradient(const Wave& u, const Field& relief, Field& out);
 
   const Model& model_;
   double critical_, k_;
@@ -67,7 +68,7 @@ private:
   std::vector<bool> resolved_;                   // vertices within the mesh, at edges that are short enough
   std::vector<std::int32_t> active_;             // vertices that may have a height
   std::vector<Tensor> strain_;                   // per vertex
-  Field mixed_, local_;
+  Field curvature_, local_;                      // of gradient()
 };
 
 }  // namespace frontalis
