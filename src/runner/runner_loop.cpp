@@ -253,6 +253,8 @@ void Runner::Implementation::refuse_requests(const std::string& error)
 void Runner::Implementation::reset()
 {
   solver->reset();
+  if (fine_lines)
+    fine_lines->reset();
   if (guard)
     guard->restart();
   frame.failed = false;

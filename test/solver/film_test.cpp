@@ -230,6 +230,8 @@ TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
   while (amplitude(*model, frame(*apart).line_height) < 0.5 * thickness && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_GT(amplitude(*model, frame(*apart).line_height), 0.5 * thickness);
+  apart->reset();
+  EXPECT_EQ(amplitude(*model, frame(*apart).line_height), 0);
 
   model->film.thickness = 0;
   EXPECT_EQ(FineLines::make(model, false), nullptr);

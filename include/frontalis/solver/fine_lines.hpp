@@ -25,6 +25,9 @@ public:
   /// sets SkinState::line_height.
   void add_to(SkinState& skin);
 
+  /// Makes the skin flat, as it is at rest, whatever is being found.
+  void reset();
+
   /// Processor time that the latest heights took [s].
   double seconds() const;
 

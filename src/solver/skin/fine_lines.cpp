@@ -5,10 +5,12 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace frontalis
 {
@@ -36,6 +38,7 @@ struct FineLines::Implementation
   Vertices next;              // vertices to find heights for; empty: none
   std::vector<float> height;  // the latest ones
   bool stop = false;
+  bool discard = false;  ///< what the thread is finding is of no use
   std::thread thread;
 
   explicit Implementation(std::shared_ptr<const Model> of)
@@ -63,7 +66,10 @@ struct FineLines::Implementation
       lock.unlock();
       find(vertices);
       lock.lock();
-      height = found;
+      if (std::exchange(discard, false))
+        found.clear();
+      else
+        height = found;
     }
   }
 
@@ -129,6 +135,16 @@ void FineLines::add_to(SkinState& skin)
     for (std::size_t axis = 0; axis < 3; ++axis)
       skin.vertices[v][axis] += skin.line_height[v] * skin.normals[v][axis];
   surface_normals(self_->model->skin.triangles, skin.vertices, skin.normals);
+}
+
+void FineLines::reset()
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  if (!self_->thread.joinable())
+    self_->found.clear();
+  std::fill(self_->height.begin(), self_->height.end(), 0.0F);
+  self_->next.clear();
+  self_->discard = true;
 }
 
 double FineLines::seconds() const { return self_->seconds; }
