@@ -168,7 +168,8 @@ void print_result(const Model& model, const RunSummary& summary)
              summary.profile.stepping, summary.profile.skin, summary.profile.monitor,
              summary.guard ? fmt::format(", guard {:.3f}", summary.guard->seconds) : "");
   if (summary.fine_lines > 0)
-    fmt::print("fine lines         {:.1f} ms of processor time per frame\n", 1e3 * ratio(summary.fine_lines, summary.frames));
+    fmt::print("fine lines         {:.1f} ms of processor time per frame\n",
+               1e3 * ratio(summary.fine_lines, summary.frames));
   fmt::print("real-time factor   {:.4f}", ratio(summary.seconds, summary.wall));
   if (model.time_scaling != 1)
     fmt::print(" with time scaling {:g}, which is not real time; {:.4f} without", model.time_scaling,
