@@ -7,6 +7,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
+#include "frontalis/solver/fine_lines.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/step_time.hpp"
 
@@ -56,6 +57,7 @@ struct Run
   std::optional<FrameFolder> folder;
   std::optional<ReactionPlot> plot{};
   std::optional<Guard> guard{};
+  std::unique_ptr<FineLines> fine_lines{};
   RunSummary summary{};
   double time = 0;  ///< simulated time so far [s], on the clock of the activations
 
@@ -80,6 +82,11 @@ void Run::observe()
         fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
                     "time_step_share, smaller activations or more damping",
                     time));
+  if (fine_lines)
+  {
+    fine_lines->add_to(summary.end);
+    summary.fine_lines += fine_lines->seconds();
+  }
   summary.bodies = bodies_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;
@@ -242,6 +249,7 @@ void simulate(RunOptions& options)
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
   Run run{ options, *model, std::move(curve), *solver, std::move(folder) };
+  run.fine_lines = FineLines::make(model, false);
   RunSummary& summary = run.summary;
   if (!options.plot.empty())
     run.plot.emplace(plot_path(options.plot), *model);

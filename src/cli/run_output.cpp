@@ -65,13 +65,15 @@ std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int3
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment face frame, metres, time {:.6f} s\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      time, skin.vertices.size(), triangles.size());
+      "{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      time, skin.vertices.size(), skin.line_height.empty() ? "" : "property float line_height\n", triangles.size());
   bytes.reserve(bytes.size() + 24 * skin.vertices.size() + 13 * triangles.size());
   for (std::size_t v = 0; v < skin.vertices.size(); ++v)
   {
     append(bytes, skin.vertices[v]);
     append(bytes, skin.normals[v]);
+    if (!skin.line_height.empty())
+      append(bytes, std::array<float, 1>{ { skin.line_height[v] } });
   }
   for (const std::array<std::int32_t, 3>& triangle : triangles)
   {
@@ -108,6 +110,8 @@ std::string vtp_of(const SkinState& skin, const SkinState& first,
   text += "<PointData Normals=\"normals\" Vectors=\"displacement\">\n";
   add("Float32", "normals", 3, skin.normals);
   add("Float32", "displacement", 3, displacements);
+  if (!skin.line_height.empty())
+    add("Float32", "line_height", 1, skin.line_height);
   text += "</PointData>\n<Points>\n";
   add("Float32", "points", 3, skin.vertices);
   text += "</Points>\n<Polys>\n";
@@ -163,6 +167,9 @@ void print_result(const Model& model, const RunSummary& summary)
   fmt::print("wall               {:.3f} s: stepping {:.3f}, skin {:.3f}, energies {:.3f}{}\n", summary.wall,
              summary.profile.stepping, summary.profile.skin, summary.profile.monitor,
              summary.guard ? fmt::format(", guard {:.3f}", summary.guard->seconds) : "");
+  if (summary.fine_lines > 0)
+    fmt::print("fine lines         {:.1f} ms of processor time per frame\n",
+               1e3 * ratio(summary.fine_lines, summary.frames));
   fmt::print("real-time factor   {:.4f}", ratio(summary.seconds, summary.wall));
   if (model.time_scaling != 1)
     fmt::print(" with time scaling {:g}, which is not real time; {:.4f} without", model.time_scaling,

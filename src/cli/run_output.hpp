@@ -18,6 +18,7 @@ struct RunSummary
   double wall = 0;       ///< wall time without building the model and the solver [s]
   double time_step = 0;  ///< [s]
   int frames = 0;
+  double fine_lines = 0;    ///< processor time of finding fine lines, in all frames [s]
   bool complete = true;     ///< false: interrupted or stopped
   std::string failure;      ///< why it was stopped; empty: it was not stopped
   Monitor monitor;          ///< at the end

@@ -257,6 +257,24 @@ void check_settings(const Model& model)
     effect_from_name(name);
 }
 
+void check_film(const Model& model)
+{
+  const SkinFilm& film = model.film;
+  if (film.thickness == 0)
+    return;
+  check_positive("film (thickness)", 0, film.thickness);
+  check_positive("film (modulus)", 0, film.modulus);
+  check_positive("film (base_modulus)", 0, film.base_modulus);
+  check_finite("film (poisson)", 0, film.poisson);
+  check_not_negative("film", "stretch", film.stretch);
+  if (film.parents.size() > model.skin.vertices.size())
+    fail("film/parents", "has {} entries; the skin has {} vertices", film.parents.size(), model.skin.vertices.size());
+  const std::size_t carried = model.skin.vertices.size() - film.parents.size();
+  check_each("film/carried", index_below(carried), film.carried);
+  for (std::size_t v = 0; v < film.parents.size(); ++v)
+    check_entry("film/parents", v, index_below(carried + v), film.parents[v]);
+}
+
 }  // namespace
 
 void check_model(const Model& model)
@@ -269,6 +287,7 @@ void check_model(const Model& model)
   check_effects(model);
   check_loads(model);
   check_mesh("skin", model.skin);
+  check_film(model);
   check_binding("skin_binding", model.skin_binding, model.skin.vertices.size(), model.voxels.size());
   check_length("landmark_positions", model.landmark_positions.size(), model.landmarks.size(), "landmark");
   check_each("landmark_positions", check_finite, model.landmark_positions);

@@ -124,6 +124,16 @@ void exchange_model(Archive& archive, AnyModel& model)
 
   exchange_mesh(archive, "skin", model.skin);
   exchange_binding(archive, "skin", model.skin_binding);
+  if (archive.group_if(model.film.thickness > 0, "film"))
+  {
+    archive("film/thickness", model.film.thickness);
+    archive("film/modulus", model.film.modulus);
+    archive("film/poisson", model.film.poisson);
+    archive("film/base_modulus", model.film.base_modulus);
+    archive("film/stretch", model.film.stretch);
+    archive("film/carried", model.film.carried);
+    archive("film/parents", model.film.parents);
+  }
   archive("landmarks/name", model.landmarks);
   archive("landmarks/position", model.landmark_positions);
   exchange_binding(archive, "landmarks", model.landmark_binding);

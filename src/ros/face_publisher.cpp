@@ -18,6 +18,7 @@ namespace
 constexpr double displacement_range = 10e-3;  // [m]
 constexpr double strain_range = 0.3;
 constexpr double stress_range = 20e3;  // [Pa]
+constexpr double line_range = 0.2e-3;  // [m]
 
 }  // namespace
 
@@ -112,7 +113,8 @@ std::vector<float> FacePublisher::shown_values(const Frame& frame) const
   else if (colour_ == SkinColour::field && frame.field.size() == frame.skin.vertices.size())
   {
     values = frame.field;
-    full = shown_field_ == SkinField::strain ? strain_range : stress_range;
+    const SkinField field = shown_field_;
+    full = field == SkinField::strain ? strain_range : field == SkinField::stress ? stress_range : line_range;
   }
   if (colour_range_ > 0)
     full = colour_range_;

@@ -2,6 +2,7 @@
 
 #include "runner/frame_clock.hpp"
 #include "frontalis/runner/runner.hpp"
+#include "frontalis/solver/fine_lines.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -22,7 +23,8 @@ struct Runner::Implementation
   std::atomic<double> frame_rate{ 30 };  ///< [1/s] of wall time
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
-  std::unique_ptr<Guard> guard;  ///< null: the motion is not checked
+  std::unique_ptr<Guard> guard;           ///< null: the motion is not checked
+  std::unique_ptr<FineLines> fine_lines;  ///< null: the skin has none
 
   // shared with the callers' threads and protected by the mutex
   mutable std::mutex mutex;

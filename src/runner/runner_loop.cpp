@@ -97,10 +97,14 @@ void Runner::Implementation::make_frame(bool renew_monitor)
     solver->skin(skin);
     if (is_finite(skin))
     {
+      if (fine_lines)
+        fine_lines->add_to(skin);
       to_face_frame(*model, skin);
       frame.skin = std::move(skin);
       const auto field = settings.wanted_field ? settings.wanted_field() : std::nullopt;
-      if (field)
+      if (field == SkinField::lines && fine_lines)
+        frame.field = frame.skin.line_height;
+      else if (field)
         solver->skin_field(*field, frame.field);
       else
         frame.field.clear();
@@ -249,6 +253,8 @@ void Runner::Implementation::refuse_requests(const std::string& error)
 void Runner::Implementation::reset()
 {
   solver->reset();
+  if (fine_lines)
+    fine_lines->reset();
   if (guard)
     guard->restart();
   frame.failed = false;

@@ -29,13 +29,24 @@ void read_frame(const Node& node, FaceFrame& frame)
     frame.up = { across[0] / length, across[1] / length, across[2] / length };
 }
 
-void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names)
+void read_skin(const Node& node, Scene& scene, const SceneNames& names)
 {
   if (!node.given())
     return;
   Mapping mapping(node);
+  SceneSkin& skin = scene.skin;
   skin.surface = mapping.required("surface", "the name of the surface to publish").reference(names.surfaces);
   skin.crop = read_region(mapping.optional("crop"));
+  if (const Node lines = mapping.optional("fine_lines"); lines.given())
+  {
+    Mapping film(lines);
+    scene.film.emplace();
+    scene.film->material = film.required("material", "the material of the film").reference(names.materials);
+    scene.film->thickness = film.required("thickness", "the film's thickness").number(Dimension::length, positive, 0);
+    scene.film->base = film.required("base", "the material below the film").reference(names.materials);
+    scene.film->stretch = film.optional("stretch").number(Dimension::number, proportion, 0);
+    scene.film->crop = read_region(film.optional("crop"));
+  }
   skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
 }
 

@@ -29,9 +29,11 @@ void leave_out_unused(Scene& scene)
   const auto unused = [&](const SceneMaterial& material)
   {
     const auto has = [&](const auto& item) { return item.material == material.name; };
+    const std::optional<SceneFilm>& film = scene.film;
     const std::vector<std::string>& scaled = scene.accuracy.mass_scaling.materials;
     return material.of_library && std::none_of(scene.volumes.begin(), scene.volumes.end(), has) &&
            std::none_of(scene.layers.begin(), scene.layers.end(), has) &&
+           !(film && (film->material == material.name || film->base == material.name)) &&
            std::find(scaled.begin(), scaled.end(), material.name) == scaled.end();
   };
   auto& all = scene.materials;
@@ -59,7 +61,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_weakness(mapping.optional("weakness"), scene, names);
   read_constraints(mapping.optional("constraints"), scene, names);
   read_loads(mapping.optional("loads"), scene, names);
-  read_skin(mapping.required("skin", "the surface to publish: {surface: NAME}"), scene.skin, names);
+  read_skin(mapping.required("skin", "the surface to publish: {surface: NAME}"), scene, names);
   read_landmarks(mapping.optional("landmarks"), scene, names);
   read_joints(mapping.optional("joints"), scene, names);
   scene.gravity = mapping.optional("gravity").vector(Dimension::acceleration, any_number, scene.gravity);

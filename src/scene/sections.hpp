@@ -40,7 +40,7 @@ void read_constraints(const Node& node, Scene& scene, SceneNames& names);
 void read_loads(const Node& node, Scene& scene, const SceneNames& names);
 /// Must be called after read_constraints(), because the constraints decide whether the scene has friction.
 void read_effects(const Node& node, Scene& scene);
-void read_skin(const Node& node, SceneSkin& skin, const SceneNames& names);
+void read_skin(const Node& node, Scene& scene, const SceneNames& names);
 void read_landmarks(const Node& node, Scene& scene, const SceneNames& names);
 /// Reads the joints of bones, and adds the joints of heads to those of the scene.
 void read_joints(const Node& node, Scene& scene, const SceneNames& names);

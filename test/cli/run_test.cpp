@@ -86,6 +86,24 @@ protected:
   std::string frames = folder / "frames";
 };
 
+TEST_F(RunModel, writes_the_height_of_fine_lines)
+{
+  Model film = bar_model();
+  film.film.thickness = 1e-4;
+  film.film.modulus = 1e6;
+  film.film.base_modulus = 1e4;
+  film.film.carried = film.skin.triangles;
+  write_model(film, model);
+  const ProgramResult result =
+      run_program({ "run", model, "--backend", "cpu", "--seconds", "0.02", "--frames", frames, "--vtp" });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const std::string bytes = text_of(frames + "/skin_0000.ply"), end = "property float line_height\nelement face 2\n";
+  expect_contains(bytes, end);
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  EXPECT_EQ(bytes.size(), body + 28 * film.skin.vertices.size() + 13 * film.skin.triangles.size());
+  expect_contains(text_of(frames + "/skin_0000.vtp"), "line_height");
+}
+
 TEST_F(RunModel, shortens_the_bar_and_writes_its_frames)
 {
   const ProgramResult result = run_program(

@@ -5,6 +5,7 @@
 #include "frontalis/model/restriction.hpp"
 #include "frontalis/model/self_contact.hpp"
 #include "frontalis/model/shell.hpp"
+#include "frontalis/model/skin_film.hpp"
 #include "frontalis/model/surface.hpp"
 #include "frontalis/model/tissue.hpp"
 
@@ -113,6 +114,8 @@ struct Model : ModelPresets
   std::vector<std::string> switched_off;
 
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
+
+  SkinFilm film;  ///< of the skin, for its fine lines
 };
 
 /// Rest position of the voxel or node at `place` in the grid, in voxel edges from the origin: `place`, unless it is in

@@ -14,6 +14,16 @@
 namespace frontalis
 {
 
+/// Stiff film on the skin, whose lines are finer than voxels (SkinFilm).
+struct SceneFilm
+{
+  std::string material;
+  double thickness = 0;  ///< [m]
+  std::string base;      ///< material below it
+  double stretch = 0;    ///< strain of the film at rest
+  Region crop;           ///< where the skin has it
+};
+
 struct SceneSkin
 {
   std::string surface;
@@ -126,6 +136,7 @@ struct Scene
   std::map<std::string, FacePose> expressions;
   std::vector<DemoPhase> demo;
   std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
+  std::optional<SceneFilm> film{};  ///< of the skin
 };
 
 }  // namespace frontalis

@@ -29,7 +29,7 @@ std::vector<Backend> backend_names();
 Backend backend_from_name(const std::string& name);
 /// The backends that can run on this machine, in the order of preference of "auto".
 std::vector<Backend> available_backends();
-SkinField skin_field_from_name(const std::string& name);  ///< throws Error unless it is "strain" or "stress"
+SkinField skin_field_from_name(const std::string& name);  ///< throws Error unless it is "strain", "stress" or "lines"
 
 struct SolverSettings
 {

@@ -14,13 +14,15 @@ struct SkinState
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<float, 3>> normals;  ///< outward unit normals, area-weighted means over triangles
   std::vector<std::array<float, 3>> landmarks;
+  std::vector<float> line_height;  ///< of fine lines over the skin, per vertex [m]; empty without them (FineLines)
 };
 
 /// Quantities of the tissue below the skin, one number per vertex; computed only on request.
 enum class SkinField
 {
   strain,  ///< largest principal Green-Lagrange strain
-  stress   ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres, without viscous stresses
+  stress,  ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres, without viscous stresses
+  lines    ///< height of fine lines over the skin [m]; a solver, which does not know of them, gives 0
 };
 
 /// Energies [J], summed in double precision, and the state of the worst voxel.

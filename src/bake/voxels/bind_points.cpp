@@ -1,8 +1,11 @@
+#include "bake/mesh/halve_edges.hpp"
 #include "bake/shapes/head/head.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
 #include "bake/messages.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 
 namespace frontalis
 {
@@ -11,6 +14,12 @@ namespace
 
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
+
+// Halving leaves edges of three quarters of the longest on average: six of them per wavelength.
+constexpr double edges_per_line = 4.5;
+constexpr double vertices_per_edge_area = 3.2;  // vertices on the square of the longest edge, as measured
+constexpr double most_vertices = 2e6;
+constexpr double coarsening = 0.5;  // growth of edges with the distance from where lines are wanted
 
 /// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
@@ -146,6 +155,47 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   return bound;
 }
 
+// Modulus of plane strain at rest, E / (1 - nu^2) [Pa].
+double plane_strain_modulus(const Material& material, double* poisson)
+{
+  const double mu = physics::shear_modulus_of(material.law, material.parameters);
+  const double young = physics::young_modulus(mu, material.parameters[1]);
+  *poisson = young / (2 * mu) - 1;
+  return young / (1 - *poisson * *poisson);
+}
+
+// Gives the model the film of the scene's skin, and halves the edges of `surface`, in scene coordinates, until they
+// resolve its lines.
+void add_film(const Scene& scene, const SceneFilm& film, TriangleMesh& surface, Model& model, BakeMonitor& monitor)
+{
+  const std::string place = scene.file + ": skin: fine_lines";
+  SkinFilm& out = model.film;
+  double base_poisson = 0;
+  out.thickness = film.thickness;
+  out.stretch = film.stretch;
+  out.modulus =
+      plane_strain_modulus(model.materials[index_of(scene.materials, film.material, place, "material")], &out.poisson);
+  out.base_modulus =
+      plane_strain_modulus(model.materials[index_of(scene.materials, film.base, place, "material")], &base_poisson);
+  const double wavelength = film_wavelength(out), edge = wavelength / edges_per_line;
+  if (out.modulus < 10 * out.base_modulus)
+    throw failure(
+        "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
+        film.material, out.modulus / out.base_modulus, film.base);
+  const double vertices = vertices_per_edge_area * surface_area(cut_mesh(surface, film.crop)) / (edge * edge);
+  if (vertices > most_vertices)
+    throw failure(
+        "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
+        "allowed: crop the film, or make it thicker",
+        place, length_text(wavelength, scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
+  out.carried = surface.triangles;
+  const Box crop = to_box(film.crop);
+  out.parents = halve_edges(surface, [&](const Vector3d& at) { return edge + coarsening * crop.exteriorDistance(at); });
+  monitor.found("skin: fine lines {} apart from a compression of {:.3g} %, {} vertices",
+                length_text(wavelength, scene.unit),
+                100 * (film_critical_strain(out) + (1 + out.poisson) * out.stretch), surface.vertices.size());
+}
+
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
 {
   const TriangleTree tree(model.skin);
@@ -199,7 +249,10 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
   if (!scene.skin.surface.empty())
   {
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
-    BoundMesh bound = bind_mesh(skin.mesh(), scene.skin.crop, frame, binder, monitor);
+    TriangleMesh surface = cut_mesh(skin.mesh(), scene.skin.crop);
+    if (scene.film)
+      add_film(scene, *scene.film, surface, model, monitor);
+    BoundMesh bound = bind_mesh(surface, Region(), frame, binder, monitor);
     if (bound.mesh.triangles.empty())
       throw failure(
           "{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check its crop and the "

@@ -25,6 +25,32 @@ std::array<double, 3> bound_displacement(const Model& model, const Binding& bind
   return sum;
 }
 
+/// Area-weighted normals at the vertices: the cross product is twice the area.
+inline void surface_normals(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                            const std::vector<std::array<float, 3>>& vertices,
+                            std::vector<std::array<float, 3>>& normals)
+{
+  normals.assign(vertices.size(), { { 0, 0, 0 } });
+  const auto vector = [](const std::array<float, 3>& a) { return physics::Vec3<float>{ a[0], a[1], a[2] }; };
+  for (const auto& t : triangles)
+  {
+    const auto a = vector(vertices[t[0]]);
+    const auto area = cross(vector(vertices[t[1]]) - a, vector(vertices[t[2]]) - a);
+    for (const auto corner : t)
+    {
+      normals[corner][0] += area.x;
+      normals[corner][1] += area.y;
+      normals[corner][2] += area.z;
+    }
+  }
+  for (auto& normal : normals)
+  {
+    const float length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (auto& x : normal)
+      x = length > 0 ? x / length : 0;
+  }
+}
+
 /// Skin vertices, their normals and the landmarks at the present displacements.
 template <class Real>
 void skin_state(const Model& model, const Real* const u[3], SkinState& out)
@@ -41,27 +67,7 @@ void skin_state(const Model& model, const Real* const u[3], SkinState& out)
   };
   place(model.skin.vertices, model.skin_binding, out.vertices);
   place(model.landmark_positions, model.landmark_binding, out.landmarks);
-
-  // area-weighted normals: the cross product is twice the area
-  out.normals.assign(out.vertices.size(), { { 0, 0, 0 } });
-  const auto vector = [](const std::array<float, 3>& a) { return physics::Vec3<float>{ a[0], a[1], a[2] }; };
-  for (const auto& t : model.skin.triangles)
-  {
-    const auto a = vector(out.vertices[t[0]]);
-    const auto area = cross(vector(out.vertices[t[1]]) - a, vector(out.vertices[t[2]]) - a);
-    for (const auto corner : t)
-    {
-      out.normals[corner][0] += area.x;
-      out.normals[corner][1] += area.y;
-      out.normals[corner][2] += area.z;
-    }
-  }
-  for (auto& normal : out.normals)
-  {
-    const float length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    for (auto& x : normal)
-      x = length > 0 ? x / length : 0;
-  }
+  surface_normals(model.skin.triangles, out.vertices, out.normals);
 }
 
 }  // namespace frontalis

@@ -54,7 +54,9 @@ SkinField skin_field_from_name(const std::string& name)
     return SkinField::strain;
   if (name == "stress")
     return SkinField::stress;
-  throw Error("there is no field '" + name + "' of the skin; the fields are strain, stress");
+  if (name == "lines")
+    return SkinField::lines;
+  throw Error("there is no field '" + name + "' of the skin; the fields are strain, stress, lines");
 }
 
 SkinValues::SkinValues(const Model& model, const Discretisation& discretisation)
@@ -106,7 +108,7 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
     double value = 0;
     if (field == SkinField::strain)
       value = principal_strain(k);
-    else
+    else if (field == SkinField::stress)
     {
       const ModelVoxel at{ model_, discretisation_, voxel, e, &activation, running };
       Matrix3<double> P = physics::elastic_stress(at, at.material(), k);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// A thin stiff film on the skin, such as horny layer and epidermis on dermis, whose lines no voxel resolves. Vertices
+/// of Model::skin that have no triangle in `carried` follow from the others: they halve edges of a smooth surface.
+struct SkinFilm
+{
+  double thickness = 0;     ///< [m]; 0: the skin has no film
+  double modulus = 0;       ///< of the film, E / (1 - nu^2) [Pa]
+  double poisson = 0;       ///< of the film
+  double base_modulus = 0;  ///< of the tissue below it, E / (1 - nu^2) [Pa]
+  double stretch = 0;       ///< strain of the film in the skin at rest, equal in all directions: it delays lines
+  std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the first vertices, which voxels carry
+  std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two between which it lies
+};
+
+/// Wavelength [m] and compressive strain at which a film on a half-space folds: 2 pi t (Ef / 3 Es)^(1/3) and
+/// (3 Es / Ef)^(2/3) / 4, with Ef and Es the moduli of plane strain (Cao & Hutchinson 2012).
+double film_wavelength(const SkinFilm& film);
+double film_critical_strain(const SkinFilm& film);
+
+/// The middle of the edge between two points with unit normals, on the cubic curve of Vlachos et al. (Curved PN
+/// triangles, 2001). `normal` receives its unit normal.
+template <class T>
+physics::Vec3<T> curved_middle(const physics::Vec3<T>& a, const physics::Vec3<T>& normal_a, const physics::Vec3<T>& b,
+                               const physics::Vec3<T>& normal_b, physics::Vec3<T>& normal)
+{
+  const physics::Vec3<T> edge = b - a, sum = normal_a + normal_b;
+  normal = (1 / physics::Number<T>::sqrt(physics::Number<T>::max(dot(sum, sum), T(1e-30)))) * sum;
+  return T(0.5) * (a + b) + T(0.125) * (dot(edge, normal_b) * normal_b - dot(edge, normal_a) * normal_a);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Means of values at the vertices of a surface over cells of a lattice in space: each vertex belongs to the eight
+/// corners of its cell by trilinear weights, so that means change smoothly along the surface.
+class CellMeans
+{
+public:
+  using Field = std::vector<float>;
+
+  /// Cells have edges of this length [m].
+  CellMeans(const std::vector<std::array<double, 3>>& points, double edge);
+
+  /// Numbers of the vertices in the order of their cells: neighbours are near each other. Vertices are counted so
+  /// below.
+  const std::vector<std::int32_t>& order() const { return order_; }
+  /// Sets the area of each vertex, before all that follows.
+  void set_areas(const Field& area);
+  /// Area at each corner.
+  const Field& areas() const { return area_; }
+
+  void add(Field& sums, std::size_t vertex, float value) const
+  {
+    for (std::size_t c = 0; c < 8; ++c)
+      sums[corner_[vertex][c]] += weight_[vertex][c] * value;
+  }
+  /// Turns sums of values times area into means.
+  void divide_by_area(Field& sums) const;
+  float at(const Field& means, std::size_t vertex) const
+  {
+    float mean = 0;
+    for (std::size_t c = 0; c < 8; ++c)
+      mean += weight_[vertex][c] * means[corner_[vertex][c]];
+    return mean;
+  }
+
+private:
+  std::vector<std::int32_t> order_;
+  std::vector<std::array<std::int32_t, 8>> corner_;
+  std::vector<std::array<float, 8>> weight_;
+  Field area_;
+};
+
+}  // namespace frontalis

@@ -1,0 +1,388 @@
+#include "solver/skin/film_equilibrium.hpp"
+
+#include "frontalis/physics/number.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = physics::Vec3<double>;
+
+constexpr double pi = 3.14159265358979323846;
+
+// edges longer than this part of the wavelength do not resolve it
+constexpr double longest_edge = 1.0 / 3;
+// Heights are computed where the film's largest compression is at least this part of the critical one.
+constexpr double near_critical = 0.5;
+constexpr int most_iterations = 40;
+// the solution is found if an iteration lowers the energy by less than this part of it
+constexpr double tolerance = 3e-4;
+constexpr double seed_height = 0.05;  // root mean square, over the film's thickness
+
+template <class Number>
+Vector vector_of(const std::array<Number, 3>& p)
+{
+  return { p[0], p[1], p[2] };
+}
+
+std::array<float, 6> product(const Vector& a, const Vector& b, double scale)
+{
+  const auto part = [&](double x) { return static_cast<float>(scale * x); };
+  return { { part(a.x * b.x), part(a.y * b.y), part(a.z * b.z), part(0.5 * (a.x * b.y + a.y * b.x)),
+             part(0.5 * (a.x * b.z + a.z * b.x)), part(0.5 * (a.y * b.z + a.z * b.y)) } };
+}
+
+template <class Tensor>
+float trace(const Tensor& a)
+{
+  return a[0] + a[1] + a[2];
+}
+
+template <class Tensor>
+float contract(const Tensor& a, const Tensor& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
+double inner(const std::vector<std::int32_t>& active, const std::vector<float>& a, const std::vector<float>& b)
+{
+  double sum = 0;
+  for (const std::int32_t v : active)
+    sum += static_cast<double>(a[v]) * b[v];
+  return sum;
+}
+
+// The positive x at which slope + x curvature + cubic terms first vanish, for slope < 0.
+double first_minimum(double slope, double curvature, double third, double fourth)
+{
+  const auto derivative = [&](double x) { return slope + x * (curvature + x * (third + x * fourth)); };
+  double low = 0, high = 1e-3;
+  while (derivative(high) < 0 && high < 1e9)
+    high *= 2;
+  for (int i = 0; i < 40; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (derivative(middle) < 0 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+FilmEquilibrium::FilmEquilibrium(const Model& model)
+    : model_(model),
+      critical_(film_critical_strain(model.film)),
+      k_(2 * pi / film_wavelength(model.film)),
+      cells_(model.skin.vertices, std::max(2 * pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
+      order_(cells_.order()),
+      strain_(order_.size())
+{
+  make_operators();
+  for (Field* field : { &seed_, &curvature_, &local_ })
+    field->resize(order_.size());
+  make_seed();
+}
+
+// Linear finite elements: the edge opposite to corner c of a triangle has the weight -A grad_a . N . grad_b, where a, b
+// are its ends. The area of a vertex is a third of that of its triangles.
+void FilmEquilibrium::make_operators()
+{
+  const std::size_t count = order_.size();
+  std::vector<std::int32_t> rank(count);
+  for (std::size_t v = 0; v < count; ++v)
+    rank[order_[v]] = static_cast<std::int32_t>(v);
+  std::vector<std::map<std::int32_t, std::pair<Tensor, int>>> edges(count);
+  std::vector<double> length(count, 0), area(count, 0);
+  for (const auto& triangle : model_.skin.triangles)
+  {
+    std::int32_t t[3];
+    Vector at[3];
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      t[c] = rank[triangle[c]];
+      at[c] = vector_of(model_.skin.vertices[triangle[c]]);
+    }
+    const Vector normal = cross(at[1] - at[0], at[2] - at[0]);
+    const double twice = std::sqrt(dot(normal, normal));
+    if (!(twice > 0))
+      continue;
+    for (int c = 0; c < 3; ++c)
+    {
+      const int a = (c + 1) % 3, b = (c + 2) % 3;
+      const Vector edge = at[b] - at[a];
+      const double size = std::sqrt(dot(edge, edge));
+      // gradients times 2 A are edges turned by a right angle
+      const Tensor weight =
+          product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]), -0.5 / twice);
+      for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
+      {
+        auto& [sum, triangles] = edges[from][to];
+        for (std::size_t i = 0; i < sum.size(); ++i)
+          sum[i] += weight[i];
+        ++triangles;
+        length[from] = std::max(length[from], size);
+      }
+      area[t[c]] += twice / 6;
+    }
+  }
+  begin_.assign(1, 0);
+  for (std::size_t v = 0; v < count; ++v)
+  {
+    bool inside = !edges[v].empty();
+    for (const auto& [to, edge] : edges[v])
+    {
+      neighbour_.push_back(to);
+      edge_.push_back(edge.first);
+      laplace_.push_back(trace(edge.first));
+      inside = inside && edge.second == 2;
+    }
+    begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
+    area_.push_back(static_cast<float>(area[v] * k_ * k_));
+    resolved_.push_back(inside && length[v] * k_ < 2 * pi * longest_edge);
+  }
+  membrane_.resize(laplace_.size());
+  cells_.set_areas(area_);
+}
+
+// Green-Lagrange strain, as means over cells. The gradient of positions is linear in triangles, so that the integral of
+// F^T F is the sum over edges of their squared lengths times the same tensors.
+void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& vertices)
+{
+  const auto squared = [](const auto& a, const auto& b)
+  {
+    const Vector edge = vector_of(b) - vector_of(a);
+    return dot(edge, edge);
+  };
+  std::array<Field, 6> means;
+  means.fill(Field(cells_.areas().size(), 0));
+  for (std::size_t v = 0; v < order_.size(); ++v)
+  {
+    const std::int32_t from = order_[v];
+    Tensor sum{};
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
+    {
+      const std::int32_t to = order_[neighbour_[s]];
+      // half of the edge belongs to each of its ends
+      const auto change = static_cast<float>(
+          0.25 * k_ * k_ *
+          (squared(vertices[from], vertices[to]) - squared(model_.skin.vertices[from], model_.skin.vertices[to])));
+      for (std::size_t i = 0; i < 6; ++i)
+        sum[i] += change * edge_[s][i];
+    }
+    for (std::size_t i = 0; i < 6; ++i)
+      cells_.add(means[i], v, sum[i]);
+  }
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    cells_.divide_by_area(means[i]);
+    for (std::size_t v = 0; v < order_.size(); ++v)
+      strain_[v][i] = cells_.at(means[i], v);
+  }
+}
+
+// Finds the vertices whose heights are to be found, and the forces of the film on their edges, and sets lines off where
+// there are none. In units of the film, a compression by the critical strain is a force of 3 per length.
+void FilmEquilibrium::find_active(Field& w)
+{
+  const auto poisson = static_cast<float>(model_.film.poisson), stretch = static_cast<float>(model_.film.stretch);
+  active_.clear();
+  std::vector<float> sums(strain_.size());
+  for (std::size_t v = 0; v < strain_.size(); ++v)
+  {
+    // principal values of a tensor in a plane, by its invariants
+    const float sum = trace(strain_[v]), half = 0.5F * sum;
+    const float least = half - std::sqrt(std::max(0.5F * contract(strain_[v], strain_[v]) - half * half, 0.0F));
+    const float compression = -((1 - poisson) * least + poisson * sum + (1 + poisson) * stretch);
+    sums[v] = poisson * sum + (1 + poisson) * stretch;
+    if (!resolved_[v] || !(compression > near_critical * critical_))
+    {
+      w[v] = 0;
+      continue;
+    }
+    active_.push_back(static_cast<std::int32_t>(v));
+    if (compression > critical_ && std::abs(w[v]) < 0.1F * std::abs(seed_[v]))
+      w[v] = seed_[v];
+  }
+  const auto scale = static_cast<float>(3 / critical_);
+  for (const std::int32_t v : active_)
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
+    {
+      const std::int32_t n = neighbour_[s];
+      membrane_[s] = 0.5F * scale *
+                     ((1 - poisson) * (contract(edge_[s], strain_[v]) + contract(edge_[s], strain_[n])) +
+                      laplace_[s] * (sums[v] + sums[n]));
+    }
+}
+
+// Sums over neighbours: `out` is minus the Laplacian of w times the area of each vertex, and `forced`, if it is not
+// null, minus the divergence of the film's force times grad w, times area.
+void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
+{
+  for (const std::int32_t v : active_)
+  {
+    float sum = 0, force = 0;
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
+    {
+      const float difference = w[v] - w[neighbour_[s]];
+      sum += laplace_[s] * difference;
+      force += membrane_[s] * difference;
+    }
+    out[v] = sum;
+    if (forced != nullptr)
+      (*forced)[v] = force;
+  }
+}
+
+// Means of grad u . grad v at the corners of cells. By parts they are those of -(u laplace v + v laplace u) / 2, since
+// weights of cells change slowly.
+void FilmEquilibrium::mean_products(const Wave& u, const Wave& v, Field& out) const
+{
+  out.assign(cells_.areas().size(), 0);
+  for (const std::int32_t a : active_)
+    cells_.add(out, a, 0.5F * (u.height[a] * v.laplace[a] + v.height[a] * u.laplace[a]));
+  cells_.divide_by_area(out);
+}
+
+// Twice the energy of bending, base and compression.
+double FilmEquilibrium::quadratic(const Wave& u) const
+{
+  double sum = 0;
+  for (const std::int32_t v : active_)
+  {
+    const float bent = u.laplace[v] + area_[v] * u.height[v];
+    sum += static_cast<double>(0.75F * bent * bent / area_[v] + u.force[v] * u.height[v]);
+  }
+  return sum;
+}
+
+// The derivative of the energy by the heights. `relief` is the mean of |grad w|^2.
+void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
+{
+  for (const std::int32_t v : active_)
+  {
+    const float mean = cells_.at(relief, v);
+    const float bent = 0.75F * (u.laplace[v] / area_[v] + u.height[v]);
+    curvature_[v] = bent + 3 * mean * u.height[v];
+    local_[v] = area_[v] * bent + 3 * mean * u.laplace[v] + u.force[v];
+  }
+  apply(curvature_, out, nullptr);
+  for (const std::int32_t v : active_)
+    out[v] += local_[v];
+}
+
+// The sum of plane waves of the film's wavelength in many directions of space, from which lines grow: on a surface most
+// of them are nearly that long. It depends on the place alone, so that lines come back where they were.
+void FilmEquilibrium::make_seed()
+{
+  constexpr int waves = 64;
+  for (std::size_t v = 0; v < order_.size(); ++v)
+  {
+    const Vector at = vector_of(model_.skin.vertices[order_[v]]);
+    double sum = 0;
+    for (int i = 0; i < waves; ++i)
+    {
+      // points spread over a sphere
+      const double z = 1 - (2 * i + 1.0) / waves, turn = pi * (3 - std::sqrt(5.0)) * i, r = std::sqrt(1 - z * z);
+      sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
+    }
+    seed_[v] = static_cast<float>(seed_height * sum / std::sqrt(0.5 * waves));
+  }
+}
+
+// Inverse of the diagonal of the quadratic energy's matrix.
+void FilmEquilibrium::precondition(Field& inverse) const
+{
+  for (const std::int32_t v : active_)
+  {
+    float own = area_[v], others = 0, force = 0;
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
+    {
+      own += laplace_[s];
+      others += laplace_[s] * laplace_[s] / area_[neighbour_[s]];
+      force += membrane_[s];
+    }
+    inverse[v] = 1 / (0.75F * (own * own / area_[v] + others) + std::max(force, 0.0F));
+  }
+}
+
+// Conjugate gradients (Polak & Ribiere) with exact line search: along a line the energy is a polynomial of degree four.
+int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height)
+{
+  const std::size_t count = order_.size();
+  const auto thickness = static_cast<float>(model_.film.thickness);
+  height.resize(count, 0);
+  const Field zero(count, 0);
+  Wave now{ zero, zero, zero }, step{ zero, zero, zero };
+  for (std::size_t v = 0; v < count; ++v)
+    now.height[v] = height[order_[v]] / thickness;
+  find_strain(vertices);
+  find_active(now.height);
+  Field gradient_before = zero, gradient_now = zero, inverse = zero, relief, mixed, squared;
+  curvature_ = zero;
+  precondition(inverse);
+  apply(now.height, now.laplace, &now.force);
+  mean_products(now, now, relief);
+  const auto energy = [&]
+  {
+    double sum = 0.5 * quadratic(now);
+    for (std::size_t c = 0; c < relief.size(); ++c)
+      sum += 1.5 * static_cast<double>(cells_.areas()[c] * relief[c] * relief[c]);
+    return sum;
+  };
+  double before = energy(), norm_before = 0;
+  int iteration = 0;
+  for (; iteration < most_iterations && !active_.empty(); ++iteration)
+  {
+    gradient(now, relief, gradient_now);
+    double norm = 0, common = 0;
+    for (const std::int32_t v : active_)
+    {
+      norm += static_cast<double>(gradient_now[v] * inverse[v] * gradient_now[v]);
+      common += static_cast<double>(gradient_now[v] * inverse[v] * gradient_before[v]);
+    }
+    auto conjugacy = static_cast<float>(norm_before > 0 ? std::max(0.0, (norm - common) / norm_before) : 0);
+    norm_before = norm;
+    if (conjugacy * inner(active_, step.height, gradient_now) >= norm)
+      conjugacy = 0;
+    for (const std::int32_t v : active_)
+      step.height[v] = conjugacy * step.height[v] - inverse[v] * gradient_now[v];
+    gradient_before.swap(gradient_now);
+    const double down = inner(active_, step.height, gradient_before);
+    if (!(down < 0))
+      break;
+    apply(step.height, step.laplace, &step.force);
+    mean_products(now, step, mixed);
+    mean_products(step, step, squared);
+    double second = quadratic(step), third = 0, fourth = 0;
+    for (std::size_t c = 0; c < relief.size(); ++c)
+    {
+      const double area = cells_.areas()[c], a = relief[c], b = mixed[c], d = squared[c];
+      second += 6 * area * (2 * b * b + a * d);
+      third += 18 * area * b * d;
+      fourth += 6 * area * d * d;
+    }
+    const auto length = static_cast<float>(first_minimum(down, second, third, fourth));
+    for (const std::int32_t v : active_)
+    {
+      now.height[v] += length * step.height[v];
+      now.laplace[v] += length * step.laplace[v];
+      now.force[v] += length * step.force[v];
+    }
+    for (std::size_t c = 0; c < relief.size(); ++c)
+      relief[c] += length * (2 * mixed[c] + length * squared[c]);
+    const double after = energy();
+    if (before - after <= tolerance * std::abs(after))
+      break;
+    before = after;
+  }
+  for (std::size_t v = 0; v < count; ++v)
+    height[order_[v]] = thickness * now.height[v];
+  return iteration;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,152 @@
+#include "frontalis/solver/fine_lines.hpp"
+
+#include "solver/skin/bound_points.hpp"
+#include "solver/skin/film_equilibrium.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace frontalis
+{
+
+// processor time of the calling thread [s]
+static double thread_seconds()
+{
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct FineLines::Implementation
+{
+  using Vertices = std::vector<std::array<float, 3>>;
+
+  std::shared_ptr<const Model> model;
+  FilmEquilibrium film;
+  std::atomic<double> seconds{ 0 };
+  std::vector<float> found;  // heights; used by the thread, or without one by add_to()
+
+  // shared with the thread and protected by the mutex
+  std::mutex mutex;
+  std::condition_variable wake;
+  Vertices next;              // vertices to find heights for; empty: none
+  std::vector<float> height;  // the latest ones
+  bool stop = false;
+  bool discard = false;  ///< what the thread is finding is of no use
+  std::thread thread;
+
+  explicit Implementation(std::shared_ptr<const Model> of)
+      : model(std::move(of)), film(*model), height(model->skin.vertices.size(), 0.0F)
+  {
+  }
+
+  void find(const Vertices& vertices)
+  {
+    const double begin = thread_seconds();
+    film.solve(vertices, found);
+    seconds = thread_seconds() - begin;
+  }
+
+  void run()
+  {
+    std::unique_lock<std::mutex> lock(mutex);
+    for (;;)
+    {
+      wake.wait(lock, [&] { return stop || !next.empty(); });
+      if (stop)
+        return;
+      const Vertices vertices = std::move(next);
+      next.clear();
+      lock.unlock();
+      find(vertices);
+      lock.lock();
+      if (std::exchange(discard, false))
+        found.clear();
+      else
+        height = found;
+    }
+  }
+
+  // Positions and normals of the vertices that halve edges, from those of the carried ones.
+  void place(SkinState& skin) const
+  {
+    using Vector = physics::Vec3<float>;
+    const auto vector = [](const std::array<float, 3>& a) { return Vector{ a[0], a[1], a[2] }; };
+    surface_normals(model->film.carried, skin.vertices, skin.normals);
+    std::size_t v = skin.vertices.size() - model->film.parents.size();
+    for (const auto& [a, b] : model->film.parents)
+    {
+      Vector normal{};
+      const Vector at = curved_middle(vector(skin.vertices[a]), vector(skin.normals[a]), vector(skin.vertices[b]),
+                                      vector(skin.normals[b]), normal);
+      skin.vertices[v] = { { at.x, at.y, at.z } };
+      skin.normals[v++] = { { normal.x, normal.y, normal.z } };
+    }
+  }
+};
+
+std::unique_ptr<FineLines> FineLines::make(std::shared_ptr<const Model> model, bool own_thread)
+{
+  if (model->film.thickness <= 0)
+    return nullptr;
+  return std::unique_ptr<FineLines>(new FineLines(std::move(model), own_thread));
+}
+
+FineLines::FineLines(std::shared_ptr<const Model> model, bool own_thread)
+    : self_(std::make_unique<Implementation>(std::move(model)))
+{
+  if (own_thread)
+    self_->thread = std::thread([this] { self_->run(); });
+}
+
+FineLines::~FineLines()
+{
+  {
+    const std::lock_guard<std::mutex> lock(self_->mutex);
+    self_->stop = true;
+  }
+  self_->wake.notify_all();
+  if (self_->thread.joinable())
+    self_->thread.join();
+}
+
+void FineLines::add_to(SkinState& skin)
+{
+  self_->place(skin);
+  if (self_->thread.joinable())
+  {
+    const std::lock_guard<std::mutex> lock(self_->mutex);
+    self_->next = skin.vertices;
+    skin.line_height = self_->height;
+    self_->wake.notify_all();
+  }
+  else
+  {
+    self_->find(skin.vertices);
+    skin.line_height = self_->found;
+  }
+  for (std::size_t v = 0; v < skin.vertices.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      skin.vertices[v][axis] += skin.line_height[v] * skin.normals[v][axis];
+  surface_normals(self_->model->skin.triangles, skin.vertices, skin.normals);
+}
+
+void FineLines::reset()
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  if (!self_->thread.joinable())
+    self_->found.clear();
+  std::fill(self_->height.begin(), self_->height.end(), 0.0F);
+  self_->next.clear();
+  self_->discard = true;
+}
+
+double FineLines::seconds() const { return self_->seconds; }
+
+}  // namespace frontalis

@@ -1,0 +1,115 @@
+// the film of a skin: edges that resolve its lines, on a smooth surface, and what it is refused for
+
+#include "scene_pieces.hpp"
+
+#include "frontalis/model/model_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double radius = 12e-3;
+
+// a ball whose film has lines 2 mm apart on one half of the skin
+Scene ball_with_film()
+{
+  Scene scene = plain_scene(1.5e-3);
+  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, radius, 3e-3) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.skin.surface = "skin";
+  scene.materials.push_back(material("film"));
+  scene.materials.back().parameters["young"] = 100 * scene.materials.front().parameters["young"];
+  scene.film = SceneFilm{ "film", 0.1e-3, scene.materials.front().name, 0.02, Region() };
+  scene.film->crop.lower[2] = 0;
+  return scene;
+}
+
+std::string error_of(const Scene& scene)
+{
+  try
+  {
+    bake(scene);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BakeFilm, halves_edges_where_lines_are_wanted_and_keeps_the_surface_smooth)
+{
+  const Model model = bake(ball_with_film());
+  const SkinFilm& film = model.film;
+  EXPECT_NEAR(film.modulus / film.base_modulus, 100, 1e-6);
+  EXPECT_EQ(film.stretch, 0.02);
+  const Model plain = bake(
+      []
+      {
+        Scene scene = ball_with_film();
+        scene.film.reset();
+        return scene;
+      }());
+  EXPECT_EQ(film.carried, plain.skin.triangles);
+  EXPECT_EQ(model.skin.vertices.size(), plain.skin.vertices.size() + film.parents.size());
+  EXPECT_EQ(plain.film.thickness, 0);
+
+  const auto place = [&](std::int32_t v) { return to_vector(model.to_scene(model.skin.vertices[v])); };
+  double sum = 0, longest = 0, longest_below = 0, count = 0;
+  for (const auto& t : model.skin.triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const Vector3d a = place(t[c]), b = place(t[(c + 1) % 3]);
+      if (std::max(a[2], b[2]) < -5e-3)
+        longest_below = std::max(longest_below, (b - a).norm());
+      if (std::min(a[2], b[2]) < 1e-3)
+        continue;
+      sum += (b - a).norm();
+      longest = std::max(longest, (b - a).norm());
+      ++count;
+    }
+  EXPECT_LE(sum / count, film_wavelength(film) / 6);
+  EXPECT_LE(longest, film_wavelength(film) / 4.5);
+  EXPECT_GT(longest_below, film_wavelength(film) / 3);
+  double off = 0;
+  for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
+    off = std::max(off, std::abs(place(static_cast<std::int32_t>(v)).norm() - radius));
+  EXPECT_LT(off, 0.03e-3);
+}
+
+TEST(BakeFilm, is_the_same_in_the_model_file)
+{
+  const Model model = bake(ball_with_film());
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("film_test_" + std::to_string(::getpid()))).string();
+  write_model(model, file);
+  const SkinFilm film = read_model(file).film;
+  std::filesystem::remove(file);
+  EXPECT_EQ(film.thickness, model.film.thickness);
+  EXPECT_EQ(film.modulus, model.film.modulus);
+  EXPECT_EQ(film.poisson, model.film.poisson);
+  EXPECT_EQ(film.base_modulus, model.film.base_modulus);
+  EXPECT_EQ(film.stretch, model.film.stretch);
+  EXPECT_EQ(film.carried, model.film.carried);
+  EXPECT_EQ(film.parents, model.film.parents);
+}
+
+TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved)
+{
+  Scene soft = ball_with_film();
+  soft.film->material = soft.film->base;
+  EXPECT_NE(error_of(soft).find("at least 10 times as stiff"), std::string::npos) << error_of(soft);
+  Scene thin = ball_with_film();
+  thin.film->thickness = 1e-6;
+  EXPECT_NE(error_of(thin).find("million vertices"), std::string::npos) << error_of(thin);
+}
+
+}  // namespace
+}  // namespace frontalis

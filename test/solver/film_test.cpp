@@ -1,0 +1,241 @@
+// fine lines of a skin's film against the theory of a film on a half-space (Cao & Hutchinson 2012), and how frames get
+// them
+
+#include "frontalis/solver/fine_lines.hpp"
+#include "solver/skin/film_equilibrium.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vertices = std::vector<std::array<float, 3>>;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double thickness = 0.1e-3;
+
+// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength, and a film of this
+// stiffness over its base.
+Model film_model(double stiffness_ratio)
+{
+  Model model;
+  model.spacing = { { 1e-4, 1e-4, 1e-4 } };
+  model.film.thickness = thickness;
+  model.film.base_modulus = 1e5;
+  model.film.modulus = stiffness_ratio * model.film.base_modulus;
+  model.film.poisson = 0.49;
+  const double edge = film_wavelength(model.film) / 6;
+  constexpr std::int32_t n = 60;
+  std::uint32_t state = 1;
+  const auto shift = [&](std::int32_t i)
+  {
+    state = state * 1664525U + 1013904223U;
+    return i == 0 || i == n ? 0 : 0.4 * ((state >> 8U) / 16777216.0 - 0.5);
+  };
+  for (std::int32_t j = 0; j <= n; ++j)
+    for (std::int32_t i = 0; i <= n; ++i)
+      model.skin.vertices.push_back({ { edge * (i + shift(i)), edge * (j + shift(j)), 0 } });
+  for (std::int32_t j = 0; j < n; ++j)
+    for (std::int32_t i = 0; i < n; ++i)
+    {
+      const std::int32_t a = j * (n + 1) + i, b = a + 1, c = b + n, d = c + 1;
+      model.skin.triangles.push_back({ { a, b, (i + j) % 2 == 0 ? c : d } });
+      model.skin.triangles.push_back({ { (i + j) % 2 == 0 ? b : a, d, c } });
+    }
+  model.film.carried = model.skin.triangles;
+  return model;
+}
+
+double width(const Model& model) { return model.skin.vertices.back()[0]; }
+
+// The skin compressed along the direction at this angle to x. `where` says how much of the strain a place has.
+Vertices compressed(const Model& model, double strain, double angle = 0,
+                    double (*where)(double along, double width) = nullptr)
+{
+  const double c = std::cos(angle), s = std::sin(angle), w = width(model);
+  Vertices vertices;
+  vertices.reserve(model.skin.vertices.size());
+  for (const auto& p : model.skin.vertices)
+  {
+    const double along = c * p[0] + s * p[1];
+    // Green-Lagrange strain: (stretch^2 - 1) / 2
+    const double moved = (std::sqrt(1 - 2 * strain) - 1) * (where == nullptr ? along : where(along, w));
+    vertices.push_back({ { static_cast<float>(p[0] + c * moved), static_cast<float>(p[1] + s * moved), 0 } });
+  }
+  return vertices;
+}
+
+// the heights after some frames of the same skin
+std::vector<float> heights(FilmEquilibrium& film, const Vertices& vertices, int frames = 6,
+                           std::vector<float> from = {})
+{
+  for (int i = 0; i < frames; ++i)
+    film.solve(vertices, from);
+  return from;
+}
+
+bool in_the_middle(const Model& model, std::size_t v)
+{
+  const auto& p = model.skin.vertices[v];
+  const double w = width(model);
+  return std::min({ p[0], p[1], w - p[0], w - p[1] }) > 0.2 * w;
+}
+
+double amplitude(const Model& model, const std::vector<float>& height)
+{
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < height.size(); ++v)
+    if (in_the_middle(model, v))
+    {
+      sum += static_cast<double>(height[v]) * height[v];
+      ++count;
+    }
+  return std::sqrt(2 * sum / count);
+}
+
+// Twice the length of all edges across the lines over the number of edges at whose ends the height has different signs.
+double wavelength(const Model& model, const std::vector<float>& height, double angle)
+{
+  double length = 0, changes = 0;
+  for (const auto& t : model.skin.triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const std::int32_t a = t[c], b = t[(c + 1) % 3];
+      if (!in_the_middle(model, a) || !in_the_middle(model, b))
+        continue;
+      const auto &p = model.skin.vertices[a], &q = model.skin.vertices[b];
+      length += std::abs((q[0] - p[0]) * std::cos(angle) + (q[1] - p[1]) * std::sin(angle));
+      changes += (height[a] > 0) != (height[b] > 0) ? 1 : 0;
+    }
+  return 2 * length / changes;
+}
+
+TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
+{
+  std::printf(
+      "found over theory\nstiffness ratio, direction [degrees], wavelength at 1.1, 1.4, 2.6 times the critical "
+      "strain, amplitude, exponent of the excess, critical strain\n");
+  for (const double ratio : { 30.0, 100.0, 1000.0 })
+    for (const double angle : { 0.0, pi / 6 })
+    {
+      const Model model = film_model(ratio);
+      FilmEquilibrium film(model);
+      constexpr double excess[] = { 0.1, 0.4, 1.6 };
+      double found[3], length[3];
+      std::vector<float> height;
+      for (int i = 0; i < 3; ++i)
+      {
+        height = heights(film, compressed(model, (1 + excess[i]) * film_critical_strain(model.film), angle), 6, height);
+        length[i] = wavelength(model, height, angle) / film_wavelength(model.film);
+        found[i] = amplitude(model, height) / thickness;
+        EXPECT_NEAR(length[i], 1, 0.1) << ratio << " " << angle << " " << excess[i];
+        EXPECT_NEAR(found[i] / std::sqrt(excess[i]), 1, 0.15) << ratio << " " << angle << " " << excess[i];
+      }
+      const double exponent = std::log(found[2] / found[1]) / std::log(4.0);
+      EXPECT_NEAR(exponent, 0.5, 0.05);
+      // where the line through the squares of the first two amplitudes is 0
+      const double first = found[0] * found[0], second = found[1] * found[1];
+      const double critical = (1.1 * second - 1.4 * first) / (second - first);
+      EXPECT_NEAR(critical, 1, 0.15);
+      std::printf("%4.0f %2.0f  %.3f %.3f %.3f  %.3f %.3f %.3f  %.3f  %.3f\n", ratio, 180 / pi * angle, length[0],
+                  length[1], length[2], found[0] / std::sqrt(0.1), found[1] / std::sqrt(0.4), found[2] / std::sqrt(1.6),
+                  exponent, critical);
+    }
+}
+
+TEST(Film, FoldsFromTheCriticalStrainOfTheoryOnAndIsFlatBelowIt)
+{
+  const Model model = film_model(100);
+  FilmEquilibrium film(model);
+  const double critical = film_critical_strain(model.film);
+  EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.85 * critical), 1)), 0);
+  EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.15 * critical), 20)), 0.2 * thickness);
+  // what is deep already becomes flat again
+  const std::vector<float> deep = heights(film, compressed(model, 3 * critical));
+  EXPECT_LT(amplitude(model, heights(film, compressed(model, 0.85 * critical), 20, deep)), 1e-3 * thickness);
+  const std::vector<float> flat = heights(film, compressed(model, 0), 1, deep);
+  EXPECT_EQ(flat, std::vector<float>(flat.size(), 0.0F));
+}
+
+TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
+{
+  Model model = film_model(100);
+  model.film.stretch = 0.1;
+  // across the lines the film is stretched too
+  const double needed = film_critical_strain(model.film) + (1 + model.film.poisson) * model.film.stretch;
+  FilmEquilibrium film(model);
+  EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.9 * needed), 1)), 0);
+  EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.1 * needed))), 0.2 * thickness);
+}
+
+TEST(Film, LinesAreWhereTheSkinIsCompressed)
+{
+  const Model model = film_model(100);
+  FilmEquilibrium film(model);
+  const auto left = [](double along, double w) { return std::min(along, 0.5 * w); };
+  const std::vector<float> height = heights(film, compressed(model, 3 * film_critical_strain(model.film), 0, left));
+  double highest_left = 0, highest_right = 0;
+  for (std::size_t v = 0; v < height.size(); ++v)
+  {
+    const double x = model.skin.vertices[v][0] / width(model), h = std::abs(static_cast<double>(height[v]));
+    (x < 0.5 ? highest_left : highest_right) =
+        std::max(x < 0.5 ? highest_left : highest_right, x > 0.5 && x < 0.6 ? 0 : h);
+  }
+  EXPECT_GT(highest_left, thickness);
+  EXPECT_EQ(highest_right, 0);
+}
+
+TEST(Film, IsTheSameInEveryRun)
+{
+  const Model model = film_model(100);
+  FilmEquilibrium one(model), other(model);
+  const Vertices vertices = compressed(model, 2 * film_critical_strain(model.film), 1);
+  EXPECT_EQ(heights(one, vertices, 2), heights(other, vertices, 2));
+}
+
+TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
+{
+  const auto model = std::make_shared<Model>(film_model(100));
+  const Vertices vertices = compressed(*model, 2 * film_critical_strain(model->film));
+  const auto frame = [&](FineLines& lines)
+  {
+    SkinState skin;
+    skin.vertices = vertices;
+    lines.add_to(skin);
+    return skin;
+  };
+  const auto lines = FineLines::make(model, false);
+  const SkinState skin = frame(*lines);
+  double steepest = 0;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    EXPECT_EQ(skin.vertices[v][2], skin.line_height[v]);
+    EXPECT_EQ(skin.vertices[v][0], vertices[v][0]);
+    steepest = std::max(steepest, static_cast<double>(std::abs(skin.normals[v][0])));
+  }
+  EXPECT_GT(steepest, 0.1);
+  EXPECT_GT(lines->seconds(), 0);
+
+  // in a thread of its own the first frame does not wait, and a later one has the lines
+  const auto apart = FineLines::make(model, true);
+  EXPECT_EQ(amplitude(*model, frame(*apart).line_height), 0);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (amplitude(*model, frame(*apart).line_height) < 0.5 * thickness && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_GT(amplitude(*model, frame(*apart).line_height), 0.5 * thickness);
+  apart->reset();
+  EXPECT_EQ(amplitude(*model, frame(*apart).line_height), 0);
+
+  model->film.thickness = 0;
+  EXPECT_EQ(FineLines::make(model, false), nullptr);
+}
+
+}  // namespace
+}  // namespace frontalis
