@@ -216,6 +216,9 @@ void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& s
 {
   for (const auto& marker : inputs_.bodies->markers)
   {
+    // others remove the bodies of an earlier scene
+    if (marker.action != visualization_msgs::Marker::ADD)
+      continue;
     const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
     RenderMesh& mesh = scene.meshes.emplace_back();
     for (const auto& point : marker.points)

@@ -113,4 +113,4 @@ class Camera(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("camera_test")
-    rostest.rosrun("frontalis", "camera", Camera)
+    rostest.rosrun("frontalis", "camera_test", Camera)
