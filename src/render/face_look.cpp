@@ -179,10 +179,12 @@ std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTrans
   return out;
 }
 
+// behind the eyeball, and towards the midline, where lids leave a gap at the inner corner
 RenderBall socket_of(const RenderBall& eyeball)
 {
   const auto& [x, y, z] = eyeball.centre;
-  return { { x - 0.45 * eyeball.radius, y, z }, 1.3 * eyeball.radius, inside_colour, inside_label };
+  const double r = eyeball.radius;
+  return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, inside_colour, inside_label };
 }
 
 FaceLook::FaceLook(const Model& model, const SkinState& rest)

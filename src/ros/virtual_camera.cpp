@@ -226,6 +226,21 @@ void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& s
       const std::array<double, 3> p = pose(std::array<double, 3>{ point.x, point.y, point.z });
       mesh.vertices.push_back({ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) });
     }
+    // an eyeball that lids touch is drawn as a ball
+    const auto is_eyeball = [&mesh](const RenderBall& ball)
+    {
+      const auto is_within = [&ball](const std::array<float, 3>& v)
+      {
+        const double x = v[0] - ball.centre[0], y = v[1] - ball.centre[1], z = v[2] - ball.centre[2];
+        return std::hypot(x, y, z) < 1.02 * ball.radius;
+      };
+      return ball.label == eye_label && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_within);
+    };
+    if (std::any_of(scene.balls.begin(), scene.balls.end(), is_eyeball))
+    {
+      scene.meshes.pop_back();
+      continue;
+    }
     for (std::int32_t v = 0; v + 2 < static_cast<std::int32_t>(mesh.vertices.size()); v += 3)
       mesh.triangles.push_back({ v, v + 1, v + 2 });
     mesh.colours.assign(mesh.vertices.size(), body_colour);
