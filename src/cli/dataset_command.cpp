@@ -111,8 +111,8 @@ Lot draw(Random random, const DatasetOptions& options, const Model& model, const
   lot.light.key = direction(random.between(-70, 70) * degree, random.between(-10, 60) * degree);
   lot.light.fill = direction(random.between(-90, 90) * degree, random.between(-10, 60) * degree);
   lot.light.key_strength = random.between(0.45, 0.85);
-  lot.light.fill_strength = random.between(0.05, 0.3);
-  lot.light.ambient = random.between(0.15, 0.35);
+  lot.light.fill_strength = random.between(0.1, 0.35);
+  lot.light.ambient = random.between(0.25, 0.45);
   for (float& channel : lot.light.background)
     channel = static_cast<float>(random.between(0, 1));
   return lot;

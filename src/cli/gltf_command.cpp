@@ -192,6 +192,7 @@ std::vector<std::string> chosen(const GltfOptions& options, const Model& model)
   if (!options.only.empty())
     return options.only;
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Model::Expression& pose : all)
     names.push_back(pose.name);
   return names;
@@ -202,6 +203,7 @@ void write_gltf(const GltfOptions& options)
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const std::vector<std::string> names = chosen(options, *model);
   std::vector<Controls> poses;
+  poses.reserve(names.size());
   for (const std::string& name : names)
     poses.push_back(options.expressions ? expression_controls(*model, name)
                                         : action_unit_controls(*model, { { name, 1.0 } }));
