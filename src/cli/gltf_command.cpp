@@ -47,37 +47,23 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers a
 class Glb
 {
 public:
-  /// Adds numbers and returns their accessor.
-  template <class Row>
-  int add(const std::vector<Row>& rows, const char* type, int component, int target, bool limits = false)
+  /// Adds vectors, or corners of triangles, and returns their accessor.
+  int add(const Points& vectors)
   {
-    const std::size_t bytes = rows.size() * sizeof(Row);
-    json_["bufferViews"].push_back(
-        { { "buffer", 0 }, { "byteOffset", buffer_.size() }, { "byteLength", bytes }, { "target", target } });
-    buffer_.append(reinterpret_cast<const char*>(rows.data()), bytes);
-    Json accessor{ { "bufferView", json_["bufferViews"].size() - 1 },
-                   { "componentType", component },
-                   { "count", rows.size() * sizeof(Row) / (type[0] == 'S' ? 4 : 12) },
-                   { "type", type } };
-    if constexpr (std::is_same_v<Row, std::array<float, 3>>)
-      if (limits)
+    std::array<float, 3> low = vectors.at(0), high = low;
+    for (const auto& v : vectors)
+      for (std::size_t i = 0; i < 3; ++i)
       {
-        Row low = rows.at(0), high = low;
-        for (const Row& row : rows)
-          for (std::size_t i = 0; i < 3; ++i)
-          {
-            low[i] = std::min(low[i], row[i]);
-            high[i] = std::max(high[i], row[i]);
-          }
-        accessor["min"] = low;
-        accessor["max"] = high;
+        low[i] = std::min(low[i], v[i]);
+        high[i] = std::max(high[i], v[i]);
       }
-    json_["accessors"].push_back(accessor);
-    return static_cast<int>(json_["accessors"].size()) - 1;
+    return add(vectors.data(), vectors.size(), array_buffer,
+               { { "componentType", single_float }, { "type", "VEC3" }, { "min", low }, { "max", high } });
   }
-  int vectors(const Points& points, bool limits = false)
+  int add(const std::vector<std::array<std::int32_t, 3>>& triangles)
   {
-    return add(points, "VEC3", single_float, array_buffer, limits);
+    return add(triangles.data(), 3 * triangles.size(), element_array_buffer,
+               { { "componentType", unsigned_int }, { "type", "SCALAR" } });
   }
 
   /// The file with the primitives of one mesh, which has the named morph targets.
@@ -111,6 +97,18 @@ public:
   }
 
 private:
+  int add(const void* numbers, std::size_t count, int target, Json accessor)
+  {
+    const std::size_t bytes = count * (target == array_buffer ? 3 : 1) * sizeof(float);
+    json_["bufferViews"].push_back(
+        { { "buffer", 0 }, { "byteOffset", buffer_.size() }, { "byteLength", bytes }, { "target", target } });
+    buffer_.append(static_cast<const char*>(numbers), bytes);
+    accessor["count"] = count;
+    accessor["bufferView"] = json_["bufferViews"].size() - 1;
+    json_["accessors"].push_back(accessor);
+    return static_cast<int>(json_["accessors"].size()) - 1;
+  }
+
   Json json_;
   std::string buffer_;
 };
@@ -169,16 +167,16 @@ std::vector<RenderMesh> meshes_of(const RenderScene& scene)
 
 Json primitive_of(Glb& glb, RenderMesh mesh)
 {
-  Json attributes{ { "POSITION", glb.vectors(turned(mesh.vertices), true) } };
+  Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) } };
   if (!mesh.normals.empty())
-    attributes["NORMAL"] = glb.vectors(turned(mesh.normals));
+    attributes["NORMAL"] = glb.add(turned(mesh.normals));
   // colours of glTF are linear
   for (auto& colour : mesh.colours)
     for (float& channel : colour)
       channel = std::pow(channel, 2.2F);
-  attributes["COLOR_0"] = glb.vectors(mesh.colours);
+  attributes["COLOR_0"] = glb.add(mesh.colours);
   return { { "attributes", attributes },
-           { "indices", glb.add(mesh.triangles, "SCALAR", unsigned_int, element_array_buffer) },
+           { "indices", glb.add(mesh.triangles) },
            { "material", 0 },
            { "targets", Json::array() } };
 }
@@ -231,9 +229,9 @@ void write_gltf(const GltfOptions& options)
     }
     for (std::size_t m = 0; m < rest.size(); ++m)
     {
-      Json target{ { "POSITION", glb.vectors(turned(difference(now[m].vertices, rest[m].vertices)), true) } };
+      Json target{ { "POSITION", glb.add(turned(difference(now[m].vertices, rest[m].vertices))) } };
       if (!rest[m].normals.empty())
-        target["NORMAL"] = glb.vectors(turned(difference(now[m].normals, rest[m].normals)));
+        target["NORMAL"] = glb.add(turned(difference(now[m].normals, rest[m].normals)));
       primitives[m]["targets"].push_back(target);
     }
   }
