@@ -4,7 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/render/png.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/study/step_time.hpp"
@@ -61,8 +61,8 @@ private:
   std::mt19937_64 engine_;
 };
 
-/// What is drawn by lot for a frame.
-struct Lot
+/// The random choices for one frame.
+struct RandomFrame
 {
   std::map<std::string, double> units;
   PinholeCamera camera;
@@ -74,25 +74,25 @@ std::array<double, 3> direction(double yaw, double pitch)
   return { std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch) };
 }
 
-// `low`, `high`: box around the skin at rest
-Lot draw(Random random, const DatasetOptions& options, const Model& model, const std::array<double, 3>& low,
-         const std::array<double, 3>& high)
+// `low`, `high`: corners of the box around the skin at rest
+RandomFrame choose(Random random, const DatasetOptions& options, const Model& model, const std::array<double, 3>& low,
+                   const std::array<double, 3>& high)
 {
-  Lot lot;
+  RandomFrame chosen;
   const int count = 1 + static_cast<int>(random.between(0, most_units));
   double sum = 0;
   for (int n = 0; n < count; ++n)
   {
     const auto unit = static_cast<std::size_t>(random.between(0, static_cast<double>(model.action_units.size())));
-    double& intensity = lot.units[model.action_units[unit].name];
+    double& intensity = chosen.units[model.action_units[unit].name];
     sum -= intensity;
     intensity = random.between(0.2, 1);
     sum += intensity;
   }
-  for (auto& [name, intensity] : lot.units)
+  for (auto& [name, intensity] : chosen.units)
     intensity *= std::min(1.0, most_intensity / sum);
 
-  lot.camera = camera_with(options.size[0], options.size[1], random.between(25, 50) * degree);
+  chosen.camera = camera_with(options.size[0], options.size[1], random.between(25, 50) * degree);
   std::array<double, 3> target{};
   double extent = 0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -102,20 +102,20 @@ Lot draw(Random random, const DatasetOptions& options, const Model& model, const
   }
   // the face fills 45 to 90 % of the shorter side
   const double distance =
-      lot.camera.fx * extent / (random.between(0.45, 0.9) * std::min(options.size[0], options.size[1]));
+      chosen.camera.fx * extent / (random.between(0.45, 0.9) * std::min(options.size[0], options.size[1]));
   const auto from = direction(random.between(-50, 50) * degree, random.between(-25, 25) * degree);
-  lot.camera.to_camera =
+  chosen.camera.to_camera =
       look_at({ target[0] + distance * from[0], target[1] + distance * from[1], target[2] + distance * from[2] },
               target, random.between(-15, 15) * degree);
 
-  lot.light.key = direction(random.between(-70, 70) * degree, random.between(-10, 60) * degree);
-  lot.light.fill = direction(random.between(-90, 90) * degree, random.between(-10, 60) * degree);
-  lot.light.key_strength = random.between(0.45, 0.85);
-  lot.light.fill_strength = random.between(0.1, 0.35);
-  lot.light.ambient = random.between(0.25, 0.45);
-  for (float& channel : lot.light.background)
+  chosen.light.key = direction(random.between(-70, 70) * degree, random.between(-10, 60) * degree);
+  chosen.light.fill = direction(random.between(-90, 90) * degree, random.between(-10, 60) * degree);
+  chosen.light.key_strength = random.between(0.45, 0.85);
+  chosen.light.fill_strength = random.between(0.1, 0.35);
+  chosen.light.ambient = random.between(0.25, 0.45);
+  for (float& channel : chosen.light.background)
     channel = static_cast<float>(random.between(0, 1));
-  return lot;
+  return chosen;
 }
 
 Json json_of(const RigidTransform& pose)
@@ -123,19 +123,19 @@ Json json_of(const RigidTransform& pose)
   return { { "rotation", pose.rotation }, { "translation_m", pose.translation } };
 }
 
-Json labels_of(const Model& model, const Lot& lot, const Renderer& renderer, const SkinState& skin,
+Json labels_of(const Model& model, const RandomFrame& chosen, const Renderer& renderer, const SkinState& skin,
                const PosedFace& face)
 {
-  const PinholeCamera& camera = lot.camera;
+  const PinholeCamera& camera = chosen.camera;
   Json json;
   json["camera"] = { { "fx", camera.fx }, { "fy", camera.fy }, { "cx", camera.cx }, { "cy", camera.cy } };
   json["face_to_camera"] = json_of(camera.to_camera);
-  json["light"] = { { "key", lot.light.key },
-                    { "key_strength", lot.light.key_strength },
-                    { "fill", lot.light.fill },
-                    { "fill_strength", lot.light.fill_strength },
-                    { "ambient", lot.light.ambient } };
-  json["action_units"] = lot.units;
+  json["light"] = { { "key", chosen.light.key },
+                    { "key_strength", chosen.light.key_strength },
+                    { "fill", chosen.light.fill },
+                    { "fill_strength", chosen.light.fill_strength },
+                    { "ambient", chosen.light.ambient } };
+  json["action_units"] = chosen.units;
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
     json["activation"][model.muscles[m].name] = face.activation()[m];
   for (std::size_t b = 0; b < model.bones.size(); ++b)
@@ -199,7 +199,7 @@ void write_dataset(const DatasetOptions& options)
   std::ofstream lines(list, options.first > 0 ? std::ios::app : std::ios::trunc);
 
   PosedFace face(model, options.solver);
-  const FaceLook look(*model, face.rest());
+  const FaceAppearance appearance(*model, face.rest());
   std::array<double, 3> low{ 1, 1, 1 }, high{ -1, -1, -1 };
   for (const auto& vertex : face.rest().vertices)
     for (std::size_t i = 0; i < 3; ++i)
@@ -213,17 +213,17 @@ void write_dataset(const DatasetOptions& options)
   const double begin = wall_seconds();
   for (int frame = options.first; frame < options.first + options.frames; ++frame)
   {
-    const Lot lot = draw(Random(options.seed, frame), options, *model, low, high);
+    const RandomFrame chosen = choose(Random(options.seed, frame), options, *model, low, high);
     try
     {
       const SkinState& skin = face.take(
-          action_unit_controls(*model, lot.units), options.seconds,
+          action_unit_controls(*model, chosen.units), options.seconds,
           [&](double done) { progress.update("drawing", (frame - options.first + 0.9 * done) / options.frames); });
-      const Renderer renderer(look.scene(skin, face.controls()), lot.camera);
+      const Renderer renderer(appearance.scene(skin, face.controls()), chosen.camera);
       Json line{ { "frame", frame } };
-      line["images"] = write_images(options.folder, frame, renderer.images(lot.light, options.samples), options.size[0],
-                                    options.size[1]);
-      line.update(labels_of(*model, lot, renderer, skin, face));
+      line["images"] = write_images(options.folder, frame, renderer.images(chosen.light, options.samples),
+                                    options.size[0], options.size[1]);
+      line.update(labels_of(*model, chosen, renderer, skin, face));
       // a line that is there names images that are complete
       lines << line.dump() + "\n" << std::flush;
       if (!lines)

@@ -4,7 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/study/table.hpp"
 
@@ -206,8 +206,8 @@ void write_gltf(const GltfOptions& options)
     poses.push_back(options.expressions ? expression_controls(*model, name)
                                         : action_unit_controls(*model, { { name, 1.0 } }));
   PosedFace face(model, options.solver);
-  const FaceLook look(*model, face.rest());
-  const std::vector<RenderMesh> rest = meshes_of(look.scene(face.rest(), rest_controls(*model)));
+  const FaceAppearance appearance(*model, face.rest());
+  const std::vector<RenderMesh> rest = meshes_of(appearance.scene(face.rest(), rest_controls(*model)));
   Glb glb;
   Json primitives = Json::array();
   for (const RenderMesh& mesh : rest)
@@ -221,7 +221,7 @@ void write_gltf(const GltfOptions& options)
     try
     {
       const SkinState& skin = face.take(poses[p], options.seconds, watch);
-      now = meshes_of(look.scene(skin, face.controls()));
+      now = meshes_of(appearance.scene(skin, face.controls()));
     }
     catch (const Unstable& error)
     {

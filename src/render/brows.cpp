@@ -1,4 +1,4 @@
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <algorithm>
 #include <array>

@@ -120,8 +120,7 @@ struct Renderer::Implementation
   PinholeCamera camera;
   std::unique_ptr<RTCSceneTy, decltype(&rtcReleaseScene)> tree{ rtcNewScene(device()), rtcReleaseScene };
 
-  template <class Number>
-  void attach(RTCGeometryType type, RTCFormat format, const Number* vertices, std::size_t stride, std::size_t count,
+  void attach(RTCGeometryType type, RTCFormat format, const void* vertices, std::size_t stride, std::size_t count,
               const RenderMesh* mesh);
   bool is_hidden(const Vector& from, const Vector& direction, double far) const;
   std::optional<Hit> trace(double u, double v) const;
@@ -130,9 +129,8 @@ struct Renderer::Implementation
   Vector shaded(const Hit& hit, const Light& light, const Vector& key) const;
 };
 
-template <class Number>
-void Renderer::Implementation::attach(RTCGeometryType type, RTCFormat format, const Number* vertices,
-                                      std::size_t stride, std::size_t count, const RenderMesh* mesh)
+void Renderer::Implementation::attach(RTCGeometryType type, RTCFormat format, const void* vertices, std::size_t stride,
+                                      std::size_t count, const RenderMesh* mesh)
 {
   RTCGeometry geometry = rtcNewGeometry(device(), type);
   // an empty mesh keeps its number

@@ -1,7 +1,7 @@
 #include "frontalis/ros/conversions.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 

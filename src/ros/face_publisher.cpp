@@ -1,7 +1,7 @@
 #include "frontalis/ros/face_publisher.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <boost/make_shared.hpp>
 

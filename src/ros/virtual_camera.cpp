@@ -177,11 +177,11 @@ SkinState VirtualCamera::skin() const
 
 // Colours and labels follow from the places of landmarks at rest. Those are not published: they are taken to be where
 // the vertices rest that are closest to the landmarks now.
-void VirtualCamera::find_look(const SkinState& skin)
+void VirtualCamera::find_appearance(const SkinState& skin)
 {
-  looked_at_ = inputs_.topology;
+  appearance_of_ = inputs_.topology;
   std::vector<std::array<float, 3>> rest;
-  for (const auto& p : looked_at_->vertices)
+  for (const auto& p : appearance_of_->vertices)
     rest.push_back({ static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) });
   std::vector<std::array<float, 3>> places;
   for (const auto& landmark : skin.landmarks)
@@ -192,9 +192,9 @@ void VirtualCamera::find_look(const SkinState& skin)
                                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
     places.push_back(rest[static_cast<std::size_t>(closest - skin.vertices.begin())]);
   }
-  look_ = skin_look(inputs_.state->landmark, places, rest);
+  appearance_ = skin_appearance(inputs_.state->landmark, places, rest);
   triangles_.clear();
-  for (const auto& triangle : looked_at_->triangles)
+  for (const auto& triangle : appearance_of_->triangles)
   {
     const auto& corners = triangle.vertex_indices;
     triangles_.push_back({ static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
@@ -257,12 +257,12 @@ void VirtualCamera::take_picture()
   try
   {
     const SkinState skin = this->skin();
-    if (looked_at_ != inputs_.topology)
-      find_look(skin);
+    if (appearance_of_ != inputs_.topology)
+      find_appearance(skin);
     RenderScene scene;
-    scene.meshes.push_back({ skin.vertices, triangles_, skin.normals, look_.colours, look_.labels });
-    if (look_.mouth)
-      scene.balls.push_back(*look_.mouth);
+    scene.meshes.push_back({ skin.vertices, triangles_, skin.normals, appearance_.colours, appearance_.labels });
+    if (appearance_.mouth)
+      scene.balls.push_back(*appearance_.mouth);
     for (const auto& marker : inputs_.eyes->markers)
     {
       const auto& p = marker.pose.position;

@@ -1,6 +1,6 @@
 #include "program.hpp"
 
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <png.h>
 

@@ -1,5 +1,5 @@
 #include "frontalis/error.hpp"
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/render/renderer.hpp"
 
 #include <gtest/gtest.h>
@@ -217,26 +217,26 @@ TEST(Renderer, BacksOfSurfacesAndEmptyScenesAreShownAsSuch)
   EXPECT_THROW(look_at({ 0, 0, 1 }, { 0, 0, 0 }), Error);
 }
 
-TEST(FaceLook, LabelsFollowTheLandmarks)
+TEST(FaceAppearance, LabelsFollowTheLandmarks)
 {
   const std::vector<std::string> landmarks{ "upper_lip", "lower_lip",  "mouth_corner_left",
                                             "chin",      "cheek_left", "cheek_right" };
   const std::vector<std::array<float, 3>> places{ { 0.01F, 0, 0.01F },    { 0.01F, 0, -0.01F }, { 0, 0.025F, 0 },
                                                   { 0.005F, 0, -0.035F }, { -0.01F, 0.05F, 0 }, { -0.01F, -0.05F, 0 } };
-  const SkinLook look = skin_look(landmarks, places,
-                                  { { 0.012F, 0, 0.005F },
-                                    { 0.012F, 0, -0.005F },
-                                    { 0.005F, 0.001F, -0.036F },
-                                    { -0.01F, 0.05F, 0.01F },
-                                    { -0.01F, -0.05F, 0.01F },
-                                    { 0, 0, 0.2F } });
+  const SkinAppearance appearance = skin_appearance(landmarks, places,
+                                                    { { 0.012F, 0, 0.005F },
+                                                      { 0.012F, 0, -0.005F },
+                                                      { 0.005F, 0.001F, -0.036F },
+                                                      { -0.01F, 0.05F, 0.01F },
+                                                      { -0.01F, -0.05F, 0.01F },
+                                                      { 0, 0, 0.2F } });
   const std::vector<std::string> names = label_names();
   std::vector<std::string> found;
-  for (const std::uint8_t label : look.labels)
+  for (const std::uint8_t label : appearance.labels)
     found.push_back(names.at(label));
   EXPECT_EQ(found, (std::vector<std::string>{ "lip_upper", "lip_lower", "chin", "cheek_left", "cheek_right", "skin" }));
-  ASSERT_TRUE(look.mouth);
-  EXPECT_LT(look.colours[0][1], look.colours[5][1]);
+  ASSERT_TRUE(appearance.mouth);
+  EXPECT_LT(appearance.colours[0][1], appearance.colours[5][1]);
 }
 
 }  // namespace

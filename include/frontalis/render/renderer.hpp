@@ -34,7 +34,7 @@ PinholeCamera camera_with(int width, int height, double field_of_view);
 /// turned by `roll` about its axis [rad]. Throws Error if the two points are one, or one is above the other.
 RigidTransform look_at(const std::array<double, 3>& position, const std::array<double, 3>& target, double roll = 0);
 
-/// What a pixel shows. Labels from skin_label on are regions of the skin (skin_look.hpp).
+/// What a pixel shows. Labels from skin_label on are regions of the skin (skin_appearance.hpp).
 enum Label : std::uint8_t
 {
   background_label,

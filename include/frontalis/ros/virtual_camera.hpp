@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <frontalis/SimulationState.h>
 #include <geometry_msgs/PoseArray.h>
@@ -50,7 +50,7 @@ private:
   bool is_wanted() const;
   void take_picture();
   SkinState skin() const;
-  void find_look(const SkinState& skin);
+  void find_appearance(const SkinState& skin);
   void add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene) const;
   RigidTransform transform(const std::string& to, const std::string& from, const ros::Time& stamp) const;
   void publish(const Images& images, const std_msgs::Header& header);
@@ -64,8 +64,8 @@ private:
   double rate_ = 10;  ///< pictures per second of the stamps; 0: every frame
   Inputs inputs_;
   ros::Time pictured_;
-  shape_msgs::Mesh::ConstPtr looked_at_;  ///< the topology that look_ and triangles_ are of
-  SkinLook look_;
+  shape_msgs::Mesh::ConstPtr appearance_of_;  ///< the topology that appearance_ and triangles_ are of
+  SkinAppearance appearance_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
 
   tf2_ros::Buffer buffer_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <string>
 #include <utility>
@@ -21,7 +21,7 @@ public:
   std::vector<std::uint8_t> draw(const SkinState& skin, const Controls& controls) const;
 
 private:
-  FaceLook look_;
+  FaceAppearance appearance_;
   PinholeCamera camera_;
 };
 

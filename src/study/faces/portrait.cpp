@@ -22,7 +22,7 @@ constexpr double margin = 1.08;   // of the picture, over the skin at rest
 
 }  // namespace
 
-Portrait::Portrait(const Model& model, const SkinState& rest) : look_(model, rest)
+Portrait::Portrait(const Model& model, const SkinState& rest) : appearance_(model, rest)
 {
   std::array<double, 2> low{ 1, 1 }, high{ -1, -1 };
   for (const auto& v : rest.vertices)
@@ -39,7 +39,7 @@ Portrait::Portrait(const Model& model, const SkinState& rest) : look_(model, res
 
 std::vector<std::uint8_t> Portrait::draw(const SkinState& skin, const Controls& controls) const
 {
-  const Images images = Renderer(look_.scene(skin, controls), camera_).images({}, samples);
+  const Images images = Renderer(appearance_.scene(skin, controls), camera_).images({}, samples);
   std::vector<std::uint8_t> picture(3 * images.colour.size());
   std::memcpy(picture.data(), images.colour.data(), picture.size());
   return picture;

@@ -1,4 +1,4 @@
-#include "frontalis/render/face_look.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include "frontalis/model/body_shape.hpp"
 #include "frontalis/runner/named_controls.hpp"
@@ -19,56 +19,50 @@ constexpr double lip_border = 1.5e-3;  // [m] over which skin turns into lip
 constexpr double farthest = 40e-3;     // [m] from a part's landmarks; skin farther away belongs to no part
 constexpr float hairy = 0.3F;          // what hair covers by more than this is labelled as brow
 
-// Parts of the skin: landmarks (without a side) of which one must be the closest, and whether there are two sides.
-// Parts without landmarks are those that are painted.
+// Parts of the skin: a vertex belongs to the part that has the closest landmark. Lips and brows are painted.
 struct Part
 {
   const char* name;
-  bool sided;
   std::vector<std::string> landmarks;
 };
 const std::vector<Part>& parts()
 {
-  static const std::vector<Part> all{ { "skin", false, {} },
-                                      { "forehead", false, { "glabella", "brow_medial", "brow_mid", "brow" } },
-                                      { "nose", false, { "sellion", "nose_tip", "ala", "subnasale" } },
-                                      { "mouth", false, { "upper_lip", "lower_lip", "mouth_corner" } },
-                                      { "chin", false, { "chin" } },
-                                      { "lip_upper", false, {} },
-                                      { "lip_lower", false, {} },
-                                      { "brow", true, {} },
-                                      { "lids", true, { "lid_upper", "lid_lower" } },
-                                      { "cheek", true, { "malar", "cheek" } } };
+  static const std::vector<Part> all{ { "skin", {} },
+                                      { "forehead",
+                                        { "glabella", "brow_medial_left", "brow_medial_right", "brow_mid_left",
+                                          "brow_mid_right", "brow_left", "brow_right" } },
+                                      { "nose", { "sellion", "nose_tip", "ala_left", "ala_right", "subnasale" } },
+                                      { "mouth",
+                                        { "upper_lip", "lower_lip", "mouth_corner_left", "mouth_corner_right" } },
+                                      { "chin", { "chin" } },
+                                      { "lip_upper", {} },
+                                      { "lip_lower", {} },
+                                      { "brow_left", {} },
+                                      { "brow_right", {} },
+                                      { "lids_left", { "lid_upper_left", "lid_lower_left" } },
+                                      { "lids_right", { "lid_upper_right", "lid_lower_right" } },
+                                      { "cheek_left", { "malar_left", "cheek_left" } },
+                                      { "cheek_right", { "malar_right", "cheek_right" } } };
   return all;
 }
 
-// labels of sided parts: left, then right
-std::uint8_t label_of(const std::string& part, bool right = false)
+template <class Condition>
+std::uint8_t label_of(const Condition& condition)
 {
-  std::size_t label = skin_label;
-  for (const Part& known : parts())
-  {
-    if (known.name == part)
-      return static_cast<std::uint8_t>(label + (known.sided && right ? 1 : 0));
-    label += known.sided ? 2 : 1;
-  }
-  return skin_label;
+  const auto found = std::find_if(parts().begin(), parts().end(), condition);
+  return static_cast<std::uint8_t>(skin_label + (found == parts().end() ? 0 : found - parts().begin()));
 }
 
-bool ends_with(const std::string& text, const std::string& end)
+std::uint8_t label_of_part(const std::string& name)
 {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+  return label_of([&](const Part& part) { return part.name == name; });
 }
 
-// label of the part that a landmark stands for; the label of skin: of none
-std::uint8_t part_of(const std::string& landmark)
+// label of the part that has a landmark; that of skin if none has it
+std::uint8_t label_of_landmark(const std::string& landmark)
 {
-  const bool right = ends_with(landmark, "_right"), sided = right || ends_with(landmark, "_left");
-  const std::string plain = sided ? landmark.substr(0, landmark.rfind('_')) : landmark;
-  for (const Part& part : parts())
-    if (std::find(part.landmarks.begin(), part.landmarks.end(), plain) != part.landmarks.end())
-      return label_of(part.name, right);
-  return skin_label;
+  return label_of([&](const Part& part)
+                  { return std::count(part.landmarks.begin(), part.landmarks.end(), landmark) > 0; });
 }
 
 Point blend(const Point& a, const Point& b, double share)
@@ -83,16 +77,12 @@ std::vector<std::string> label_names()
 {
   std::vector<std::string> names{ "background", "inside", "eye", "body" };
   for (const Part& part : parts())
-    for (const char* side : { "_left", "_right" })
-      if (part.sided)
-        names.push_back(part.name + std::string(side));
-      else if (names.back() != part.name)
-        names.emplace_back(part.name);
+    names.emplace_back(part.name);
   return names;
 }
 
-SkinLook skin_look(const std::vector<std::string>& landmarks, const std::vector<Point>& places,
-                   const std::vector<Point>& vertices)
+SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const std::vector<Point>& places,
+                               const std::vector<Point>& vertices)
 {
   const auto find = [&](const std::string& name)
   {
@@ -102,16 +92,16 @@ SkinLook skin_look(const std::vector<std::string>& landmarks, const std::vector<
   const Point *upper = find("upper_lip"), *lower = find("lower_lip"), *corner = find("mouth_corner_left"),
               *chin = find("chin");
   const bool has_mouth = upper && lower && corner && chin;
-  SkinLook look{ std::vector<Point>(vertices.size(), skin_colour),
-                 std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
+  SkinAppearance appearance{ std::vector<Point>(vertices.size(), skin_colour),
+                             std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
   if (has_mouth)
   {
     const double radius = double((*corner)[2]) - (*chin)[2];
-    look.mouth =
+    appearance.mouth =
         RenderBall{ { double((*corner)[0]) - radius - 6e-3, 0, (*corner)[2] }, radius, inside_colour, inside_label };
   }
   std::vector<std::uint8_t> part(landmarks.size());
-  std::transform(landmarks.begin(), landmarks.end(), part.begin(), part_of);
+  std::transform(landmarks.begin(), landmarks.end(), part.begin(), label_of_landmark);
   const std::vector<float> hair = brow_cover(landmarks, places, vertices);
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
@@ -122,7 +112,7 @@ SkinLook skin_look(const std::vector<std::string>& landmarks, const std::vector<
           part[l] != skin_label && away < closest)
       {
         closest = away;
-        look.labels[v] = part[l];
+        appearance.labels[v] = part[l];
       }
     // lips are arcs from corner to corner, as high as the landmarks in their middle are
     if (has_mouth && p[0] > (*corner)[0] - 2e-3 && std::abs(p[1]) < (*corner)[1])
@@ -130,15 +120,15 @@ SkinLook skin_look(const std::vector<std::string>& landmarks, const std::vector<
       const double bow = 1 - std::pow(p[1] / (*corner)[1], 2), from_corner = double(p[2]) - (*corner)[2];
       const double reach = bow * ((from_corner > 0 ? (*upper)[2] : (*lower)[2]) - double((*corner)[2]));
       const double inside = (std::abs(reach) - std::abs(from_corner)) / lip_border;
-      look.colours[v] = blend(skin_colour, lip_colour, std::clamp(inside + 0.5, 0.0, 1.0));
+      appearance.colours[v] = blend(skin_colour, lip_colour, std::clamp(inside + 0.5, 0.0, 1.0));
       if (inside > 0)
-        look.labels[v] = label_of(from_corner > 0 ? "lip_upper" : "lip_lower");
+        appearance.labels[v] = label_of_part(from_corner > 0 ? "lip_upper" : "lip_lower");
     }
-    look.colours[v] = blend(look.colours[v], brow_colour, hair[v]);
+    appearance.colours[v] = blend(appearance.colours[v], brow_colour, hair[v]);
     if (hair[v] > hairy)
-      look.labels[v] = label_of("brow", p[1] < 0);
+      appearance.labels[v] = label_of_part(p[1] < 0 ? "brow_right" : "brow_left");
   }
-  return look;
+  return appearance;
 }
 
 std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion)
@@ -187,17 +177,18 @@ RenderBall socket_of(const RenderBall& eyeball)
   return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, inside_colour, inside_label };
 }
 
-FaceLook::FaceLook(const Model& model, const SkinState& rest)
-    : model_(model), look_(skin_look(model.landmarks, rest.landmarks, rest.vertices))
+FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
+    : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices))
 {
 }
 
-RenderScene FaceLook::scene(const SkinState& skin, const Controls& controls) const
+RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& controls) const
 {
   RenderScene scene;
-  scene.meshes.push_back({ skin.vertices, model_.skin.triangles, skin.normals, look_.colours, look_.labels });
-  if (look_.mouth)
-    scene.balls.push_back(*look_.mouth);
+  scene.meshes.push_back(
+      { skin.vertices, model_.skin.triangles, skin.normals, appearance_.colours, appearance_.labels });
+  if (appearance_.mouth)
+    scene.balls.push_back(*appearance_.mouth);
   std::vector<bool> is_ball(model_.bones.size(), false);
   for (const Eyeball& eye :
        eyeballs(model_, [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); }))
