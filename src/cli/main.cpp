@@ -43,6 +43,8 @@ int main(int argc, char** argv)
   frontalis::add_effects_command(app);
   frontalis::add_verify_command(app);
   frontalis::add_faces_command(app);
+  frontalis::add_dataset_command(app);
+  frontalis::add_gltf_command(app);
   frontalis::add_fit_command(app);
   frontalis::add_retarget_command(app);
   frontalis::add_accuracy_command(app);

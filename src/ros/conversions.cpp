@@ -1,6 +1,7 @@
 #include "frontalis/ros/conversions.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 namespace frontalis
 {
@@ -39,14 +41,17 @@ void set(geometry_msgs::Quaternion& message, const tf2::Quaternion& rotation)
 
 }  // namespace
 
-std::vector<std::array<float, 3>> rest_in_face(const Model& model)
+SkinState rest_in_face(const Model& model)
 {
   SkinState skin;
-  skin.vertices.reserve(model.skin.vertices.size());
-  for (const auto& [x, y, z] : model.skin.vertices)
-    skin.vertices.push_back({ { static_cast<float>(x), static_cast<float>(y), static_cast<float>(z) } });
+  const auto narrow = [](const std::array<double, 3>& p) -> std::array<float, 3> {
+    return { { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) } };
+  };
+  std::transform(model.skin.vertices.begin(), model.skin.vertices.end(), std::back_inserter(skin.vertices), narrow);
+  std::transform(model.landmark_positions.begin(), model.landmark_positions.end(), std::back_inserter(skin.landmarks),
+                 narrow);
   to_face_frame(model, skin);
-  return skin.vertices;
+  return skin;
 }
 
 bool is_publishable(const SkinState& skin, const Model& model)
@@ -58,7 +63,7 @@ bool is_publishable(const SkinState& skin, const Model& model)
 shape_msgs::Mesh to_mesh(const Model& model)
 {
   shape_msgs::Mesh out;
-  for (const auto& vertex : rest_in_face(model))
+  for (const auto& vertex : rest_in_face(model).vertices)
     set(out.vertices.emplace_back(), vertex);
   for (const auto& triangle : model.skin.triangles)
     std::copy(triangle.begin(), triangle.end(), out.triangles.emplace_back().vertex_indices.begin());
@@ -246,46 +251,26 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
 
 visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones)
 {
-  // A white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil. Radii of the
-  // balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of 11.7 mm, a
-  // cornea with a radius of 7.8 mm and a pupil of 4.4 mm on a ball of 24.2 mm.
-  struct Ball
-  {
-    double radius, rim;
-    std::array<float, 3> colour;
-  };
-  constexpr std::array<Ball, 3> balls{ { { 1, 0, { { 0.92f, 0.90f, 0.87f } } },
-                                         { 0.645, 0.483, { { 0.30f, 0.20f, 0.12f } } },
-                                         { 0.32, 0.18, { { 0.02f, 0.02f, 0.02f } } } } };
   visualization_msgs::MarkerArray out;
-  for (const ConstraintSurface& eye : model.constraint_surfaces)
-  {
-    const auto bone = static_cast<std::size_t>(eye.bone);
-    if (eye.bone < 0 || eye.field.radius <= 0 || bone >= bones.size() || model.bones[bone].compare(0, 3, "eye") != 0)
-      continue;
-    const std::array<double, 3> centre = model.to_face(eye.field.origin);
-    double ahead = 0, radius = 1;  // of the ball before
-    for (std::size_t n = 0; n < balls.size(); ++n)
+  // a frame without bones has no eyes
+  if (bones.size() != model.bones.size())
+    return out;
+  for (const Eyeball& eye : eyeballs(model, [&](std::size_t bone) { return bones[bone].pose; }))
+    for (const RenderBall& ball : eye.balls)
     {
-      const Ball& ball = balls[n];
-      const auto from_rim = [&](double r) { return std::sqrt(r * r - ball.rim * ball.rim); };
-      ahead += from_rim(radius) - from_rim(ball.radius);
-      radius = ball.radius;
       visualization_msgs::Marker& marker = out.markers.emplace_back();
-      marker.ns = model.bones[bone];
-      marker.id = static_cast<std::int32_t>(n);
+      marker.ns = model.bones[eye.bone];
+      marker.id = static_cast<std::int32_t>(&ball - eye.balls.data());
       marker.type = visualization_msgs::Marker::SPHERE;
       marker.action = visualization_msgs::Marker::ADD;
-      set(marker.pose.position,
-          bones[bone].pose(std::array<double, 3>{ { centre[0] + ahead * eye.field.radius, centre[1], centre[2] } }));
+      set(marker.pose.position, ball.centre);
       marker.pose.orientation.w = 1;
-      marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius * eye.field.radius;
+      marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius;
       marker.color.r = ball.colour[0];
       marker.color.g = ball.colour[1];
       marker.color.b = ball.colour[2];
       marker.color.a = 1;
     }
-  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "frontalis/ros/face_publisher.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <boost/make_shared.hpp>
 
@@ -59,8 +60,9 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   model_ = std::move(model);
   face_frame_ = face_frame;
   backend_ = backend;
-  shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(*model_));
-  rest_ = rest_in_face(*model_);
+  const SkinState rest = rest_in_face(*model_);
+  rest_ = rest.vertices;
+  shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(model_->landmarks, rest.landmarks, rest_));
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_));
   landmark_vertices_ = landmark_vertices(*model_);

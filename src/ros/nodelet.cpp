@@ -1,4 +1,5 @@
 #include "frontalis/ros/face_node.hpp"
+#include "frontalis/ros/virtual_camera.hpp"
 
 #include <ros/ros.h>
 
@@ -16,6 +17,15 @@ class FaceNodelet : public nodelet::Nodelet
   std::unique_ptr<FaceNode> face_;
 };
 
+/// The nodelet frontalis/camera.
+class CameraNodelet : public nodelet::Nodelet
+{
+  void onInit() override { camera_ = std::make_unique<VirtualCamera>(getNodeHandle(), getPrivateNodeHandle()); }
+
+  std::unique_ptr<VirtualCamera> camera_;
+};
+
 }  // namespace frontalis
 
 PLUGINLIB_EXPORT_CLASS(frontalis::FaceNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(frontalis::CameraNodelet, nodelet::Nodelet)

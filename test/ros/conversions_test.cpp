@@ -21,7 +21,7 @@ namespace
 SkinState lifted(const Model& model, float lift)
 {
   SkinState skin;
-  skin.vertices = rest_in_face(model);
+  skin.vertices = rest_in_face(model).vertices;
   for (auto& vertex : skin.vertices)
     vertex[2] += lift;
   skin.normals.assign(skin.vertices.size(), { { 0, 0, 1 } });
@@ -38,7 +38,7 @@ float value(const sensor_msgs::PointCloud2& cloud, std::size_t point, std::size_
 
 TEST(Conversions, RestIsInTheFaceFrame)
 {
-  const auto rest = rest_in_face(small_model());
+  const auto rest = rest_in_face(small_model()).vertices;
   ASSERT_EQ(rest.size(), 4u);
   EXPECT_NEAR(rest[1][0], 1, 1e-6);
   EXPECT_NEAR(rest[1][1], 0.01, 1e-6);
@@ -83,7 +83,7 @@ TEST(Conversions, PointCloudHasPositionNormalAndDisplacement)
   const Model model = small_model();
   sensor_msgs::PointCloud2 cloud;
   const SkinState skin = lifted(model, 0.002f);
-  to_point_cloud(skin, distances(skin, rest_in_face(model)), SkinColours(4, { { 1, 0.2f, 0 } }), cloud);
+  to_point_cloud(skin, distances(skin, rest_in_face(model).vertices), SkinColours(4, { { 1, 0.2f, 0 } }), cloud);
   EXPECT_EQ(cloud.width, 4u);
   EXPECT_EQ(cloud.height, 1u);
   EXPECT_EQ(cloud.data.size(), cloud.row_step);

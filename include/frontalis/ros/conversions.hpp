@@ -18,8 +18,8 @@
 namespace frontalis
 {
 
-/// Positions of the skin's vertices at rest, in the face frame [m].
-std::vector<std::array<float, 3>> rest_in_face(const Model& model);
+/// The skin's vertices and landmarks at rest, in the face frame [m]; without normals.
+SkinState rest_in_face(const Model& model);
 
 /// Whether the skin has as many vertices, normals and landmarks as the model, all of them finite.
 bool is_publishable(const SkinState& skin, const Model& model);

@@ -1,4 +1,4 @@
-#include "frontalis/ros/shading.hpp"
+#include "frontalis/render/face_appearance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,7 @@ using Point = std::array<double, 3>;
 
 constexpr double half_width = 4.0e-3;     // half the width of the band at its inner end [m]
 constexpr double inner_length = 9.0e-3;   // length of the band beyond the innermost landmark [m]
+constexpr double bare = 12e-3;            // distance from the midline within which the band does not extend [m]
 constexpr double outer_length = 11.0e-3;  // length of the band beyond the outermost landmark [m]
 constexpr double density = 0.85;          // fraction of the skin that hair covers in the middle of the band
 
@@ -25,30 +26,30 @@ Point blend(const Point& a, const Point& b, double share)
 
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// Distance from the face's middle plane [m].
-double distance_from_middle(const Model& model, const Point& local) { return std::abs(model.to_face(local)[1]); }
+Point wide(const std::array<float, 3>& p) { return { { p[0], p[1], p[2] } }; }
 
 /// The line of the brow on one side, from its inner to its outer end; empty if there are fewer than two landmarks.
-std::vector<Point> brow_line(const Model& model, const std::string& side)
+std::vector<Point> brow_line(const std::vector<std::string>& landmarks, const std::vector<std::array<float, 3>>& places,
+                             const std::string& side)
 {
   std::vector<Point> points;
-  for (std::size_t landmark = 0; landmark < model.landmarks.size(); ++landmark)
+  for (std::size_t landmark = 0; landmark < landmarks.size(); ++landmark)
   {
-    const std::string& name = model.landmarks[landmark];
+    const std::string& name = landmarks[landmark];
     if (name.rfind("brow", 0) == 0 && name.size() > side.size() &&
         name.compare(name.size() - side.size(), side.size(), side) == 0)
-      points.push_back(model.landmark_positions[landmark]);
+      points.push_back(wide(places[landmark]));
   }
   if (points.size() < 2)
     return {};
   std::sort(points.begin(), points.end(),
-            [&](const Point& a, const Point& b)
-            { return distance_from_middle(model, a) < distance_from_middle(model, b); });
+            [](const Point& a, const Point& b) { return std::abs(a[1]) < std::abs(b[1]); });
   const double inner = distance(points[0], points[1]);
   const double outer = distance(points[points.size() - 2], points.back());
   if (!(inner > 0) || !(outer > 0))
     return {};
-  points.insert(points.begin(), blend(points[0], points[1], -inner_length / inner));
+  const double free = std::clamp(std::abs(points[0][1]) - bare, 1e-4, inner_length);
+  points.insert(points.begin(), blend(points[0], points[1], -free / inner));
   points.push_back(blend(points[points.size() - 2], points.back(), 1 + outer_length / outer));
   return points;
 }
@@ -78,18 +79,20 @@ std::pair<double, double> closest_on_line(const std::vector<Point>& points, cons
 
 }  // namespace
 
-std::vector<float> brow_cover(const Model& model)
+std::vector<float> brow_cover(const std::vector<std::string>& landmarks,
+                              const std::vector<std::array<float, 3>>& places,
+                              const std::vector<std::array<float, 3>>& vertices)
 {
-  std::vector<float> cover(model.skin.vertices.size(), 0.0f);
+  std::vector<float> cover(vertices.size(), 0.0f);
   for (const char* const side : { "_left", "_right" })
   {
-    const auto points = brow_line(model, side);
+    const auto points = brow_line(landmarks, places, side);
     if (points.empty())
       continue;
     for (std::size_t vertex = 0; vertex < cover.size(); ++vertex)
     {
       // hair is dense in the middle and soft at the border of the band, which is narrower towards the temple
-      const auto [off, along] = closest_on_line(points, model.skin.vertices[vertex]);
+      const auto [off, along] = closest_on_line(points, wide(vertices[vertex]));
       const double width = half_width * (1 - 0.55 * along);
       const double share = std::clamp((1.5 * width - off) / width, 0.0, 1.0);
       cover[vertex] = std::max(cover[vertex], static_cast<float>(density * share * share * (3 - 2 * share)));

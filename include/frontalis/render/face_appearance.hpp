@@ -1,0 +1,65 @@
+#pragma once
+
+#include "frontalis/render/renderer.hpp"
+#include "frontalis/solver/solver.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Colour of bodies that tissue touches.
+constexpr std::array<float, 3> body_colour{ { 0.93F, 0.91F, 0.84F } };
+
+/// Names of all labels, from label 0 on.
+std::vector<std::string> label_names();
+
+/// Colours and labels of the skin of a face. They follow from the places of its landmarks at rest (face frame, [m]).
+struct SkinAppearance
+{
+  std::vector<std::array<float, 3>> colours;  ///< of the vertices: skin, lips and painted brows
+  std::vector<std::uint8_t> labels;           ///< of the vertices: lips, brows, and the parts around named landmarks
+  std::optional<RenderBall> mouth;            ///< a dark ball behind the lips
+};
+SkinAppearance skin_appearance(const std::vector<std::string>& landmarks,
+                               const std::vector<std::array<float, 3>>& places,
+                               const std::vector<std::array<float, 3>>& vertices);
+
+/// The fraction of each skin vertex that the hair of a painted eyebrow covers, 0..1; `vertices` and `places` of the
+/// landmarks at rest. The brow of a side is a band, 8 mm wide at its inner end, along the line through the landmarks
+/// whose names begin with "brow" and end with "_left" or "_right". It is about 1 cm longer at both ends, but ends 12 mm
+/// from the midline. A side with fewer than two such landmarks has no brow. Brows show in pictures how the skin moves;
+/// they do not act on the tissue.
+std::vector<float> brow_cover(const std::vector<std::string>& landmarks,
+                              const std::vector<std::array<float, 3>>& places,
+                              const std::vector<std::array<float, 3>>& vertices);
+
+/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
+/// the eyeball, its iris and its pupil, in the face frame. `motion`: that of a bone, in the face frame.
+struct Eyeball
+{
+  std::size_t bone = 0;
+  std::array<RenderBall, 3> balls;
+};
+std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion);
+
+/// A dark ball behind an eyeball, which is seen where the lids leave a gap beside it.
+RenderBall socket_of(const RenderBall& eyeball);
+
+/// Shows a model: its skin, its eyeballs, and the bodies that its tissue touches. In the face frame.
+class FaceAppearance
+{
+public:
+  /// `rest`: the skin at rest, in the face frame, as all skins. The model must outlive this.
+  FaceAppearance(const Model& model, const SkinState& rest);
+  RenderScene scene(const SkinState& skin, const Controls& controls) const;
+
+private:
+  const Model& model_;
+  SkinAppearance appearance_;
+};
+
+}  // namespace frontalis

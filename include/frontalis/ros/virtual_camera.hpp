@@ -1,0 +1,78 @@
+#pragma once
+
+#include "frontalis/render/face_appearance.hpp"
+
+#include <frontalis/SimulationState.h>
+#include <geometry_msgs/PoseArray.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/subscriber.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <shape_msgs/Mesh.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frontalis
+{
+
+/// A virtual RGB-D camera that sees a face through the topics of its node, from where tf2 says that the camera is. For
+/// each frame of the face, at most `~rate` times per second, it publishes ~camera_info, ~rgb, ~depth, ~labels, ~points
+/// and ~landmarks with the stamp of that frame, as long as any of them has subscribers. doc/perception.md has the
+/// parameters.
+class VirtualCamera
+{
+public:
+  /// Throws Error on parameters that are out of range.
+  VirtualCamera(ros::NodeHandle handle, ros::NodeHandle private_handle);
+
+private:
+  /// The latest messages of the face.
+  struct Inputs
+  {
+    shape_msgs::Mesh::ConstPtr topology;
+    sensor_msgs::PointCloud2::ConstPtr skin;
+    geometry_msgs::PoseArray::ConstPtr landmarks;
+    SimulationState::ConstPtr state;
+    visualization_msgs::MarkerArray::ConstPtr eyes, bodies;
+  };
+
+  void place(const ros::NodeHandle& private_handle);
+  template <class Message>
+  void subscribe(ros::NodeHandle& handle, const std::string& topic, typename Message::ConstPtr Inputs::*input);
+  bool is_complete() const;
+  bool is_wanted() const;
+  void take_picture();
+  SkinState skin() const;
+  void find_appearance(const SkinState& skin);
+  void add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene) const;
+  RigidTransform transform(const std::string& to, const std::string& from, const ros::Time& stamp) const;
+  void publish(const Images& images, const std_msgs::Header& header);
+  void publish_landmarks(const Renderer& renderer, const std::vector<std::array<float, 3>>& landmarks,
+                         const std_msgs::Header& header);
+
+  std::string frame_;
+  PinholeCamera camera_;
+  Light light_;
+  int samples_ = 1;
+  double rate_ = 10;  ///< pictures per second of the stamps; 0: every frame
+  Inputs inputs_;
+  ros::Time pictured_;
+  shape_msgs::Mesh::ConstPtr appearance_of_;  ///< the topology that appearance_ and triangles_ are of
+  SkinAppearance appearance_;
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+  tf2_ros::StaticTransformBroadcaster broadcaster_;
+  ros::Publisher info_, rgb_, depth_, labels_, points_, landmarks_;
+  std::vector<ros::Subscriber> subscribers_;  ///< last, so that no callback comes before the rest is made
+};
+
+}  // namespace frontalis

@@ -1,0 +1,42 @@
+#include "cli/posed_face.hpp"
+
+#include "cli/command.hpp"
+
+#include "frontalis/runner/face_frame.hpp"
+#include "frontalis/runner/named_controls.hpp"
+
+#include <utility>
+
+namespace frontalis
+{
+
+PosedFace::PosedFace(std::shared_ptr<const Model> model, const SolverSettings& settings)
+    : model_(std::move(model)), solver_(make_solver(model_, settings)), guard_(*solver_, model_)
+{
+  read_skin(rest_);
+}
+
+void PosedFace::read_skin(SkinState& skin)
+{
+  solver_->skin(skin);
+  to_face_frame(*model_, skin);
+}
+
+const SkinState& PosedFace::take(const Controls& pose, double seconds, const std::function<void(double done)>& watch)
+{
+  constexpr int slices = 12;  // Ctrl-C is noticed between two of them
+  solver_->reset();
+  guard_.restart();
+  const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
+  for (int slice = 1; slice <= slices; ++slice)
+  {
+    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices));
+    watch(double(slice) / slices);
+    if (interrupt_requested())
+      throw Interrupted();
+  }
+  read_skin(skin_);
+  return skin_;
+}
+
+}  // namespace frontalis

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "frontalis/solver/guard.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace frontalis
+{
+
+/// A face that takes one pose after the other, each from rest, so that no pose depends on those before.
+class PosedFace
+{
+public:
+  PosedFace(std::shared_ptr<const Model> model, const SolverSettings& settings);
+
+  /// The skin at rest, in the face frame.
+  const SkinState& rest() const { return rest_; }
+  /// Moves to the pose in two thirds of the time, linearly, and stays for the rest of it; `seconds` on the clock of the
+  /// activations. Returns the skin then, in the face frame. `watch` is called with the proportion that is done. Throws
+  /// Unstable if the guard stops the motion, and Interrupted after Ctrl-C.
+  const SkinState& take(const Controls& pose, double seconds, const std::function<void(double done)>& watch);
+  /// Of the skin that was taken last.
+  const Controls& controls() const { return solver_->controls(); }
+  const std::vector<float>& activation() const { return solver_->activation(); }
+
+private:
+  void read_skin(SkinState& skin);
+
+  std::shared_ptr<const Model> model_;
+  std::unique_ptr<Solver> solver_;
+  Guard guard_;
+  SkinState rest_, skin_;
+};
+
+}  // namespace frontalis

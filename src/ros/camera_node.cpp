@@ -1,0 +1,21 @@
+#include "frontalis/ros/virtual_camera.hpp"
+
+#include <ros/ros.h>
+
+#include <exception>
+
+int main(int count, char** arguments)
+{
+  ros::init(count, arguments, "camera");
+  try
+  {
+    const frontalis::VirtualCamera camera(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::spin();
+    return 0;
+  }
+  catch (const std::exception& error)
+  {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+}

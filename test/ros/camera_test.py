@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""A virtual camera that sees a bar of tissue and a finger: its images, points and landmarks, as node and as nodelet."""
+
+import math
+import struct
+import unittest
+
+import rospy
+import rostest
+import sensor_msgs.point_cloud2
+import tf2_ros
+from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+
+from face import Face, wait
+
+TOPICS = {"camera_info": CameraInfo, "rgb": Image, "depth": Image, "labels": Image, "points": PointCloud2,
+          "landmarks": PointCloud2}
+WIDTH, HEIGHT = 160, 120
+BODY, SKIN = 3, 4
+
+
+class Camera(unittest.TestCase):
+    def setUp(self):
+        self.face = Face()
+        self.face.wait_until_ready()
+        self.assertTrue(self.face.reset().success)
+        self.frames = tf2_ros.Buffer()
+        self.listener = tf2_ros.TransformListener(self.frames)
+
+    def listen(self, camera):
+        """Subscribes to all topics of a camera. Their latest messages go to the dictionary that is returned."""
+        latest = {}
+        subscribers = [rospy.Subscriber("/%s/%s" % (camera, topic), kind, lambda message, topic=topic: latest.update({topic: message}))
+                       for topic, kind in TOPICS.items()]
+        wait(lambda: all(subscriber.get_num_connections() for subscriber in subscribers), "connections with " + camera)
+        return latest
+
+    def picture(self, latest, condition=lambda: True):
+        """Steps until the camera has sent one picture of one moment, for which the condition holds."""
+        def complete():
+            self.assertTrue(self.face.step(0.02).success)
+            rospy.sleep(0.1)
+            return len(latest) == len(TOPICS) and len({m.header.stamp for m in latest.values()}) == 1 and condition()
+        wait(complete, "a picture")
+        return dict(latest)
+
+    def test_images_points_and_landmarks_agree(self):
+        shot = self.picture(self.listen("camera"))
+        for message in shot.values():
+            self.assertEqual(message.header.frame_id, "camera_optical_frame")
+        for topic, encoding in (("rgb", "rgb8"), ("depth", "32FC1"), ("labels", "mono8")):
+            self.assertEqual(shot[topic].encoding, encoding)
+        for topic in ("camera_info", "rgb", "depth", "labels", "points"):
+            self.assertEqual((shot[topic].width, shot[topic].height), (WIDTH, HEIGHT))
+        k = shot["camera_info"].K
+        self.assertAlmostEqual(2 * math.degrees(math.atan(WIDTH / 2 / k[0])), 24, places=9)
+        self.assertEqual((k[2], k[5]), ((WIDTH - 1) / 2, (HEIGHT - 1) / 2))
+
+        depth = struct.unpack("<%df" % (WIDTH * HEIGHT), shot["depth"].data)
+        labels = shot["labels"].data
+        names = rospy.get_param("/camera/label_names")
+        self.assertEqual([names[0], names[BODY], names[SKIN]], ["background", "body", "skin"])
+        self.assertGreater(labels.count(SKIN), 1000)
+        self.assertGreater(labels.count(BODY), 1000)
+        self.assertEqual([math.isnan(z) for z in depth], [label == 0 for label in labels])
+        points = list(sensor_msgs.point_cloud2.read_points(shot["points"], field_names=("x", "y", "z")))
+        for pixel in range(0, WIDTH * HEIGHT, 7):
+            x, y, z = points[pixel]
+            self.assertTrue(z == depth[pixel] or math.isnan(z) and math.isnan(depth[pixel]))
+            if not math.isnan(z):
+                self.assertAlmostEqual(k[2] + k[0] * x / z, pixel % WIDTH, delta=1e-3)
+                self.assertAlmostEqual(k[5] + k[4] * y / z, pixel // WIDTH, delta=1e-3)
+
+        # the bar is at rest: its front is the plane 5 mm before the middle
+        self.frames.can_transform("face", "camera_optical_frame", rospy.Time(0), rospy.Duration(10))
+        pose = self.frames.lookup_transform("face", "camera_optical_frame", rospy.Time(0)).transform
+        at, q = pose.translation, pose.rotation
+        self.assertAlmostEqual(at.x, 0.12, places=9)
+        rows = {"front": None, "left": None, "behind": None}
+        fields = ("x", "y", "z", "u", "v", "visible")
+        for name, row in zip(self.face.state.landmark, sensor_msgs.point_cloud2.read_points(shot["landmarks"], fields)):
+            rows[name] = row
+        self.assertEqual([rows[name][5] for name in ("front", "left", "behind")], [1, 1, 0])
+        for name in ("front", "left"):
+            x, y, z, u, v, _ = rows[name]
+            self.assertLess(math.hypot(k[2] + k[0] * x / z - u, k[5] + k[4] * y / z - v), 0.5)
+            pixel = round(v) * WIDTH + round(u)
+            self.assertEqual(labels[pixel], SKIN)
+            self.assertAlmostEqual(depth[pixel], z, delta=5e-4)
+        u, v = round(rows["front"][3]), round(rows["front"][4])
+        ray = ((u - k[2]) / k[0], (v - k[5]) / k[4], 1)
+        # the x axis of the face frame in that of the camera is the first row of the rotation
+        forward = (1 - 2 * (q.y ** 2 + q.z ** 2), 2 * (q.x * q.y - q.w * q.z), 2 * (q.x * q.z + q.w * q.y))
+        exact = (0.005 - at.x) / sum(a * b for a, b in zip(forward, ray))
+        self.assertAlmostEqual(depth[v * WIDTH + u], exact, delta=1e-4)
+
+    def test_camera_follows_the_moving_face_as_a_nodelet_too(self):
+        first, second = self.listen("camera"), self.listen("second")
+        before = self.picture(first)
+        self.face.command(lift=1)
+        wait(lambda: self.face.target()["lift"] == 1, "the command")
+
+        def bottom(shot):
+            """The lowest row of the picture with skin."""
+            width = shot["labels"].width
+            return max(pixel for pixel, label in enumerate(shot["labels"].data) if label == SKIN) // width
+        after = self.picture(first, lambda: bottom(first) < bottom(before) - 2)
+        self.assertGreater(after["labels"].header.stamp, before["labels"].header.stamp)
+        shot = self.picture(second)
+        self.assertEqual((shot["rgb"].width, shot["rgb"].height), (640, 480))
+        self.assertGreater(shot["labels"].data.count(SKIN), 1000)
+
+
+if __name__ == "__main__":
+    rospy.init_node("camera_test")
+    rostest.rosrun("frontalis", "camera_test", Camera)
