@@ -182,6 +182,8 @@ void check_options(const RunOptions& options)
   plot_path(options.plot);
   if (options.to_equilibrium && options.solver.ledger)
     throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
+  if (const auto& box = options.wrinkles_in; !box.empty() && !(box[0] < box[2] && box[1] < box[3]))
+    throw WrongUsage("--wrinkles-in: the first corner must be to the right of the second and below it");
   check_seconds(options.seconds);
   if (!std::isfinite(options.ramp))
     throw WrongUsage("--ramp: must be a number from 0");
@@ -341,9 +343,10 @@ void add_run_command(CLI::App& app)
   command->add_flag("--wrinkles", options->wrinkles,
                     "measure the furrows that the skin has at the end and not at rest");
   command
-      ->add_option("--wrinkles-in", options->wrinkles_in,
-                   "the same in a part of the skin at rest: LEFT,UP,LEFT,UP, its lower right and upper left corners in "
-                   "the face frame [mm]")
+      ->add_option(
+          "--wrinkles-in", options->wrinkles_in,
+          "the same in a part of the skin at rest: LEFT,UP,LEFT,UP, its corners on the subject's lower right and "
+          "upper left [mm]")
       ->delimiter(',')
       ->expected(4);
   add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");

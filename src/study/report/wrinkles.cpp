@@ -109,6 +109,7 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
   return out;
 }
 
+// Where a section crosses an edge of the skin.
 struct SectionPoint
 {
   double along;  // distance across the furrows [m], by which points are in order
@@ -124,7 +125,6 @@ struct Bottom
 };
 
 // The furrows of a section: bottoms with points at least `least` higher on both sides, before the next bottom.
-
 std::vector<Bottom> bottoms_of(std::vector<SectionPoint>& section, double least)
 {
   std::sort(section.begin(), section.end(), [](const auto& a, const auto& b) { return a.along < b.along; });
