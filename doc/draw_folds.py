@@ -9,7 +9,7 @@ import sys
 import vtk
 
 COLUMNS = 3
-LIGHTS = {"above": (0.25, 0.35, 1.0), "left": (0.6, 1.0, 0.3)}
+LIGHTS = {"above": (0.25, 0.35, 1.0), "left": (0.35, 1.0, 0.2)}
 
 
 def read(path):
