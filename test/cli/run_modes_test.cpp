@@ -172,6 +172,14 @@ TEST(PublishedForehead, contracts_to_three_quarters_activation_and_its_energies_
   EXPECT_LT(std::abs(json.at("ledger_imbalance_J").get<double>()), 0.01 * json.at("ledger_muscle_J").get<double>());
 }
 
+TEST_F(RunModes, wrinkles_in_a_box_that_is_the_wrong_way_round_are_wrong_usage)
+{
+  const ProgramResult result = run_program({ "run", model, "--wrinkles-in=10,0,-10,20" });
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.errors.find("--wrinkles-in: the first corner must be to the right of the second"), std::string::npos)
+      << result.errors;
+}
+
 // voxels of 3 mm are too coarse for its folds: this is about the brow and what is printed
 TEST(LivingForehead, raises_its_brow_as_people_do_and_its_wrinkles_are_measured)
 {
