@@ -84,7 +84,7 @@ TEST_P(Waves, have_their_depth_spacing_and_direction)
   if (angle == 0)
   {
     // the middle of the box is on a ridge
-    EXPECT_EQ(found.furrows.size(), 2 * static_cast<std::size_t>(22e-3 / spacing + 0.5));
+    EXPECT_EQ(found.furrows.size(), 2 * static_cast<std::size_t>(std::lround(22e-3 / spacing)));
   }
 }
 
