@@ -41,6 +41,8 @@ struct RunOptions
   double seconds = 1;
   bool seconds_given = false;
   std::string frames, plot;
+  bool wrinkles = false;
+  std::vector<double> wrinkles_in;  ///< least left and up, greatest left and up [mm]; empty: everywhere
   bool vtp = false;
   double frame_rate = 0;  ///< [1/s]; 0: the model's frame rate
   SolverSettings solver;
@@ -187,6 +189,8 @@ void check_options(const RunOptions& options)
   plot_path(options.plot);
   if (options.to_equilibrium && options.solver.ledger)
     throw WrongUsage("--ledger: energies do not balance on the way to equilibrium");
+  if (const auto& box = options.wrinkles_in; !box.empty() && !(box[0] < box[2] && box[1] < box[3]))
+    throw WrongUsage("--wrinkles-in: the first corner must be to the right of the second and below it");
   check_seconds(options.seconds);
   if (!std::isfinite(options.ramp))
     throw WrongUsage("--ramp: must be a number from 0");
@@ -230,6 +234,18 @@ ControlCurve demo_of(RunOptions& options, const Model& model)
   if (!options.seconds_given)
     options.seconds = curve.time.back();
   return curve;
+}
+
+Wrinkles wrinkles_of(const RunOptions& options, const Model& model, const RunSummary& summary)
+{
+  WrinkleSettings settings;
+  if (const std::vector<double>& box = options.wrinkles_in; !box.empty())
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      settings.lower[1 + i] = 1e-3 * box[i];
+      settings.upper[1 + i] = 1e-3 * box[2 + i];
+    }
+  return measure_wrinkles(summary.rest, summary.end, model.skin.triangles, settings);
 }
 
 void simulate(RunOptions& options)
@@ -279,6 +295,8 @@ void simulate(RunOptions& options)
       run.folder->finish(json_of(*model, summary));
     throw;
   }
+  if (options.wrinkles || !options.wrinkles_in.empty())
+    summary.wrinkles = wrinkles_of(options, *model, summary);
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
   if (run.plot)
@@ -330,6 +348,15 @@ void add_run_command(CLI::App& app)
                     "write the frames also as skin_NNNN.vtp, with displacements, and skin.pvd for ParaView");
   command->add_option("--plot", options->plot,
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
+  command->add_flag("--wrinkles", options->wrinkles,
+                    "measure the furrows that the skin has at the end and not at rest");
+  command
+      ->add_option(
+          "--wrinkles-in", options->wrinkles_in,
+          "the same in a part of the skin at rest: LEFT,UP,LEFT,UP, its corners on the subject's lower right and "
+          "upper left [mm]")
+      ->delimiter(',')
+      ->expected(4);
   add_positive(*command, "--frame-rate", options->frame_rate, "frames per simulated second (as the model says)");
   add_solver_options(*command, options->solver);
   command

@@ -121,6 +121,29 @@ std::string vtp_of(const SkinState& skin, const SkinState& first,
          "</AppendedData>\n</VTKFile>\n";
 }
 
+void print_wrinkles(const Wrinkles& wrinkles)
+{
+  if (wrinkles.furrows.empty())
+    return fmt::print("wrinkles           none\n");
+  fmt::print("wrinkles           {} furrows, {:.1f} beside each other, {:.2f} mm deep (at most {:.2f}), {} apart\n",
+             wrinkles.furrows.size(), wrinkles.count, 1e3 * wrinkles.depth, 1e3 * wrinkles.deepest,
+             wrinkles.spacing > 0 ? fmt::format("{:.1f} mm", 1e3 * wrinkles.spacing) : "none");
+  fmt::print("                   along {:+.2f} forward, {:+.2f} left, {:+.2f} up\n", wrinkles.direction[0],
+             wrinkles.direction[1], wrinkles.direction[2]);
+  for (const Furrow& furrow : wrinkles.furrows)
+    fmt::print("furrow             {:.0f} mm long, {:.2f} mm deep, middle {:+.1f} mm left, {:+.1f} mm up\n",
+               1e3 * furrow.length, 1e3 * furrow.depth, 1e3 * furrow.middle[1], 1e3 * furrow.middle[2]);
+}
+
+nlohmann::ordered_json json_of(const Wrinkles& wrinkles)
+{
+  auto furrows = nlohmann::ordered_json::array();
+  for (const Furrow& furrow : wrinkles.furrows)
+    furrows.push_back({ { "length_m", furrow.length }, { "depth_m", furrow.depth }, { "middle_m", furrow.middle } });
+  return { { "count", wrinkles.count },       { "depth_m", wrinkles.depth },       { "deepest_m", wrinkles.deepest },
+           { "spacing_m", wrinkles.spacing }, { "direction", wrinkles.direction }, { "furrows", furrows } };
+}
+
 }  // namespace
 
 void print_set_up(const Model& model, const RunSummary& summary)
@@ -156,6 +179,8 @@ void print_result(const Model& model, const RunSummary& summary)
                100 * ratio(std::abs(summary.ledger->imbalance()), summary.ledger->largest));
   }
   print_reactions(model, summary.bodies);
+  if (summary.wrinkles)
+    print_wrinkles(*summary.wrinkles);
   if (summary.guard)
     fmt::print("guard              {} checks, went back {} times{}\n", summary.guard->checks, summary.guard->rollbacks,
                summary.guard->rollbacks > 0 ? ", the last because " + words_for(summary.guard->latest) : "");
@@ -216,6 +241,8 @@ std::string json_of(const Model& model, const RunSummary& summary)
   for (std::size_t c = 0; c < summary.bodies.size(); ++c)
     json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.bodies[c].reaction.force },
                                                          { "moment_Nm", summary.bodies[c].reaction.moment } };
+  if (summary.wrinkles)
+    json["wrinkles"] = json_of(*summary.wrinkles);
   if (const auto& guard = summary.guard)
     add({ { "guard_checks", guard->checks }, { "guard_rollbacks", guard->rollbacks }, { "guard_s", guard->seconds } });
   if (const auto& found = summary.equilibrium)

@@ -3,6 +3,7 @@
 #include "frontalis/model/model.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
+#include "frontalis/study/wrinkles.hpp"
 
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ struct RunSummary
   std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
   std::vector<BodyFrame> bodies;           ///< at the end, one per body that tissue touches
   std::optional<Equilibrium> equilibrium;  ///< empty: the run did not settle
+  std::optional<Wrinkles> wrinkles;        ///< at the end, if they were to be measured
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
 };

@@ -172,5 +172,32 @@ TEST(PublishedForehead, contracts_to_three_quarters_activation_and_its_energies_
   EXPECT_LT(std::abs(json.at("ledger_imbalance_J").get<double>()), 0.01 * json.at("ledger_muscle_J").get<double>());
 }
 
+TEST_F(RunModes, wrinkles_in_a_box_that_is_the_wrong_way_round_are_wrong_usage)
+{
+  const ProgramResult result = run_program({ "run", model, "--wrinkles-in=10,0,-10,20" });
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.errors.find("--wrinkles-in: the first corner must be to the right of the second"), std::string::npos)
+      << result.errors;
+}
+
+// voxels of 3 mm are too coarse for its folds: this is about the brow and what is printed
+TEST(LivingForehead, raises_its_brow_as_people_do_and_its_wrinkles_are_measured)
+{
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({ "run", FRONTALIS_SOURCE_DIRECTORY "/config/living_forehead.yaml", "--voxel", "3", "--expression",
+                    "raise_left_brow", "--ramp", "0.3", "--seconds", "0.5", "--wrinkles-in=-40,24,40,80", "--frames",
+                    folder / "frames" });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.output.find("wrinkles           "), std::string::npos) << result.output;
+  const nlohmann::json json = json_from(text_of(folder / "frames" + "/run.json"));
+  EXPECT_GT(json.at("landmarks").at("brow_mid_left").at("up_mm"), 5);
+  EXPECT_LT(json.at("landmarks").at("brow_mid_left").at("up_mm"), 10);
+  EXPECT_LT(std::abs(json.at("landmarks").at("brow_mid_right").at("up_mm").get<double>()), 1);
+  EXPECT_GE(json.at("wrinkles").at("count"), 0);
+  for (const auto& furrow : json.at("wrinkles").at("furrows"))
+    EXPECT_GT(furrow.at("middle_m")[1], -10e-3);
+}
+
 }  // namespace
 }  // namespace frontalis

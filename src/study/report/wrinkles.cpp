@@ -1,0 +1,324 @@
+#include "frontalis/study/wrinkles.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vector = Eigen::Vector3d;
+
+Vector vector(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
+
+// Vertices by cubes of space, so that those near a point are found at once.
+class Cells
+{
+public:
+  Cells(const std::vector<std::array<float, 3>>& points, double edge) : points_(points), edge_(edge)
+  {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      cells_[key(vector(points[i]), {})].push_back(i);
+  }
+  template <class Visit>
+  void near(const Vector& at, Visit&& visit) const
+  {
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z)
+          if (const auto cell = cells_.find(key(at, { x, y, z })); cell != cells_.end())
+            for (const std::size_t i : cell->second)
+              if ((vector(points_[i]) - at).squaredNorm() < edge_ * edge_)
+                visit(i);
+  }
+
+private:
+  std::array<int, 3> key(const Vector& p, const std::array<int, 3>& shift) const
+  {
+    const auto along = [&](int axis) { return static_cast<int>(std::floor(p[axis] / edge_)) + shift[axis]; };
+    return { along(0), along(1), along(2) };
+  }
+  const std::vector<std::array<float, 3>>& points_;
+  double edge_;
+  std::map<std::array<int, 3>, std::vector<std::size_t>> cells_;
+};
+
+std::vector<double> areas_of(const SkinState& skin, const SkinTriangles& triangles)
+{
+  std::vector<double> areas(skin.vertices.size(), 0);
+  for (const auto& t : triangles)
+  {
+    const Vector a = vector(skin.vertices[t[0]]);
+    const double area = (vector(skin.vertices[t[1]]) - a).cross(vector(skin.vertices[t[2]]) - a).norm() / 6;
+    for (const std::int32_t v : t)
+      areas[v] += area;
+  }
+  return areas;
+}
+
+// Heights over the skin without folds, and its points and normals.
+struct SmoothSkin
+{
+  std::vector<double> height;
+  std::vector<Vector> foot, normal;
+};
+
+SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, double window)
+{
+  const Cells cells(skin.vertices, 2.5 * window);
+  const std::vector<double> areas = areas_of(skin, triangles);
+  SmoothSkin out;
+  for (std::size_t i = 0; i < skin.vertices.size(); ++i)
+  {
+    const Vector at = vector(skin.vertices[i]), own = vector(skin.normals[i]);
+    std::vector<std::pair<std::size_t, double>> near;  // vertices and their weights
+    Vector normal = Vector::Zero();
+    cells.near(at,
+               [&](std::size_t j)
+               {
+                 // the other side of a thin sheet, such as a lip, does not belong to this skin
+                 if (own.dot(vector(skin.normals[j])) < -0.5)
+                   return;
+                 const double d = (vector(skin.vertices[j]) - at).norm() / window;
+                 near.emplace_back(j, areas[j] * std::exp(-0.5 * d * d));
+                 normal += near.back().second * vector(skin.normals[j]);
+               });
+    normal.normalize();
+    const Vector a = normal.unitOrthogonal(), b = normal.cross(a);
+    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Identity() * 1e-30;
+    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+    for (const auto& [j, weight] : near)
+    {
+      const Vector d = (vector(skin.vertices[j]) - at) / window;
+      const double x = d.dot(a), y = d.dot(b);
+      Eigen::Matrix<double, 6, 1> terms;
+      terms << 1, x, y, x * x, x * y, y * y;
+      matrix += weight * terms * terms.transpose();
+      right += weight * d.dot(normal) * terms;
+    }
+    const double height = -window * matrix.ldlt().solve(right)[0];
+    out.height.push_back(height);
+    out.normal.push_back(normal);
+    out.foot.push_back(at - height * normal);
+  }
+  return out;
+}
+
+// Where a section crosses an edge of the skin.
+struct SectionPoint
+{
+  double along;  // distance across the furrows [m], by which points are in order
+  double height;
+  Vector place, foot;
+  bool inside;  // of the box
+};
+
+struct Bottom
+{
+  Vector place, foot;  // [m]
+  double depth;        // [m]
+};
+
+// The furrows of a section: bottoms with points at least `least` higher on both sides, before the next bottom.
+std::vector<Bottom> bottoms_of(std::vector<SectionPoint>& section, double least)
+{
+  std::sort(section.begin(), section.end(), [](const auto& a, const auto& b) { return a.along < b.along; });
+  std::vector<std::size_t> extremes;  // a ridge, a bottom, a ridge, ...
+  std::size_t candidate = 0;
+  bool ridge = true;  // whether the candidate is one
+  for (std::size_t i = 0; i < section.size(); ++i)
+  {
+    const double change = section[i].height - section[candidate].height;
+    if (ridge ? change > 0 : change < 0)
+      candidate = i;
+    else if (std::abs(change) > least)
+    {
+      extremes.push_back(candidate);
+      candidate = i;
+      ridge = !ridge;
+    }
+  }
+  if (!section.empty())
+    extremes.push_back(candidate);
+  std::vector<Bottom> bottoms;
+  for (std::size_t e = 1; e + 1 < extremes.size(); e += 2)
+    if (const SectionPoint& p = section[extremes[e]]; p.inside)
+      bottoms.push_back(
+          { p.place, p.foot, 0.5 * (section[extremes[e - 1]].height + section[extremes[e + 1]].height) - p.height });
+  return bottoms;
+}
+
+// Where the skin crosses planes that are `distance` apart and perpendicular to `direction`, by plane.
+std::map<int, std::vector<SectionPoint>> sections_of(const SkinState& rest, const SkinState& now,
+                                                     const SmoothSkin& smooth, const std::vector<double>& heights,
+                                                     const SkinTriangles& triangles, const Vector& direction,
+                                                     const Vector& across, const WrinkleSettings& settings)
+{
+  std::map<int, std::vector<SectionPoint>> sections;
+  const auto cross_edge = [&](std::size_t v, std::size_t w)
+  {
+    const double from = vector(now.vertices[v]).dot(direction) / settings.section_distance;
+    const double to = vector(now.vertices[w]).dot(direction) / settings.section_distance;
+    for (int k = static_cast<int>(std::ceil(std::min(from, to))); k < std::max(from, to); ++k)
+    {
+      const double share = (k - from) / (to - from);
+      const auto between = [share](const Vector& a, const Vector& b) -> Vector { return a + share * (b - a); };
+      const Vector at_rest = between(vector(rest.vertices[v]), vector(rest.vertices[w]));
+      SectionPoint p{ 0, heights[v] + share * (heights[w] - heights[v]),
+                      between(vector(now.vertices[v]), vector(now.vertices[w])),
+                      between(smooth.foot[v], smooth.foot[w]), true };
+      p.along = p.foot.dot(across);
+      for (int axis = 0; axis < 3; ++axis)
+        p.inside = p.inside && at_rest[axis] >= settings.lower[axis] && at_rest[axis] <= settings.upper[axis];
+      sections[k].push_back(p);
+    }
+  };
+  for (const auto& t : triangles)
+    for (std::size_t e = 0; e < 3; ++e)
+      if (t[e] < t[(e + 1) % 3])  // the other triangle has the edge the other way round
+        cross_edge(t[e], t[(e + 1) % 3]);
+  return sections;
+}
+
+// The direction in which heights change least, and that across it in the skin: of the vertices in the box.
+std::array<Vector, 2> directions_of(const SkinState& rest, const SmoothSkin& smooth, const std::vector<double>& heights,
+                                    const SkinTriangles& triangles, const WrinkleSettings& settings)
+{
+  Eigen::Matrix3d changes = Eigen::Matrix3d::Zero();
+  Vector normal = Vector::Zero();
+  for (const auto& t : triangles)
+  {
+    const auto outside = [&](std::int32_t v)
+    {
+      const auto& p = rest.vertices[v];
+      return p[0] < settings.lower[0] || p[1] < settings.lower[1] || p[2] < settings.lower[2] ||
+             p[0] > settings.upper[0] || p[1] > settings.upper[1] || p[2] > settings.upper[2];
+    };
+    if (std::any_of(t.begin(), t.end(), outside))
+      continue;
+    const Vector a = smooth.foot[t[1]] - smooth.foot[t[0]], b = smooth.foot[t[2]] - smooth.foot[t[0]];
+    const Vector area = a.cross(b);
+    if (area.squaredNorm() == 0)
+      continue;
+    const double rise_a = heights[t[1]] - heights[t[0]], rise_b = heights[t[2]] - heights[t[0]];
+    const Vector gradient = (rise_a * b.cross(area) + rise_b * area.cross(a)) / area.squaredNorm();
+    changes += area.norm() * gradient * gradient.transpose();
+    normal += area;
+  }
+  if (changes.trace() == 0)
+    return { Vector::Zero(), Vector::Zero() };
+  const Vector across = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(changes).eigenvectors().col(2);
+  Vector along = normal.cross(across).normalized();
+  int largest = 0;
+  along.cwiseAbs().maxCoeff(&largest);
+  if (along[largest] < 0)
+    along = -along;
+  return { along, along.cross(normal).normalized() };
+}
+
+// Furrows that are being joined, section by section.
+struct OpenFurrow
+{
+  int section;  // the last one
+  Bottom last;
+  int bottoms;
+  Furrow sum;  // sums over the bottoms
+};
+
+void join(std::vector<OpenFurrow>& furrows, int section, const std::vector<Bottom>& bottoms, double farthest)
+{
+  for (const Bottom& bottom : bottoms)
+  {
+    OpenFurrow* best = nullptr;
+    double nearest = farthest;
+    for (OpenFurrow& furrow : furrows)
+      if (const double d = (furrow.last.foot - bottom.foot).norm();
+          furrow.section < section && furrow.section >= section - 2 && d < nearest)
+      {
+        nearest = d;
+        best = &furrow;
+      }
+    if (best == nullptr)
+      best = &furrows.emplace_back(OpenFurrow{ section, bottom, 0, {} });
+    best->sum.length += (best->last.foot - bottom.foot).norm();
+    best->sum.depth += bottom.depth;
+    for (int axis = 0; axis < 3; ++axis)
+      best->sum.middle[axis] += bottom.place[axis];
+    best->section = section;
+    best->last = bottom;
+    ++best->bottoms;
+  }
+}
+
+double median(std::vector<double> values)
+{
+  if (values.empty())
+    return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+}  // namespace
+
+std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& triangles, double window)
+{
+  return smooth_skin(skin, triangles, window).height;
+}
+
+Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
+                          const WrinkleSettings& settings)
+{
+  const SmoothSkin smooth = smooth_skin(now, triangles, settings.window);
+  const std::vector<double> before = fold_heights(rest, triangles, settings.window);
+  std::vector<double> heights(smooth.height);
+  for (std::size_t v = 0; v < heights.size(); ++v)
+    heights[v] -= before[v];
+  const auto [direction, across] = directions_of(rest, smooth, heights, triangles, settings);
+  Wrinkles found;
+  if (direction.isZero())
+    return found;
+
+  std::vector<OpenFurrow> furrows;
+  std::vector<double> gaps;
+  std::size_t bottoms_found = 0, sections_folded = 0;
+  for (auto& [index, section] : sections_of(rest, now, smooth, heights, triangles, direction, across, settings))
+  {
+    const std::vector<Bottom> bottoms = bottoms_of(section, settings.least_depth);
+    join(furrows, index, bottoms, 2.5 * settings.section_distance);
+    for (std::size_t b = 0; b < bottoms.size(); ++b)
+    {
+      found.depth += bottoms[b].depth;
+      found.deepest = std::max(found.deepest, bottoms[b].depth);
+      if (b > 0)
+        gaps.push_back((bottoms[b].foot - bottoms[b - 1].foot).norm());
+    }
+    bottoms_found += bottoms.size();
+    sections_folded += bottoms.empty() ? 0 : 1;
+  }
+  for (const OpenFurrow& furrow : furrows)
+    if (furrow.sum.length >= settings.least_length)
+    {
+      Furrow mean = furrow.sum;
+      mean.depth /= furrow.bottoms;
+      for (double& coordinate : mean.middle)
+        coordinate /= furrow.bottoms;
+      found.furrows.push_back(mean);
+    }
+  std::sort(found.furrows.begin(), found.furrows.end(),
+            [](const Furrow& a, const Furrow& b) { return a.length > b.length; });
+  if (bottoms_found == 0)
+    return found;
+  found.direction = { direction[0], direction[1], direction[2] };
+  found.depth /= static_cast<double>(bottoms_found);
+  found.spacing = median(gaps);
+  found.count = static_cast<double>(bottoms_found) / static_cast<double>(sections_folded);
+  return found;
+}
+
+}  // namespace frontalis

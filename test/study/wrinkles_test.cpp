@@ -1,0 +1,124 @@
+// furrows of skins whose depth and spacing are known
+
+#include "frontalis/study/wrinkles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double pi = 3.14159265358979;
+
+struct Sheet
+{
+  SkinState skin;
+  SkinTriangles triangles;
+};
+
+// a cylinder of radius 75 mm about z, 80 mm wide and high, raised by `height` [m] of the arc length and z [m]
+Sheet sheet(double edge, const std::function<double(double, double)>& height)
+{
+  constexpr double radius = 75e-3;
+  const int n = static_cast<int>(std::lround(80e-3 / edge));
+  Sheet out;
+  const auto at = [&](double arc, double z) -> std::array<double, 3>
+  {
+    const double r = radius + height(arc, z);
+    return { { r * std::cos(arc / radius), r * std::sin(arc / radius), z } };
+  };
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+    {
+      // rows are moved by half an edge, so that no line of vertices follows a furrow
+      const double arc = (i + 0.5 * (j % 2)) * edge - 40e-3, z = j * edge, step = 1e-5;
+      const auto p = at(arc, z), a = at(arc + step, z), b = at(arc, z + step);
+      std::array<double, 3> normal{};
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        normal[k] = ((a[l] - p[l]) * (b[m] - p[m]) - (a[m] - p[m]) * (b[l] - p[l])) / (step * step);
+      }
+      const double length = std::hypot(normal[0], normal[1], normal[2]);
+      const auto single = [](double x) { return static_cast<float>(x); };
+      out.skin.vertices.push_back({ { single(p[0]), single(p[1]), single(p[2]) } });
+      out.skin.normals.push_back(
+          { { single(normal[0] / length), single(normal[1] / length), single(normal[2] / length) } });
+      if (i < n && j < n)
+      {
+        const int v = j * (n + 1) + i, w = v + n + 1;
+        out.triangles.push_back({ { v, v + 1, w } });
+        out.triangles.push_back({ { v + 1, w + 1, w } });
+      }
+    }
+  return out;
+}
+
+struct Case
+{
+  double spacing, depth, angle;  // [m, m, rad from horizontal]
+};
+
+class Waves : public testing::TestWithParam<Case>
+{
+};
+
+TEST_P(Waves, have_their_depth_spacing_and_direction)
+{
+  const auto [spacing, depth, angle] = GetParam();
+  const double c = std::cos(angle), s = std::sin(angle), length = spacing;
+  const auto wave = [&, d = depth](double arc, double z)
+  { return 0.5 * d * std::cos(2 * pi * (c * (z - 40e-3) - s * arc) / length); };
+  const Sheet rest = sheet(1e-3, [](double, double) { return 0; }), now = sheet(1e-3, wave);
+  WrinkleSettings settings;
+  settings.lower = { -1, -25e-3, 18e-3 };
+  settings.upper = { 1, 25e-3, 62e-3 };
+  const Wrinkles found = measure_wrinkles(rest.skin, now.skin, now.triangles, settings);
+  EXPECT_NEAR(found.spacing, spacing, 0.03 * spacing);
+  EXPECT_NEAR(found.depth, depth, 0.05 * depth);
+  EXPECT_NEAR(std::abs(found.direction[1] * c + found.direction[2] * s), 1, 1e-3);
+  if (angle == 0)
+  {
+    // the middle of the box is on a ridge
+    EXPECT_EQ(found.furrows.size(), 2 * static_cast<std::size_t>(std::lround(22e-3 / spacing)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Skins, Waves,
+                         testing::Values(Case{ 6e-3, 0.4e-3, 0 }, Case{ 10e-3, 1.5e-3, 0 }, Case{ 16e-3, 2.5e-3, 0 },
+                                         Case{ 10e-3, 1e-3, 0.6 }, Case{ 9e-3, 1e-3, pi / 2 }));
+
+TEST(Wrinkles, count_one_furrow_and_its_length)
+{
+  // a furrow of 2 mm, 40 mm long
+  const auto furrow = [](double arc, double z)
+  {
+    const double along = 1 / (1 + std::exp((std::abs(arc) - 20e-3) / 1e-3));
+    return -2e-3 * along * std::exp(-std::pow((z - 40e-3) / 2e-3, 2));
+  };
+  const Sheet rest = sheet(1e-3, [](double, double) { return 0; }), now = sheet(1e-3, furrow);
+  const Wrinkles found = measure_wrinkles(rest.skin, now.skin, now.triangles);
+  ASSERT_EQ(found.furrows.size(), 1u);
+  EXPECT_NEAR(found.furrows[0].length, 40e-3, 4e-3);
+  EXPECT_NEAR(found.furrows[0].middle[2], 40e-3, 0.5e-3);
+  EXPECT_NEAR(found.deepest, 2e-3, 0.1e-3);
+  EXPECT_EQ(found.spacing, 0);
+  EXPECT_NEAR(found.count, 1, 1e-9);
+}
+
+TEST(Wrinkles, leave_out_what_is_there_at_rest)
+{
+  const auto wave = [](double, double z) { return 1e-3 * std::cos(2 * pi * z / 10e-3); };
+  const Sheet skin = sheet(1.5e-3, wave);
+  const Wrinkles found = measure_wrinkles(skin.skin, skin.skin, skin.triangles);
+  EXPECT_TRUE(found.furrows.empty());
+  EXPECT_EQ(found.count, 0);
+  EXPECT_EQ(found.depth, 0);
+}
+
+}  // namespace
+}  // namespace frontalis
