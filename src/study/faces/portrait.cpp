@@ -234,6 +234,8 @@ std::vector<std::uint8_t> Portrait::draw(const SkinState& skin, const Controls& 
       {
         const RigidTransform motion = motion_in_face(model_, controls.bone[pose.bone]);
         draw_ball(canvas, motion(pose.centre), eye_radius, &motion);
+        // what is seen of the socket at the corners of the eye
+        draw_ball(canvas, { pose.centre[0] - 6e-3, pose.centre[1], pose.centre[2] }, 15e-3, nullptr);
         drawn[pose.bone] = true;
       }
   const std::vector<BodyShape> bodies = body_shapes(model_);
