@@ -54,16 +54,31 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
   }
   const double part = angle * fraction, c = std::cos(part), s = std::sin(part);
   const double cross[3][3] = { { 0, -axis[2], axis[1] }, { axis[2], 0, -axis[0] }, { -axis[1], axis[0], 0 } };
+  double turn[3][3], shift[3], along = 0;
   for (int i = 0; i < 3; ++i)
+  {
+    shift[i] = to.translation[i];
     for (int j = 0; j < 3; ++j)
     {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k)
-        sum += (c * (i == k) + s * cross[i][k] + (1 - c) * axis[i] * axis[k]) * a[3 * k + j];
-      result.rotation[3 * i + j] = sum;
+      turn[i][j] = c * (i == j) + s * cross[i][j] + (1 - c) * axis[i] * axis[j];
+      shift[i] -= r[i][j] * from.translation[j];
     }
+    along += axis[i] * shift[i];
+  }
+  // of the relative translation, the part along the axis is scaled; the rest follows the turn about the screw's axis
+  const double chord = angle > 1e-9 ? std::sin(part / 2) / std::sin(angle / 2) : fraction;
+  const double ahead = chord * std::cos((angle - part) / 2), aside = chord * std::sin((angle - part) / 2);
   for (int i = 0; i < 3; ++i)
-    result.translation[i] = from.translation[i] + fraction * (to.translation[i] - from.translation[i]);
+  {
+    result.translation[i] = fraction * along * axis[i] + ahead * (shift[i] - along * axis[i]);
+    for (int j = 0; j < 3; ++j)
+    {
+      result.translation[i] += turn[i][j] * from.translation[j] - aside * cross[i][j] * shift[j];
+      result.rotation[3 * i + j] = 0;
+      for (int k = 0; k < 3; ++k)
+        result.rotation[3 * i + j] += turn[i][k] * a[3 * k + j];
+    }
+  }
   return result;
 }
 

@@ -45,11 +45,11 @@ void expect_symmetric(const std::map<std::string, nlohmann::json>& rows)
   }
 }
 
-TEST(Faces, the_generated_head_raises_its_brows_frowns_and_smiles)
+TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
 {
   auto found = faces({ config + "head.yaml", "--accuracy", "draft", "--only",
-                       "raise_brows,frown,smile,raise_brows_left", "--seconds", "0.3" });
-  ASSERT_EQ(found.size(), 4u);
+                       "raise_brows,frown,smile,blink,raise_brows_left", "--seconds", "0.3" });
+  ASSERT_EQ(found.size(), 5u);
   const auto half = found.extract("raise_brows_left");
   for (const auto& [expression, rows] : found)
   {
@@ -68,6 +68,10 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_and_smiles)
     const nlohmann::json& smiling = found.at("smile").at("mouth_corner" + side);
     EXPECT_GT(outward(smiling), 0.25);
     EXPECT_GT(up(smiling), 0.5);
+    // the landmarks of the lids are 8.7 mm apart at rest; closed lids leave at most 1 mm open
+    const auto& blinking = found.at("blink");
+    EXPECT_LT(8.7 + up(blinking.at("lid_upper" + side)) - up(blinking.at("lid_lower" + side)), 1);
+    EXPECT_LT(blinking.at("brow_mid" + side).at("size [mm]"), 1);
   }
   // the left half of the expression moves the left side like the whole expression
   EXPECT_NEAR(up(half.mapped().at("brow_mid_left")), up(raised.at("brow_mid_left")), 1);

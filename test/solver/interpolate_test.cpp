@@ -32,7 +32,27 @@ TEST(Interpolate, TurnsAboutTheShortestAxis)
   const RigidTransform from = turn_about_z(0.2, 1), to = turn_about_z(1.0, 3);
   expect_same(interpolate(from, to, 0), from);
   expect_same(interpolate(from, to, 1), to);
-  expect_same(interpolate(from, to, 0.25), turn_about_z(0.4, 1.5));
+  const RigidTransform between = interpolate(from, to, 0.25), turned = turn_about_z(0.4, 0);
+  for (int i = 0; i < 9; ++i)
+    EXPECT_NEAR(between.rotation[i], turned.rotation[i], 1e-12);
+}
+
+TEST(Interpolate, APointThatABoneTurnsAboutStaysAndTheShiftAlongTheAxisIsScaled)
+{
+  // about the point (5, -2) by 0.6 rad, with a shift of 0.8 along the axis
+  RigidTransform to = turn_about_z(0.6, 0);
+  to.translation = { { 5 - (5 * std::cos(0.6) + 2 * std::sin(0.6)), -2 - (5 * std::sin(0.6) - 2 * std::cos(0.6)),
+                       0.8 } };
+  for (const double fraction : { 0.1, 0.5, 0.9 })
+  {
+    const auto p = interpolate(RigidTransform(), to, fraction)(std::array<double, 3>{ { 5, -2, 0 } });
+    EXPECT_NEAR(p[0], 5, 1e-12);
+    EXPECT_NEAR(p[1], -2, 1e-12);
+    EXPECT_NEAR(p[2], 0.8 * fraction, 1e-12);
+    // a part of a part of the motion is that motion again
+    expect_same(interpolate(interpolate(RigidTransform(), to, fraction), to, 0.5),
+                interpolate(RigidTransform(), to, 0.5 + 0.5 * fraction));
+  }
 }
 
 TEST(Interpolate, HalfATurnAndNone)

@@ -8,7 +8,7 @@ namespace frontalis
 /// Whether all numbers are finite and the rotation is proper (no reflection, no scaling), to within 1e-6.
 bool is_rigid_motion(const RigidTransform& pose);
 
-/// The pose at a fraction (0..1) between two poses: their relative rotation vector and translation are scaled.
+/// The pose at a fraction (0..1) of the screw motion between two poses: a turn about one axis and a shift along it.
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction);
 
 /// The map that applies `first`, then `then`.
