@@ -5,6 +5,35 @@
 namespace frontalis
 {
 
+std::vector<Vector3d> voxel_samples(int per_edge)
+{
+  if (per_edge == 1)
+    return { Vector3d::Constant(0.5) };
+  // An eighth of the points lie in an eighth of the voxel, the others are their mirror images. There the points of a
+  // sequence are shifted to equal distances along each axis, so that planes across an axis meet few of them at once.
+  const int count = (per_edge * per_edge * per_edge + 7) / 8;
+  std::vector<Vector3d> points, samples;
+  for (int i = 0; i < count; ++i)
+    points.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), i));
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return points[i][axis] < points[j][axis]; });
+    for (int rank = 0; rank < count; ++rank)
+      points[order[rank]][axis] = 0.5 * (rank + 0.5) / count;
+  }
+  for (const Vector3d& point : points)
+    for (int image = 0; image < 8; ++image)
+    {
+      Vector3d& sample = samples.emplace_back(point);
+      for (int axis = 0; axis < 3; ++axis)
+        if ((image >> axis & 1) != 0)
+          sample[axis] = 1 - point[axis];
+    }
+  return samples;
+}
+
 BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
                                  const std::vector<const PreparedSurface*>& kept_at)
     : volumes_(volumes),
@@ -13,17 +42,14 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       kept_at_(kept_at),
       voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
       reach_(0.5 * grid.spacing.norm()),
+      offsets_(voxel_samples(samples)),
       nearby_body_(volumes.bodies()),
       nearby_depth_(volumes.depth_fields().size()),
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  // the first sample is the middle of the voxel
-  for (int s = 0; s < samples * samples * samples; ++s)
-  {
-    offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
-    mean_offset_ += offsets_.back() / (samples * samples * samples);
-  }
+  for (const Vector3d& offset : offsets_)
+    mean_offset_ += offset / static_cast<double>(offsets_.size());
   voxels_.volume_size.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
   for (const Volumes::Entry& entry : volumes.entries())

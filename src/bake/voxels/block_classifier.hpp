@@ -26,6 +26,10 @@ struct BlockState
   std::vector<Answer> in_sight;       ///< one per volume; see Volumes::Entry::needs_sight()
 };
 
+/// At least per_edge^3 points in a voxel [voxel edges], symmetric to its middle planes, so that a voxel and its mirror
+/// image have the same filling. One point per edge is the middle.
+std::vector<Vector3d> voxel_samples(int per_edge);
+
 /// Finds the materials and muscles in the voxels of a block. A uniform block is decided as a whole; any other is halved
 /// repeatedly, down to single voxels, which are sampled. Not thread-safe.
 class BlockClassifier
