@@ -20,13 +20,15 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
   ClosestPoint best;
   best.distance = bound;
   double squared = bound >= 1e150 ? 1e300 : bound * bound;
-  const auto ask = [&](std::int32_t index)
+  const auto ask = [&](std::int32_t index, double radius)
   {
     const auto& [a, b, c] = tree_->corners_[index];
-    // a triangle is not nearer than its plane
-    const Vector3d normal = (b - a).cross(c - a);
-    const double projected = (p - a).dot(normal);
-    if ((1 - margin) * projected * projected > squared * normal.squaredNorm())
+    // a triangle is not nearer than its plane, nor than the disc in this plane in which it lies
+    const Vector3d normal = (b - a).cross(c - a), away = p - (1.0 / 3) * (a + b + c);
+    const double projected = away.dot(normal);
+    const double height = (1 - margin) * projected * projected / normal.squaredNorm();
+    const double beside = radius + std::sqrt(squared - height);
+    if (height > squared || away.squaredNorm() - height > beside * beside)
       return;
     const std::int32_t triangle = tree_->order_[index];
     std::int8_t feature = 0;
@@ -42,7 +44,7 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
   };
   // the triangle of the latest point is probably near, so that most others need no closer look
   if (latest_ >= 0)
-    ask(latest_);
+    ask(latest_, std::numeric_limits<double>::infinity());
   const auto x = static_cast<float>(from_centre[0]), y = static_cast<float>(from_centre[1]),
              z = static_cast<float>(from_centre[2]);
   for (const Group& group : groups_)
@@ -58,7 +60,7 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
     }
     for (std::size_t n = 0; n < Group::size; ++n)
       if (meets[n])
-        ask(group.index[n]);
+        ask(group.index[n], double{ group.radius[n] });
   }
   // a triangle that is not kept is farther than reach_ from centre_
   if (best.distance + way < reach_)

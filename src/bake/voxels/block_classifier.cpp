@@ -5,33 +5,23 @@
 namespace frontalis
 {
 
-std::vector<Vector3d> voxel_samples(int per_edge)
+Vector3d voxel_sample(const Grid& grid, const VoxelPlace& place, int number)
 {
-  if (per_edge == 1)
-    return { Vector3d::Constant(0.5) };
-  // An eighth of the points lie in an eighth of the voxel, the others are their mirror images. There the points of a
-  // sequence are shifted to equal distances along each axis, so that planes across an axis meet few of them at once.
-  const int count = (per_edge * per_edge * per_edge + 7) / 8;
-  std::vector<Vector3d> points, samples;
-  for (int i = 0; i < count; ++i)
-    points.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), i));
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  for (int axis = 0; axis < 3; ++axis)
+  std::array<bool, 3> mirrored{};
+  int rest = number;
+  for (std::size_t a = 0; a < 3; ++a)
   {
-    std::sort(order.begin(), order.end(), [&](int i, int j) { return points[i][axis] < points[j][axis]; });
-    for (int rank = 0; rank < count; ++rank)
-      points[order[rank]][axis] = 0.5 * (rank + 0.5) / count;
+    const std::int32_t from_middle = 2 * place[a] + 1 - grid.size[a];
+    mirrored[a] = from_middle > 0 || (from_middle == 0 && rest % 2 != 0);
+    if (from_middle == 0)
+      rest /= 2;
   }
-  for (const Vector3d& point : points)
-    for (int image = 0; image < 8; ++image)
-    {
-      Vector3d& sample = samples.emplace_back(point);
-      for (int axis = 0; axis < 3; ++axis)
-        if ((image >> axis & 1) != 0)
-          sample[axis] = 1 - point[axis];
-    }
-  return samples;
+  // the first sample is the middle of the voxel
+  Vector3d sample = spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), rest - 1);
+  for (int a = 0; a < 3; ++a)
+    if (mirrored[a])
+      sample[a] = 1 - sample[a];
+  return sample;
 }
 
 BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
@@ -42,14 +32,12 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       kept_at_(kept_at),
       voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
       reach_(0.5 * grid.spacing.norm()),
-      offsets_(voxel_samples(samples)),
       nearby_body_(volumes.bodies()),
       nearby_depth_(volumes.depth_fields().size()),
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  for (const Vector3d& offset : offsets_)
-    mean_offset_ += offset / static_cast<double>(offsets_.size());
+  offsets_.resize(std::size_t{ 1 } * samples * samples * samples);
   voxels_.volume_size.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
   for (const Volumes::Entry& entry : volumes.entries())
@@ -84,7 +72,7 @@ void BlockClassifier::sample_alone(const VoxelPlace& place)
   BlockState state = unknown();
   const Box box(grid_.corner(place), grid_.corner(end));
   decide(box, state);
-  sample(box, state);
+  sample(place, state);
 }
 
 std::vector<char> BlockClassifier::tissue_samples(const VoxelPlace& place)
@@ -134,7 +122,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
   }
   if (end == VoxelPlace{ begin[0] + 1, begin[1] + 1, begin[2] + 1 })
   {
-    sample(box, state);
+    sample(begin, state);
     const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
     add_sizes(1);
     const auto passes = [&box](const PreparedSurface* surface) { return surface->tree().overlaps(box); };

@@ -113,28 +113,22 @@ void Gaps::mark(const Voxels& voxels, BakeMonitor& monitor)
 
 void Gaps::find_points(Tissue& tissue, const VoxelPlace& place) const
 {
+  const int per_edge = std::max(samples_, points_per_edge);
+  BlockClassifier classifier(volumes_, grid_, per_edge, 0, none_);
+  const std::vector<char> is_tissue = classifier.tissue_samples(place);
   const Vector3d corner = grid_.corner(place);
   const Vector3d centre = corner + 0.5 * grid_.spacing;
   tissue.pieces = walls_->pieces_in(Box(corner - reach * grid_.spacing, corner + (1 + reach) * grid_.spacing));
   const std::uint64_t at_centre = walls_->enclosing(centre);
-  const auto add_points = [&](int per_edge, bool of_scene)
+  for (std::size_t s = 0; s < is_tissue.size(); ++s)
   {
-    BlockClassifier classifier(volumes_, grid_, per_edge, 0, none_);
-    const std::vector<char> is_tissue = classifier.tissue_samples(place);
-    const std::vector<Vector3d> offsets = voxel_samples(per_edge);
-    for (std::size_t s = 0; s < is_tissue.size(); ++s)
-    {
-      if (is_tissue[s] == 0)
-        continue;
-      const Vector3d p = corner + offsets[s].cwiseProduct(grid_.spacing);
-      tissue.points.push_back(p);
-      tissue.sample.push_back(of_scene ? static_cast<int>(s) : -1);
-      tissue.enclosing.push_back(walls_->enclosing(p, centre, at_centre, tissue.pieces));
-    }
-  };
-  add_points(samples_, true);
-  if (samples_ < points_per_edge)
-    add_points(points_per_edge, false);
+    if (is_tissue[s] == 0)
+      continue;
+    const Vector3d p = corner + voxel_sample(grid_, place, static_cast<int>(s)).cwiseProduct(grid_.spacing);
+    tissue.points.push_back(p);
+    tissue.sample.push_back(static_cast<int>(s));
+    tissue.enclosing.push_back(walls_->enclosing(p, centre, at_centre, tissue.pieces));
+  }
   tissue.part.assign(tissue.points.size(), 0);
 }
 
@@ -149,10 +143,10 @@ void Gaps::find_parts(Tissue& tissue) const
           !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
         sets.union_set(i, j);
   // by the number of the scene's samples, and where that is equal by the first point
-  const auto all = static_cast<double>(voxel_samples(samples_).size());
+  const int all = samples_ * samples_ * samples_;
   std::map<std::size_t, int> samples_in;
   for (std::size_t i = 0; i < count; ++i)
-    samples_in[sets.find_set(i)] += tissue.sample[i] >= 0 ? 1 : 0;
+    samples_in[sets.find_set(i)] += tissue.sample[i] < all ? 1 : 0;
   std::vector<std::pair<int, std::size_t>> parts;
   for (const auto& [set, samples] : samples_in)
     if (samples > 0 && samples >= scene_.accuracy.fill_min * all)
@@ -237,9 +231,9 @@ std::size_t Gaps::add_copies(Voxels& voxels)
     voxels.flap[tissue.voxel] = -1;
     for (int part = 0; part < parts; ++part)
     {
-      std::vector<char> chosen(voxel_samples(samples_).size(), 0);
+      std::vector<char> chosen(std::size_t{ 1 } * samples_ * samples_ * samples_, 0);
       for (std::size_t i = 0; i < tissue.part.size(); ++i)
-        if (tissue.sample[i] >= 0)
+        if (static_cast<std::size_t>(tissue.sample[i]) < chosen.size())
           chosen[tissue.sample[i]] = tissue.part[i] == part || (tissue.part[i] < 0 && part == 0) ? 1 : 0;
       classifier.add_part(voxels.place[tissue.voxel], chosen);
       tissue.copies.push_back(next++);

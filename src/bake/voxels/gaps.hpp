@@ -46,7 +46,7 @@ private:
   {
     std::uint32_t voxel = 0;
     std::vector<Vector3d> points;
-    std::vector<int> sample;               ///< number of each point among the scene's samples; -1: none of them
+    std::vector<int> sample;               ///< number of each point in the sequence of samples
     std::vector<std::uint64_t> enclosing;  ///< bodies around each point
     std::vector<int> part;                 ///< of each point; -1: of none that is kept
     std::vector<GapWalls::Piece> pieces;   ///< in and around the voxel
