@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 namespace
 {
 
@@ -129,38 +127,6 @@ TEST(Voxelise, DepthBandBelowASurface)
   band.tissue = true;
   scene.volumes = { band };
   EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * (729e-9 - 343e-9)), 1, 0.01);
-}
-
-TEST(Voxelise, ASymmetricSceneHasASymmetricModel)
-{
-  Scene scene = plain_scene(1e-3);
-  // no side is a whole number of voxels long
-  scene.surfaces = { box_surface("block", { 1e-3, -2e-3, 3e-3 }, { 9.7e-3, 12.3e-3, 7.9e-3 }),
-                     box_surface("bar", { 1e-3, -2e-3, 3e-3 }, { 4.4e-3, 20.6e-3, 3.3e-3 }) };
-  scene.volumes = { volume_inside("tissue", { "block", "bar" }, "fat", true) };
-  scene.accuracy.fill_min = 0.01;
-  const Model model = bake(scene);
-  std::map<std::array<int, 3>, float> fill;  // by the place of the voxel from the middle of the scene, in half voxels
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    std::array<int, 3> place{};
-    Vector3 local{};
-    for (std::size_t a = 0; a < 3; ++a)
-      local[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
-    const Vector3 p = transformed(model.to_scene, local), middle{ 1e-3, -2e-3, 3e-3 };
-    for (std::size_t a = 0; a < 3; ++a)
-      place[a] = static_cast<int>(std::lround((p[a] - middle[a]) / 0.5e-3));
-    fill[place] = model.fill[e];
-  }
-  EXPECT_EQ(fill.size(), model.voxels.size());
-  for (const auto& [place, filled] : fill)
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      auto image = place;
-      image[a] = -image[a];
-      ASSERT_EQ(fill.count(image), 1u);
-      EXPECT_NEAR(fill.at(image), filled, 1e-6);
-    }
 }
 
 TEST(Voxelise, CropCutsExactly)

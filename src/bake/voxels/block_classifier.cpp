@@ -5,25 +5,6 @@
 namespace frontalis
 {
 
-Vector3d voxel_sample(const Grid& grid, const VoxelPlace& place, int number)
-{
-  std::array<bool, 3> mirrored{};
-  int rest = number;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    const std::int32_t from_middle = 2 * place[a] + 1 - grid.size[a];
-    mirrored[a] = from_middle > 0 || (from_middle == 0 && rest % 2 != 0);
-    if (from_middle == 0)
-      rest /= 2;
-  }
-  // the first sample is the middle of the voxel
-  Vector3d sample = spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), rest - 1);
-  for (int a = 0; a < 3; ++a)
-    if (mirrored[a])
-      sample[a] = 1 - sample[a];
-  return sample;
-}
-
 BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int samples, double fill_min,
                                  const std::vector<const PreparedSurface*>& kept_at)
     : volumes_(volumes),
@@ -37,7 +18,12 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  offsets_.resize(std::size_t{ 1 } * samples * samples * samples);
+  // the first sample is the middle of the voxel
+  for (int s = 0; s < samples * samples * samples; ++s)
+  {
+    offsets_.push_back(spread_point(Box(Vector3d::Zero(), Vector3d::Ones()), s - 1));
+    mean_offset_ += offsets_.back() / (samples * samples * samples);
+  }
   voxels_.volume_size.assign(volumes.entries().size(), 0);
   int materials = 0, muscles = 0;
   for (const Volumes::Entry& entry : volumes.entries())
@@ -72,7 +58,7 @@ void BlockClassifier::sample_alone(const VoxelPlace& place)
   BlockState state = unknown();
   const Box box(grid_.corner(place), grid_.corner(end));
   decide(box, state);
-  sample(place, state);
+  sample(box, state);
 }
 
 std::vector<char> BlockClassifier::tissue_samples(const VoxelPlace& place)
@@ -122,7 +108,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
   }
   if (end == VoxelPlace{ begin[0] + 1, begin[1] + 1, begin[2] + 1 })
   {
-    sample(begin, state);
+    sample(box, state);
     const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
     add_sizes(1);
     const auto passes = [&box](const PreparedSurface* surface) { return surface->tree().overlaps(box); };

@@ -26,11 +26,6 @@ struct BlockState
   std::vector<Answer> in_sight;       ///< one per volume; see Volumes::Entry::needs_sight()
 };
 
-/// Sample `number` of a voxel, from its lower corner [voxel edges]. Voxels on both sides of the grid's middle have
-/// mirrored samples, and those that the middle passes through have pairs of mirrored ones: so a scene that is symmetric
-/// to the middle of its grid has a symmetric model.
-Vector3d voxel_sample(const Grid& grid, const VoxelPlace& place, int number);
-
 /// Finds the materials and muscles in the voxels of a block. A uniform block is decided as a whole; any other is halved
 /// repeatedly, down to single voxels, which are sampled. Not thread-safe.
 class BlockClassifier
@@ -64,7 +59,7 @@ private:
   Answer volume_answer(std::size_t volume, const Box& box, const BlockState& state) const;
 
   // These sample a voxel.
-  void sample(const VoxelPlace& place, const BlockState& state);
+  void sample(const Box& box, const BlockState& state);
   bool sample_volume(std::size_t volume, const Vector3d& p, const BlockState& state);
   bool sample_body(std::size_t body, const Vector3d& p, const BlockState& state);
   double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
@@ -80,7 +75,7 @@ private:
   const std::vector<const PreparedSurface*>& kept_at_;
   double voxel_volume_;
   double reach_;                               ///< half the diagonal of a voxel [m]
-  std::vector<Vector3d> offsets_;              ///< from the lower corner of the voxel to its samples, in voxel edges
+  std::vector<Vector3d> offsets_;              ///< from the voxel's lower corner to the samples, in voxel edges
   const std::vector<char>* chosen_ = nullptr;  ///< samples that are looked at; null: all
   std::vector<char>* is_tissue_ = nullptr;     ///< receives whether each sample is tissue; null: it is not asked for
   Vector3d mean_offset_{ 0, 0, 0 };

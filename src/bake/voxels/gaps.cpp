@@ -124,7 +124,7 @@ void Gaps::find_points(Tissue& tissue, const VoxelPlace& place) const
   {
     if (is_tissue[s] == 0)
       continue;
-    const Vector3d p = corner + voxel_sample(grid_, place, static_cast<int>(s)).cwiseProduct(grid_.spacing);
+    const Vector3d p = spread_point(Box(corner, corner + grid_.spacing), static_cast<int>(s) - 1);
     tissue.points.push_back(p);
     tissue.sample.push_back(static_cast<int>(s));
     tissue.enclosing.push_back(walls_->enclosing(p, centre, at_centre, tissue.pieces));

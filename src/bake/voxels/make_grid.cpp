@@ -31,28 +31,6 @@ double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
   return std::max(1.0, static_cast<double>(inside)) / samples * cells;
 }
 
-/// Lower corner of a grid that covers a box and is at most a voxel larger: flush with the side at which a crop cuts the
-/// tissue; centred along axes on which both sides or none are cut, so that a symmetric scene has symmetric voxels.
-Vector3d lower_corner(const Volumes& volumes, const Box& box, const Vector3d& size)
-{
-  Vector3d corner = box.min();
-  for (int a = 0; a < 3; ++a)
-  {
-    const auto is_cut = [&](double side, const auto& crop_side)
-    {
-      return std::any_of(volumes.entries().begin(), volumes.entries().end(),
-                         [&](const Volumes::Entry& entry)
-                         { return entry.volume->tissue && crop_side(entry.volume->crop)[a] == side; });
-    };
-    const bool below = is_cut(box.min()[a], [](const Region& crop) { return crop.lower; });
-    const bool above = is_cut(box.max()[a], [](const Region& crop) { return crop.upper; });
-    const double excess = size[a] - box.sizes()[a];
-    if (excess > 1e-6 * size[a])
-      corner[a] -= below == above ? 0.5 * excess : below ? 0 : excess;
-  }
-  return corner;
-}
-
 /// The number that follows the word `after` in a file, or its first number if `after` is empty. Infinite if missing.
 double number_in(const std::string& path, const std::string& after)
 {
@@ -134,7 +112,7 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
                   spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
                   number_text(std::min(most_voxels, available / bytes_per_voxel)), advice);
   Grid grid;
-  grid.lower = lower_corner(volumes, box, spacing.cwiseProduct(cells));
+  grid.lower = box.min();
   grid.spacing = spacing;
   for (int a = 0; a < 3; ++a)
     grid.size[a] = static_cast<std::int32_t>(cells[a]);

@@ -3,15 +3,8 @@
 namespace frontalis
 {
 
-void BlockClassifier::sample(const VoxelPlace& place, const BlockState& state)
+void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
-  const Box box(grid_.corner(place), grid_.corner({ place[0] + 1, place[1] + 1, place[2] + 1 }));
-  mean_offset_.setZero();
-  for (std::size_t s = 0; s < offsets_.size(); ++s)
-  {
-    offsets_[s] = voxel_sample(grid_, place, static_cast<int>(s));
-    mean_offset_ += offsets_[s] / static_cast<double>(offsets_.size());
-  }
   share_ = nothing_;
   tissue_offset_.setZero();
   for (NearbyBody& body : nearby_body_)
