@@ -21,8 +21,8 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Distances are asked for in clusters of points, the middle one first. How far two points of a cluster are apart at most,
-/// in spacings.
+/// Distances are asked for in clusters of points, the middle one first. This is the largest distance between two points
+/// of a cluster, in spacings.
 constexpr double cluster_extent = 7;
 
 /// Samples a distance every `spacing` [m], in all bricks that sliding nodes can reach: those within `travel` [m] of a
