@@ -52,14 +52,15 @@ public:
         for (const std::int32_t side : { 1, -1 })
           for (std::size_t axis = 0; axis < 3; ++axis)
           {
+            const float* const neighbour = neighbour_of(of_a, axis, side);
+            if (neighbour == nullptr)
+              continue;
+            const double difference = double(*of_a.at[0]) - double(*neighbour);
+            if (!steep(difference))
+              continue;
             Place b = a;
             b[axis] += side;
             const Samples of_b = samples_at(b);
-            if (of_b.count == 0)
-              continue;
-            const double difference = double(*of_a.at[0]) - double(*of_b.at[0]);
-            if (!steep(difference))
-              continue;
             const auto move = static_cast<float>(0.5 * (difference - std::copysign(field_.spacing, difference)));
             for (std::size_t n = 0; n < of_a.count; ++n)
               *of_a.at[n] -= move;
@@ -87,8 +88,19 @@ private:
   struct Samples
   {
     std::array<float*, 8> at{};
+    std::array<Place, 8> in_brick{};  // where in its brick each sample is, 0 to 9 along each axis
     std::size_t count = 0;
   };
+
+  // The sample beside a place; null if none is stored. Neighbours are always together in one of the bricks.
+  static const float* neighbour_of(const Samples& samples, std::size_t axis, std::int32_t side)
+  {
+    constexpr std::array<std::int32_t, 3> step{ { 1, width, width * width } };
+    for (std::size_t n = 0; n < samples.count; ++n)
+      if (const std::int32_t at = samples.in_brick[n][axis] + side; at >= 0 && at < width)
+        return samples.at[n] + std::ptrdiff_t{ side } * step[axis];
+    return nullptr;
+  }
 
   float* brick(const Place& b) const
   {
@@ -113,13 +125,15 @@ private:
         {
           const Place at{ { place[0] - edge * b[0] + 1, place[1] - edge * b[1] + 1, place[2] - edge * b[2] + 1 } };
           if (float* const samples = brick(b); samples != nullptr)
+          {
+            found.in_brick[found.count] = at;
             found.at[found.count++] = samples + (at[2] * width + at[1]) * width + at[0];
+          }
         }
     return found;
   }
 
-  // Places that differ from a neighbour by too much, some of them repeatedly. Any two neighbours are together in at
-  // least one of the bricks.
+  // Places that differ from a neighbour by too much, some of them repeatedly.
   std::vector<Place> steep_places() const
   {
     std::vector<Place> places;

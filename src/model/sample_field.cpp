@@ -100,18 +100,22 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 constexpr int width = DistanceField::brick_row;
 
 // Calls visit(sample, way) for the samples of a brick. way: from the brick to the one that owns the cell around the
-// sample. Rows are visited forwards and backwards in turn, so that the next sample is always a neighbour.
+// sample. Samples are visited in cubic blocks, the middle one first, since what is found for it serves those around it.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {
+  constexpr int block = 5, samples = block * block * block;
+  static_assert(width % block == 0 && block % 2 == 1, "blocks fill a brick and have a sample in the middle");
   const auto side = [](int at) { return at == 0 ? -1 : at == width - 1 ? 1 : 0; };
-  for (int k = 0; k < width; ++k)
-    for (int j = 0; j < width; ++j)
-      for (int n = 0; n < width; ++n)
-      {
-        const int i = (j + k) % 2 == 0 ? n : width - 1 - n;
-        visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
-      }
+  for (int z = 0; z < width; z += block)
+    for (int y = 0; y < width; y += block)
+      for (int x = 0; x < width; x += block)
+        for (int n = 0; n < samples; ++n)
+        {
+          const int s = n == 0 ? samples / 2 : n <= samples / 2 ? n - 1 : n;
+          const int i = x + s % block, j = y + s / block % block, k = z + s / (block * block);
+          visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
+        }
 }
 
 // Samples the bricks in which the distance reaches the brick's band. Samples that bricks share are found once.

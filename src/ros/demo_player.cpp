@@ -42,6 +42,24 @@ std::map<std::string, double> DemoPlayer::activation(double time) const
   return out;
 }
 
+std::string DemoPlayer::expression(double time) const
+{
+  std::string name = empty() ? "" : "relax";
+  if (empty())
+    return name;
+  const double since = std::max(0.0, time);
+  double left = since - std::floor(since / period_) * period_;
+  for (const Model::DemoPhase& phase : model_->demo)
+  {
+    if (phase.expression > -2)
+      name = phase.expression < 0 ? "relax" : model_->expressions.at(phase.expression).name;
+    left -= std::max(0.0, phase.seconds);
+    if (left < 0)
+      break;
+  }
+  return name;
+}
+
 std::map<std::string, RigidTransform> DemoPlayer::bones(double time) const
 {
   std::map<std::string, RigidTransform> out;

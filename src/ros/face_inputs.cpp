@@ -111,6 +111,12 @@ void FaceInputs::play(Runner& running, double time)
   }
 }
 
+std::string FaceInputs::shown_expression(double time) const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return demo_playing_ ? demo_->expression(time) : "";
+}
+
 bool FaceInputs::timed(double time) const
 {
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -5,7 +5,10 @@
 #include "frontalis/ros/model_source.hpp"
 #include "frontalis/runner/profile_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -29,6 +32,7 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       name_(name),
       updater_(handle, private_handle, name),
       publisher_(private_handle),
+      loading_frame_(private_handle.param<std::string>("parent_frame", "map")),
       last_frame_(ros::WallTime::now()),
       inputs_(
           private_handle, name, [this](std::string* reason) { return runner(reason); },
@@ -134,6 +138,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     has_frame_ = false;
     frame_finite_ = true;
     speed_report_.clear();
+    caption_.clear();
     last_frame_ = last_published_ = ros::WallTime::now();
     time_ = 0;
     parameters_ = parameters;
@@ -210,9 +215,32 @@ void FaceNode::log_speed_once()
     return;
   speed_report_ = speed_report(*publisher_.model(), frame_.real_time_factor);
   if (frame_.real_time_factor < sufficient_real_time_factor)
-    ROS_WARN_STREAM(name_ << ": " << speed_report_);
+    ROS_WARN_STREAM(name_ << ": the face moves in slow motion, 1 : "
+                          << fmt::format("{:.2g}", 1 / frame_.real_time_factor) << " (" << speed_report_ << ")");
   else
     ROS_INFO_STREAM(name_ << ": " << speed_report_);
+}
+
+// What the face shows, and that it does so in slow motion; before there is a face, what is done to make it.
+void FaceNode::show_caption()
+{
+  std::string text = inputs_.shown_expression(time_);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  const std::scoped_lock lock(runner_mutex_, frame_mutex_);
+  if (!runner_)
+    text = load_fault_.empty() ? "The face is being made\n" + loading_stage_ : "There is no face; the log says why";
+  const double factor = frame_.real_time_factor;
+  if (!runner_ || parameters_.runner.pace != Pace::real_time || paused_ || !(factor > 0) ||
+      factor >= sufficient_real_time_factor)
+    slowness_ = 0;
+  else if (std::abs(1 / factor - slowness_) > 0.2 * slowness_)
+    slowness_ = 1 / factor;  // a figure that changed with each frame could not be read
+  if (slowness_ > 0)
+    text += fmt::format("{}slow motion, 1 : {:.2g}", text.empty() ? "" : "\n", slowness_);
+  if (text == caption_ || (!runner_ && loading_frame_.empty()))
+    return;
+  caption_ = text;
+  publisher_.publish_caption(text, loading_frame_);
 }
 
 void FaceNode::repeat_frame_and_play()
@@ -237,6 +265,7 @@ void FaceNode::repeat_frame_and_play()
   }
   if (running && !paused_ && steps_by_itself)
     inputs_.play(*running, time_);
+  show_caption();
 }
 
 void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)

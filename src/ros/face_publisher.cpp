@@ -50,6 +50,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
       muscles_(private_handle.advertise<visualization_msgs::MarkerArray>("muscles", 1)),
       eyes_(private_handle.advertise<visualization_msgs::MarkerArray>("eyes", 1)),
+      caption_(private_handle.advertise<visualization_msgs::Marker>("caption", 1, true)),
       handle_(private_handle)
 {
 }
@@ -224,6 +225,33 @@ void FacePublisher::probe(const SkinState& skin, const geometry_msgs::Point& poi
   fill(out.position, at[0], at[1], at[2]);
   fill(out.normal, normal[0], normal[1], normal[2]);
   fill(out.displacement, at[0] - rest[0], at[1] - rest[1], at[2] - rest[2]);
+}
+
+void FacePublisher::publish_caption(const std::string& text, const std::string& frame)
+{
+  // where the head's face begins and ends, for the time before there is a model [m]
+  float lower = -0.1f, upper = 0;
+  if (!rest_.empty())
+  {
+    const auto below = [](const auto& a, const auto& b) { return a[2] < b[2]; };
+    const auto [lowest, highest] = std::minmax_element(rest_.begin(), rest_.end(), below);
+    lower = (*lowest)[2];
+    upper = (*highest)[2];
+  }
+  const double line = 0.045 * double(upper - lower);
+  visualization_msgs::Marker marker;
+  marker.header.frame_id = model_ ? face_frame_ : frame;  // without a stamp: at the latest transform
+  marker.ns = "caption";
+  marker.type = visualization_msgs::Marker::TEXT_VIEW_FACING;
+  // rviz refuses an empty text
+  marker.action = text.empty() ? visualization_msgs::Marker::DELETE : visualization_msgs::Marker::ADD;
+  marker.text = text;
+  marker.scale.z = line;
+  marker.pose.position.z = double(upper) + 2 * line;
+  marker.pose.orientation.w = 1;
+  marker.color.r = marker.color.g = marker.color.b = 0.85f;
+  marker.color.a = 1;
+  caption_.publish(marker);
 }
 
 void FacePublisher::publish_fault(const std::string& message, const ros::Time& stamp)

@@ -3,9 +3,10 @@
 
 usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [panel:=true] [LAUNCH_ARGUMENT:=VALUE ...]
 
-Launches SCENE.launch of this package in lock-step, with rviz full screen (with panel:=true: in a window with its panels), under Xvfb if there is no display. Moves the face by
-~expression and ~step, so that each picture shows an exact simulated time, and prints the path of each picture and how far the
-landmarks moved. Needs the environment of the package's setup file, Xvfb and ImageMagick.
+Launches SCENE.launch of this package in lock-step, with rviz full screen (with panel:=true: in a window with its
+panels), under Xvfb if there is no display. Moves the face by ~expression and ~step, so that each picture shows an exact
+simulated time, and prints the path of each picture and how far the landmarks moved. Needs the environment of the
+package's setup file, Xvfb and ImageMagick.
 """
 
 import os
@@ -20,8 +21,9 @@ SCREEN = "1280x900x24"
 RAMP = 0.3  # [s] simulated time from one expression to the next
 DEMO_STEP = 0.05  # [s] simulated time per step of a demo, over which activations and bones move linearly
 HOLD = 0.9  # [s] simulated time from then to the picture
-START_TIMEOUT = 300  # [s] wall time, for baking and for rviz to start
-DRAW_TIMEOUT = 60  # [s] wall time, for rviz to show a new skin
+# Far longer than usual, since they only end a wait that would otherwise have no end.
+START_TIMEOUT = 1200  # [s] wall time, for baking and for rviz to start
+DRAW_TIMEOUT = 180  # [s] wall time, for rviz to show a new skin
 
 
 def fail(message):
@@ -91,16 +93,19 @@ class Face:
         from frontalis.msg import Expression, SimulationState
         from frontalis.srv import ListMuscles, Step
         from geometry_msgs.msg import PoseArray
+        from visualization_msgs.msg import Marker
 
         rospy.init_node("take_pictures", disable_signals=True)
         self.master = rosgraph.Master("take_pictures")
         self.landmarks = None
         self.state = None
+        self.caption = ""
         self.expression = rospy.Publisher("/face/expression", Expression, queue_size=1)
         self.muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
         self.advance = rospy.ServiceProxy("/face/step", Step)
         rospy.Subscriber("/face/landmarks", PoseArray, lambda message: setattr(self, "landmarks", message.poses))
         rospy.Subscriber("/face/state", SimulationState, lambda message: setattr(self, "state", message))
+        rospy.Subscriber("/face/caption", Marker, lambda message: setattr(self, "caption", message.text))
 
     def is_seen(self):
         """Whether rviz has subscribed to the skin."""
@@ -169,7 +174,8 @@ def take_demo(face, folder, moments):
                 fail("the simulation failed after %g s: %s" % (time_now, answer.message))
             time_now = answer.time
         picture = settled_picture(picture)
-        path = os.path.join(folder, "demo_%04.1f.png" % moment)
+        name = face.caption.split("\n")[0].replace(" ", "_") or "demo"
+        path = os.path.join(folder, "%05.2f_%s.png" % (moment, name))
         save(picture, path)
         print("%s  at %.1f s" % (path, time_now), flush=True)
 

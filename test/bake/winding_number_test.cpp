@@ -1,3 +1,4 @@
+#include "bake/mesh/cluster_search.hpp"
 #include "bake/mesh/surface.hpp"
 
 #include "bake/scene_pieces.hpp"
@@ -104,6 +105,25 @@ TEST(WindingNumber, IsNearlyZeroFarAway)
   const TriangleTree tree(mesh);
   for (const Vector3d& p : points(2000, 1.5))
     ASSERT_LT(std::abs(tree.winding_number({ p[0] + 5, p[1], p[2] })), 0.1);
+}
+
+TEST(ClusterSearch, FindsWhatTheTreeFinds)
+{
+  const TriangleMesh mesh = sphere_with_holes();
+  const TriangleTree tree(mesh);
+  ClusterSearch search(tree, 0.2);
+  // clusters of various sizes, and with bounds that are met by many points and by few
+  for (const Vector3d& middle : points(30, 1.5))
+    for (const double reach : { 0.05, 0.3 })
+      for (const Vector3d& p : points(20, reach))
+        for (const double bound : { 1e300, 0.4, 0.05 })
+        {
+          const ClosestPoint found = search.closest(middle + p, bound), right = tree.closest(middle + p, bound);
+          ASSERT_EQ(found.triangle, right.triangle);
+          ASSERT_EQ(found.feature, right.feature);
+          ASSERT_EQ(found.point, right.point);
+          ASSERT_EQ(found.distance, right.distance);
+        }
 }
 
 TEST(SurfaceDistance, IsExactWithTheRightSign)

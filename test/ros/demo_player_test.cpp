@@ -51,6 +51,20 @@ TEST(DemoPlayer, RepeatsFromWhereTheLastPhaseEnded)
   EXPECT_NEAR(demo.activation(2.5 * 4 + 0.7).at("knitter"), 0, 1e-6);
 }
 
+TEST(DemoPlayer, NamesTheExpression)
+{
+  const DemoPlayer demo(std::make_shared<const Model>(with_demo()));
+  for (const double round : { 0.0, 2.5, 5.0 })
+  {
+    EXPECT_EQ(demo.expression(round + 0.01), "raise");
+    EXPECT_EQ(demo.expression(round + 0.99), "raise");
+    EXPECT_EQ(demo.expression(round + 1.01), "relax");
+    EXPECT_EQ(demo.expression(round + 2.49), "knit");
+  }
+  EXPECT_EQ(demo.expression(-1), "raise");
+  EXPECT_EQ(DemoPlayer(std::make_shared<const Model>(small_model())).expression(1), "");
+}
+
 TEST(DemoPlayer, MovesBones)
 {
   Model model = with_demo();

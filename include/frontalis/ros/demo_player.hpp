@@ -24,6 +24,9 @@ public:
   double period() const { return period_; }
   /// The activation of every muscle, 0..1, at a simulated time [s]. Times below 0 count as 0.
   std::map<std::string, double> activation(double time) const;
+  /// The expression at a simulated time [s], which may still be forming; "relax" at rest, empty if the model has no
+  /// demo.
+  std::string expression(double time) const;
   /// The motion in the face frame of each bone that the demo moves, at a simulated time [s].
   std::map<std::string, RigidTransform> bones(double time) const;
 

@@ -56,6 +56,8 @@ public:
            const std::vector<double>& values);
   /// Sets the runner's activations and bones to those of the demo, the commands and the followed frames at a time [s].
   void play(Runner& running, double time);
+  /// The expression that the demo shows at a simulated time [s]; empty if no demo plays.
+  std::string shown_expression(double time) const;
   /// Whether the activations may change after a time [s] without a further command.
   bool timed(double time) const;
   /// The activations that are commanded for a simulated time [s].

@@ -74,6 +74,8 @@ private:
 
   // timers
   void repeat_frame_and_play();
+  /// Publishes ~caption if its text has changed.
+  void show_caption();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   /// The runner; null while there is no model, and then the reason is written to `reason`.
@@ -91,11 +93,14 @@ private:
 
   std::mutex frame_mutex_;  ///< protects the members up to last_published_; never held while the runner is called
   FacePublisher publisher_;
-  std::uint64_t present_face_ = 0;  ///< whose frames are published
-  Frame frame_;                     ///< the latest frame
+  const std::string loading_frame_;  ///< of the caption while there is no model
+  std::uint64_t present_face_ = 0;   ///< whose frames are published
+  Frame frame_;                      ///< the latest frame
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
+  std::string caption_;           ///< text of ~caption
+  double slowness_ = 0;           ///< how many times slower than real time the caption says; 0: nothing
   std::string speed_report_;      ///< as it was logged; empty if it was not logged yet
   ros::WallTime last_frame_;      ///< when the runner made the latest frame
   ros::WallTime last_published_;  ///< when a frame was published the last time, new or repeated

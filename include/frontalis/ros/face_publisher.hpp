@@ -23,8 +23,8 @@ namespace frontalis
 {
 
 /// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~eyes, ~bodies,
-/// ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and its memory
-/// is reused once no subscriber holds it. Only one thread at a time may call these functions, except for
+/// ~caption, ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and
+/// its memory is reused once no subscriber holds it. Only one thread at a time may call these functions, except for
 /// wanted_field(), shows_muscles() and shows_bone_forces().
 class FacePublisher
 {
@@ -56,6 +56,10 @@ public:
   /// Publishes a failed ~state with this message, for a face that has no model.
   void publish_fault(const std::string& message, const ros::Time& stamp);
 
+  /// Publishes a text above the face (latched), which rviz turns towards the viewer. Before start() it is in the frame
+  /// `frame`, at the place where the face will be; later `frame` is not used.
+  void publish_caption(const std::string& text, const std::string& frame);
+
   /// The model that start() was given; null before.
   const Model* model() const { return model_.get(); }
 
@@ -83,7 +87,7 @@ private:
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
-  ros::Publisher topology_, bodies_, muscles_, eyes_;
+  ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;

@@ -40,6 +40,7 @@ public:
   double winding_number(const Vector3d& p) const;
 
 private:
+  friend class ClusterSearch;
   struct Node
   {
     Box box;

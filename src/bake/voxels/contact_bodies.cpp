@@ -1,9 +1,14 @@
 #include "bake/voxels/contact_bodies.hpp"
 
+#include "bake/mesh/cluster_search.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/model/sample_field.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
+#include <limits>
+#include <memory>
 
 namespace frontalis
 {
@@ -21,8 +26,6 @@ struct Body
 {
   const PreparedSurface* surface;
   double sign;
-
-  double distance(const Vector3d& p) const { return sign * surface->signed_distance(p, surface->tree().closest(p)); }
 };
 
 Body closed_body(const PreparedSurface& surface, const std::string& place)
@@ -35,15 +38,21 @@ Body closed_body(const PreparedSurface& surface, const std::string& place)
   return { &surface, signed_volume(surface.mesh()) < 0 ? -1.0 : 1.0 };
 }
 
-// Distance from the union of several bodies, of a point in local coordinates.
-Distance distance_from(const std::vector<Body>& bodies, const LocalFrame& frame)
+// Distance from the union of several bodies, of a point in local coordinates. `extent`: see ClusterSearch.
+Distance distance_from(const std::vector<Body>& bodies, const LocalFrame& frame, double extent)
 {
-  return [&](const std::array<double, 3>& local)
+  std::vector<ClusterSearch> searches;
+  searches.reserve(bodies.size());
+  for (const Body& body : bodies)
+    searches.emplace_back(body.surface->tree(), extent);
+  using OfThread = tbb::enumerable_thread_specific<std::vector<ClusterSearch>>;
+  return [&, of_thread = std::make_shared<OfThread>(searches)](const std::array<double, 3>& local)
   {
+    std::vector<ClusterSearch>& search = of_thread->local();
     const Vector3d p = frame.to_scene(to_vector(local));
-    double least = bodies.front().distance(p);
-    for (std::size_t b = 1; b < bodies.size(); ++b)
-      least = std::min(least, bodies[b].distance(p));
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      least = std::min(least, bodies[b].sign * bodies[b].surface->signed_distance(p, search[b].closest(p)));
     return least;
   };
 }
@@ -56,9 +65,9 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
     for (const Vector3& v : body.surface->mesh().vertices)
       box.extend(frame.to_local(to_vector(v)));
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
+  const double spacing = std::min(largest_spacing, spacing_share * edge);
   return sample_band(
-      to_array(box.min()), to_array(box.max()), distance_from(bodies, frame),
-      std::min(largest_spacing, spacing_share * edge), reach,
+      to_array(box.min()), to_array(box.max()), distance_from(bodies, frame, cluster_extent * spacing), spacing, reach,
       [&](std::size_t count, const std::function<void(std::size_t)>& body) { parallel_for(monitor, count, 1, body); },
       deepest_inside);
 }
@@ -140,7 +149,7 @@ void check_overlap(const Scene& scene, const std::string& place, const Contact& 
                    const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
 {
   const double allowed = overlap_share * *std::min_element(model.spacing.begin(), model.spacing.end());
-  const Distance distance = distance_from(bodies, frame);
+  const Distance distance = distance_from(bodies, frame, cluster_extent * largest_spacing);
   double deepest = 0;
   Vector3d where{ 0, 0, 0 };
   for (const auto& p : contact.points)

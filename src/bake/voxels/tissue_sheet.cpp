@@ -1,11 +1,13 @@
 #include "bake/voxels/tissue_sheet.hpp"
 
+#include "bake/mesh/cluster_search.hpp"
 #include "bake/bake_monitor.hpp"
 #include "bake/voxels/voxel_index.hpp"
 #include "frontalis/model/sample_field.hpp"
 
 #include <Eigen/Dense>
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -183,26 +185,23 @@ public:
   {
   }
 
-  /// The closest point of the sheet within `bound` [m]. `hint`: triangle found for a neighbouring point, or -1;
-  /// replaced by the one found here.
-  ClosestPoint closest(const Vector3d& p, double bound, std::int32_t& hint) const
+  /// Searches of one thread, for points that lie close together; `extent`: see ClusterSearch.
+  struct Searches
   {
-    const auto triangles = static_cast<std::int32_t>(of_.sheet->mesh().triangles.size());
-    ClosestPoint closest = of_.sheet->tree().closest(p, bound, hint < triangles ? hint : -1);
-    hint = closest.triangle;
-    return closest;
-  }
+    ClusterSearch sheet, rest;
+  };
+  Searches searches(double extent) const { return { { of_.sheet->tree(), extent }, { rest_tree_, extent } }; }
 
   const Vector3d& normal(const ClosestPoint& closest) const { return of_.sheet->pseudonormal(closest); }
 
-  SurfaceDistance at(const Vector3d& p, const ClosestPoint& closest) const
+  SurfaceDistance at(const Vector3d& p, const ClosestPoint& closest, Searches& searches) const
   {
     const Vector3d away = p - closest.point;
     const double height = away.dot(normal(closest));
     const bool at_rim = on_rim_[closest.triangle][closest.feature];
     // A point inside a closed surface counts as below its sheet, also if another part of the surface is closer.
     const double bound = closest.distance + 1e-9;
-    if (height > 0 && of_.whole->closed() && rest_tree_.closest(p, bound).triangle >= 0 &&
+    if (height > 0 && of_.whole->closed() && searches.rest.closest(p, bound).triangle >= 0 &&
         of_.whole->signed_distance(p, of_.whole->tree().closest(p, bound)) < 0)
       return -closest.distance;
     if (at_rim)
@@ -220,23 +219,21 @@ private:
 /// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have
 /// more weight the nearer they are and the more they are parallel to the nearest. So a node can pass from one bone to
 /// the next across a gap between their sheets, and sheets that face each other stay separate.
-SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Vector3d& p)
+SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, std::vector<SheetDistance::Searches>& searches,
+                              const Vector3d& p)
 {
   constexpr double hardly_farther = 1e-3, widest_gap = 5e-3;  // [m]
-  // start each search at the triangles found last, because successive samples are neighbours
-  thread_local std::vector<std::int32_t> hint;
-  hint.resize(sheets.size(), -1);
   std::vector<ClosestPoint> closest;
   std::size_t nearest = 0;
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
     const double bound = s == 0 ? 1e300 : closest[nearest].distance + widest_gap;
-    closest.push_back(sheets[s].closest(p, bound, hint[s]));
+    closest.push_back(searches[s].sheet.closest(p, bound));
     if (closest[s].triangle >= 0 && closest[s].distance < closest[nearest].distance)
       nearest = s;
   }
   const Vector3d& normal = sheets[nearest].normal(closest[nearest]);
-  SurfaceDistance sum = sheets[nearest].at(p, closest[nearest]);
+  SurfaceDistance sum = sheets[nearest].at(p, closest[nearest], searches[nearest]);
   double weights = 1;
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
@@ -250,7 +247,7 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, const Ve
     if (farther >= 1)
       continue;
     const double weight = std::pow((1 - farther) * alike, 2);
-    sum.value += weight * sheets[s].at(p, closest[s]).value;
+    sum.value += weight * sheets[s].at(p, closest[s], searches[s]).value;
     weights += weight;
   }
   sum.value /= weights;
@@ -336,10 +333,16 @@ SampledField distance_field(const std::vector<SlidingSurface>& surfaces, const s
   if (const auto sphere = sphere_of(*surfaces.front().whole))
     return sphere_field(to_array(frame.to_local(sphere->first)), sphere->second);
   const std::vector<SheetDistance> sheets(surfaces.begin(), surfaces.end());
+  const double spacing = std::min(0.5e-3, 0.5 * to_vector(model.spacing).minCoeff());
+  std::vector<SheetDistance::Searches> searches;
+  searches.reserve(sheets.size());
+  for (const SheetDistance& sheet : sheets)
+    searches.push_back(sheet.searches(cluster_extent * spacing));
+  tbb::enumerable_thread_specific<std::vector<SheetDistance::Searches>> of_thread(searches);
   const auto distance = [&](const std::array<double, 3>& local)
-  { return distance_from(sheets, frame.to_scene(to_vector(local))); };
-  constexpr std::size_t grain = 64;
-  return sample_field(rest, distance, std::min(0.5e-3, 0.5 * to_vector(model.spacing).minCoeff()), travel,
+  { return distance_from(sheets, of_thread.local(), frame.to_scene(to_vector(local))); };
+  constexpr std::size_t grain = 16;
+  return sample_field(rest, distance, spacing, travel,
                       [&](std::size_t count, const std::function<void(std::size_t)>& body)
                       { parallel_for(monitor, count, grain, body); });
 }
