@@ -221,7 +221,10 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
 {
   visualization_msgs::MarkerArray out;
   // The first marker removes the bodies of the scene that was shown before.
-  out.markers.emplace_back().action = visualization_msgs::Marker::DELETEALL;
+  visualization_msgs::Marker& removal = out.markers.emplace_back();
+  removal.header.frame_id = face_frame;
+  removal.pose.orientation.w = 1;
+  removal.action = visualization_msgs::Marker::DELETEALL;
   for (const BodyShape& shape : body_shapes(model))
   {
     visualization_msgs::Marker& marker = out.markers.emplace_back();
@@ -232,9 +235,9 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.action = visualization_msgs::Marker::ADD;
     marker.pose.orientation.w = 1;
     marker.scale.x = marker.scale.y = marker.scale.z = 1;
-    marker.color.r = 0.45f;
-    marker.color.g = 0.55f;
-    marker.color.b = 0.65f;
+    marker.color.r = body_colour[0];
+    marker.color.g = body_colour[1];
+    marker.color.b = body_colour[2];
     marker.color.a = 1;
     const auto centre = model.to_face(shape.centre);
     for (const auto& triangle : shape.surface->triangles)

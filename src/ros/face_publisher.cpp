@@ -63,7 +63,8 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   backend_ = backend;
   const SkinState rest = rest_in_face(*model_);
   rest_ = rest.vertices;
-  shading_ = std::make_unique<SkinShading>(model_->skin, brow_cover(model_->landmarks, rest.landmarks, rest_));
+  shading_ =
+      std::make_unique<SkinShading>(model_->skin, skin_appearance(model_->landmarks, rest.landmarks, rest_).colours);
   topology_.publish(to_mesh(*model_));
   bodies_.publish(to_bodies(*model_, face_frame_));
   landmark_vertices_ = landmark_vertices(*model_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace frontalis
 {
@@ -29,12 +28,11 @@ const Vector fill_light = unit({ { 0.55f, -0.80f, 0.05f } });
 const Vector view = { { 1, 0, 0 } };
 const Vector half_way = unit({ { key_light[0] + 1, key_light[1], key_light[2] } });
 
-const Vector albedo = { { 0.78f, 0.47f, 0.35f } };  // linear, before gamma
 const Vector wrap = { { 0.30f, 0.16f, 0.10f } };  // extension of light into the shadow by scattering; red goes farthest
-const Vector hair_albedo = { { 0.050f, 0.030f, 0.020f } };
 const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
+constexpr float gamma = 2.2f;            // of displays
 constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses, per mean curvature [m]
 
 }  // namespace
@@ -54,9 +52,11 @@ std::array<float, 3> false_colour(float value)
   return out;
 }
 
-SkinShading::SkinShading(const TriangleMesh& mesh, std::vector<float> hair) : hair_(std::move(hair))
+SkinShading::SkinShading(const TriangleMesh& mesh, const std::vector<Vector>& natural) : albedo_(natural)
 {
-  hair_.resize(mesh.vertices.size(), 0.0f);
+  for (Vector& colour : albedo_)
+    for (float& channel : colour)
+      channel = std::pow(channel, gamma);
   std::vector<std::vector<std::int32_t>> neighbours(mesh.vertices.size());
   for (const auto& triangle : mesh.triangles)
     for (int corner = 0; corner < 3; ++corner)
@@ -100,15 +100,13 @@ void SkinShading::colours(const SkinState& skin, const std::vector<float>& value
     const float key = dot(normal, key_light), fill = dot(normal, fill_light), sky = 0.5f + 0.5f * normal[2];
     const float highlight = 0.10f * std::pow(std::max(0.0f, dot(normal, half_way)), 22.0f);
     const float rim = 0.10f * std::pow(1 - std::clamp(dot(normal, view), 0.0f, 1.0f), 3.0f);
-    const Vector surface = values.empty() ? albedo : false_colour(values[vertex]);
-    const float hair = values.empty() ? hair_[vertex] : 0.0f;
+    const Vector surface = values.empty() ? albedo_[vertex] : false_colour(values[vertex]);
     for (int channel = 0; channel < 3; ++channel)
     {
       const float light = key_colour[channel] * wrapped(key, wrap[channel]) +
                           fill_colour[channel] * wrapped(fill, wrap[channel]) + sky_colour[channel] * sky;
-      const float colour = surface[channel] + hair * (hair_albedo[channel] - surface[channel]);
-      const float linear = openness * (colour * light + highlight * (1 - hair) + rim * sky_colour[channel]);
-      out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f);
+      const float linear = openness * (surface[channel] * light + highlight + rim * sky_colour[channel]);
+      out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / gamma);
     }
   }
 }

@@ -58,7 +58,7 @@ TEST(Conversions, MeshKeepsTheOrderOfVerticesAndCorners)
 TEST(Conversions, MarkerHasThreePointsAndColoursATriangle)
 {
   const Model model = small_model();
-  const SkinShading shading(model.skin);
+  const SkinShading shading(model.skin, SkinColours(model.skin.vertices.size(), { { 0.9F, 0.7F, 0.6F } }));
   visualization_msgs::Marker marker;
   SkinColours colours;
   shading.colours(lifted(model, 0.002f), {}, colours);
@@ -277,7 +277,7 @@ TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
   TriangleMesh mesh;
   mesh.vertices.assign(5, { { 0, 0, 0 } });
   mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } }, { { 0, 3, 4 } }, { { 0, 4, 1 } } };
-  const SkinShading shading(mesh);
+  const SkinShading shading(mesh, SkinColours(5, { { 0.9F, 0.7F, 0.6F } }));
   SkinState skin;
   skin.vertices = {
     { { 0, 0, 0 } }, { { 0, 0.01f, 0 } }, { { 0, 0, 0.01f } }, { { 0, -0.01f, 0 } }, { { 0, 0, -0.01f } }

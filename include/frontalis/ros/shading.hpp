@@ -19,8 +19,8 @@ std::array<float, 3> false_colour(float value);
 class SkinShading
 {
 public:
-  /// `hair`: the fraction of each vertex that hair covers, 0..1 (see brow_cover); empty: no hair.
-  explicit SkinShading(const TriangleMesh& mesh, std::vector<float> hair = {});
+  /// `natural`: the colour of each vertex in plain white light, encoded for displays (skin_appearance() has it).
+  SkinShading(const TriangleMesh& mesh, const std::vector<std::array<float, 3>>& natural);
 
   /// Fills `out` with one colour per vertex: red, green and blue, 0..1, encoded for displays (gamma 2.2). The skin is
   /// in the face frame. `values`: empty for natural skin colours, or one number per vertex, coloured by false_colour().
@@ -29,7 +29,7 @@ public:
 private:
   std::vector<std::int32_t> neighbour_begin_;
   std::vector<std::int32_t> neighbours_;
-  std::vector<float> hair_;
+  std::vector<std::array<float, 3>> albedo_;  // linear, before gamma
 };
 
 }  // namespace frontalis
