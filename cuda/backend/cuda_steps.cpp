@@ -37,7 +37,7 @@ StepArguments CudaSolver::arguments(double dt, bool idle_parts) const
   return g;
 }
 
-// Copies the cleared frequency bound, the motion of bodies that tissue may touch, the activations, the poses and the
+// Copies a zero frequency bound, the motion of bodies that tissue may touch, the activations, the poses and the
 // relaxation times of viscous stresses to the device in one transfer from page-locked memory. `relaxation` is empty if
 // launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)

@@ -62,7 +62,7 @@ public:
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
-  /// launch() with all parts(), also those that are switched off.
+  /// The launch with all effects of parts(), also those that are switched off.
   StepLaunch launch_with_parts() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }

@@ -103,7 +103,8 @@ void DeviceViscosity::relax(const StepArguments& g, const float4* u, const float
             "relaxing viscous stresses");
 }
 
-// Change of H : E by relaxation since the account was opened, minus its present value.
+// Work that viscosity has absorbed: the changes of H : E by relaxation since the account was opened, minus H : E now
+// (H: relaxed stress, E: strain).
 double DeviceViscosity::work() const
 {
   if (account_.size() == 0)

@@ -15,8 +15,8 @@ namespace cuda
 class DeviceViscosity : public EffectPart
 {
 public:
-  /// `voxel_at`: 1 + the model voxel at each entry of the partition, 0 if the entry is empty. `apart`: a voxel that
-  /// lies in several patches has separate stresses in each, so that patches need not wait for each other.
+  /// `voxel_at`: 1 + the model voxel at each place of the device's order of voxels, 0 if the place is empty. `apart`:
+  /// whether a voxel that lies in several patches has stresses of its own in each, so that no patch waits for another.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
                   bool apart);

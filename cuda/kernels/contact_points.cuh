@@ -92,7 +92,7 @@ struct PointStep
   physics::Vec3<float> moved;  ///< from rest, at the start of the step [m]
 };
 
-/// What a step finds of a point.
+/// How a body pushes a point in one step.
 struct Push
 {
   physics::Vec3<float> force;  ///< on it [N]

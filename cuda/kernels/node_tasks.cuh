@@ -128,7 +128,7 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // load without a branch, so that no instruction waits for the node's flags; nodes of other strips are read too
+  // Loads do not wait for the node's flags. What is loaded for nodes of other strips is not used.
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }

@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
 
 using StepKernel = void (*)(StepArguments);
 
-/// The strip kernel for a set of effects. `Nodes`: the effects of nodes in it.
+/// The strip kernel with the effects of voxels from `effects` and the effects of nodes from `Nodes`.
 template <Effects Nodes, bool WithBound, int... Voxels>
 StepKernel step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {

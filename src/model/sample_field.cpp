@@ -99,8 +99,8 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 
 constexpr int width = DistanceField::brick_row;
 
-// Calls visit(sample, way) for the samples of a brick. way: from the brick to the one that owns the cell around the
-// sample. Samples are visited in cubic blocks, the middle one first, since what is found for it serves those around it.
+// Calls visit(sample, way) for the samples of a brick. `way`: steps from this brick to the one that owns the cell
+// around the sample. The middle sample of each cubic block comes first, because its search helps those around it.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {

@@ -111,9 +111,9 @@ public:
 
   /// The effects of the model that are switched on. reset() does not change them.
   virtual EffectSet effects() const = 0;
-  /// An effect that is off takes no time and keeps its memory. When it is switched on again, its history (viscous
-  /// stresses, friction) is lost. Opens the ledger again. Throws Error if the model does not have the effect,
-  /// if another effect needs it, or if it cannot be switched while running.
+  /// An effect that is off takes no time; its arrays stay allocated. When it is switched on again, it starts without
+  /// its history (viscous stresses, friction). Restarts the energy ledger. Throws Error if the model does not have the
+  /// effect, if another effect needs it, or if it cannot be switched while running.
   virtual void switch_effect(Effect effect, bool on) = 0;
   /// Memory of the solver's arrays, without the model.
   virtual std::vector<Allocation> allocations() const = 0;

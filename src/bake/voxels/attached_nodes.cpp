@@ -206,7 +206,8 @@ private:
                        [&](const auto& place) { return take(place.second, above, candidate); });
   }
 
-  /// Makes the corner nearest to y of the voxel at `place` the master, if all corners are free.
+  /// Takes the corner nearest to y of the voxel at `place` as the master. Returns false if a corner of the voxel is
+  /// restricted, or the master would be too close to the surface.
   bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate)
   {
     std::int32_t voxel = index_.find(place);

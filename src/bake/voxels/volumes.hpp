@@ -32,7 +32,7 @@ public:
     int material = 0;
     std::string name;
   };
-  /// A volume. Its conditions refer to bodies: regions enclosed by one surface, or by several together.
+  /// A volume of the scene. Its surfaces are given as bodies: regions enclosed by one surface, or by several together.
   struct Entry
   {
     const Volume* volume = nullptr;

@@ -65,7 +65,7 @@ public:
   };
   /// Sorted by voxel.
   const std::vector<Point>& points() const { return points_; }
-  /// Largest ratio of a point's displacement to those of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to the largest one of the nodes of its voxel.
   double spread() const { return nodes_.spread(); }
   /// Takes over what a step has found, one entry per point, and adds up the reactions and energies.
   void follow(const std::vector<Found>& found, const ConstraintStep& step);

@@ -19,7 +19,7 @@ public:
   /// Longest displacement [m] of a bound node of a plane in a step, from displacements before and after it.
   template <class Real>
   double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
-  /// Largest ratio of a point's displacement to those of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to the largest one of the nodes of its voxel.
   double spread() const { return spread_; }
   void list_arrays(ArrayList& list, Effect effect) const;
 

@@ -78,7 +78,7 @@ private:
     std::int32_t vertex, triangle;
     Real held, pressed, along, stretch[3];
   };
-  // Arrays that finding the forces of pairs reads and changes.
+  // Arrays that touch() reads and changes.
   struct Arena
   {
     std::vector<PairVertices>& pair_vertices;

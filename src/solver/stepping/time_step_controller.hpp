@@ -59,7 +59,8 @@ public:
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
   /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Resets the controller after displacements were set from outside; `frequency_squared`: their bound at nodes [1/s2].
+  /// Resets the controller after displacements were set from outside. `frequency_squared`: bound of the model's squared
+  /// frequencies at these displacements [1/s2].
   void displacements_set(double frequency_squared);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }

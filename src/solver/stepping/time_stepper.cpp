@@ -231,7 +231,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   if (!(tolerance > 0) || !std::isfinite(tolerance))
     throw Error(fmt::format("equilibrium within {:g}: allowed are tolerances above 0", tolerance));
   check(seconds, target);
-  // an equilibrium has no history: muscles have responded, viscous stresses have relaxed
+  // an equilibrium has no history: while this object lives, viscous stresses count as relaxed
   struct Settling
   {
     explicit Settling(TimeStepper& s) : stepper(s) { stepper.settling_ = true; }
@@ -243,7 +243,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
     }
     TimeStepper& stepper;
   } const settling(*this);
-  motion_.activation = motion_.controls.activation = target.activation;
+  motion_.activation = motion_.controls.activation = target.activation;  // muscles respond at once
   renew_conditions();
 
   NodalVectors u, f;

@@ -12,8 +12,8 @@
 namespace frontalis
 {
 
-/// Deforms the default head to given dimensions. Of all displacements that give each independent dimension its value,
-/// it takes the most likely one of a smooth random field (Matern 3/2 covariance; kriging with differences as data).
+/// Deforms the default head to given dimensions. The displacement is the most likely one of a smooth random
+/// field that gives each independent dimension its value (kriging, Matern 3/2 covariance, from distances of landmarks).
 class HeadWarp
 {
 public:
