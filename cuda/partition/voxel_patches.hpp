@@ -20,7 +20,9 @@ struct PatchSettings
 struct BoundWork
 {
   std::vector<float> cost;                        ///< of its points, relative to a voxel without effects
-  std::vector<std::vector<std::int32_t>> beside;  ///< other voxels whose nodes a patch that has it needs as well
+  /// Other voxels whose nodes a patch that has the voxel needs as well. The relation is symmetric, so that patches that
+  /// read each other's nodes wait for each other.
+  std::vector<std::vector<std::int32_t>> beside;
 };
 
 /// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the

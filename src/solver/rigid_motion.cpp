@@ -34,24 +34,25 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
   const double angle = std::atan2(twice_sine, r[0][0] + r[1][1] + r[2][2] - 1);
   RigidTransform result;
   double axis[3] = { 1, 0, 0 };
-  if (twice_sine > 1e-12)
-    for (int i = 0; i < 3; ++i)
-      axis[i] = sine[i] / twice_sine;
-  else if (angle > 1)
+  if (angle > 3)
   {
-    // half a turn: the axis is a column of r + 1
+    // close to half a turn the sine is small; the symmetric part of r less the cosine is a multiple of axis * axis
     int k = 0;
     for (int i = 1; i < 3; ++i)
       k = r[i][i] > r[k][k] ? i : k;
-    double length = 0;
+    double squared = 0, along_sine = 0;
     for (int i = 0; i < 3; ++i)
     {
-      axis[i] = r[i][k] + (i == k ? 1 : 0);
-      length += axis[i] * axis[i];
+      axis[i] = 0.5 * (r[i][k] + r[k][i]) - (i == k ? std::cos(angle) : 0);
+      squared += axis[i] * axis[i];
+      along_sine += axis[i] * sine[i];
     }
     for (double& x : axis)
-      x /= std::sqrt(length);
+      x /= std::copysign(std::sqrt(squared), along_sine);
   }
+  else if (twice_sine > 0)
+    for (int i = 0; i < 3; ++i)
+      axis[i] = sine[i] / twice_sine;
   const double part = angle * fraction, c = std::cos(part), s = std::sin(part);
   const double cross[3][3] = { { 0, -axis[2], axis[1] }, { axis[2], 0, -axis[0] }, { -axis[1], axis[0], 0 } };
   double turn[3][3], shift[3], along = 0;

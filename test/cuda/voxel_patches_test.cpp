@@ -107,7 +107,11 @@ TEST(VoxelPatches, HaveTheNodesOfVoxelsBesideTheirOwn)
   bound.beside.resize(block.voxels.size());
   // some of them far away
   for (std::size_t e = 0; e < bound.beside.size(); e += 3)
-    bound.beside[e] = { static_cast<std::int32_t>((e + 20) % bound.beside.size()), static_cast<std::int32_t>(e / 2) };
+    for (const std::size_t other : { (e + 20) % bound.beside.size(), e / 2 })
+    {
+      bound.beside[e].push_back(static_cast<std::int32_t>(other));
+      bound.beside[other].push_back(static_cast<std::int32_t>(e));
+    }
   for (const int turns : { 1, 3 })
     for (const int blocks : { 1, 7, 12 })
       check_patches(block, { blocks, turns }, bound);

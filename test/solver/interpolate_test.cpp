@@ -55,6 +55,19 @@ TEST(Interpolate, APointThatABoneTurnsAboutStaysAndTheShiftAlongTheAxisIsScaled)
   }
 }
 
+TEST(Interpolate, ReachesTheTargetAtAnyAngle)
+{
+  const double pi = std::acos(-1.0);
+  for (const double angle : { 0.0, 1e-10, 3.0, 3.0001, pi - 1e-6, pi - 1e-10, pi, pi + 1e-10, -3.1 })
+  {
+    RigidTransform to = turn_about_z(angle, 0);
+    to.translation = { { 1, 2, 3 } };
+    expect_same(interpolate(RigidTransform(), to, 1), to);
+    const RigidTransform half = interpolate(RigidTransform(), to, 0.5);
+    expect_same(interpolate(RigidTransform(), half, 0.5), interpolate(RigidTransform(), to, 0.25));
+  }
+}
+
 TEST(Interpolate, HalfATurnAndNone)
 {
   const double pi = std::acos(-1.0);
